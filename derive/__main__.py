@@ -1,0 +1,118 @@
+"""Write the kernels of the manifest, add the kernel of a layout, or check what is there.
+
+    python -m sebody.derive                         write all shipped kernels
+    python -m sebody.derive --check                 compare, writing nothing
+    python -m sebody.derive f2t1 [f3:mean:a ...]    add kernels: LAYOUT[:FRAME[:INERTIA]]
+"""
+
+import argparse
+import difflib
+import os
+import sys
+from pathlib import Path
+
+import sebody.generated
+from sebody.kernels import user_directory
+
+from .elements import ELEMENTS
+from .emit import superelement_text
+from .emit_element import element_text
+from .frames import FRAMES
+from .inertia import OPTIONS
+from .layouts import Layout, LayoutError
+from .manifest import ELEMENTS as SHIPPED_ELEMENTS
+from .manifest import SUPERELEMENTS
+from .superelement import superelement
+
+KERNEL_PREFIXES = ("superelement_", "element_")
+
+
+def shipped() -> dict[str, str]:
+    """File name and text of every kernel of the manifest."""
+    files = {}
+    for layout, frame, inertia in SUPERELEMENTS:
+        files |= variant_file(layout, frame, inertia)
+    for name in SHIPPED_ELEMENTS:
+        files[f"element_{name}.py"] = element_text(ELEMENTS[name]())
+    return files
+
+
+def variant_file(layout: str, frame: str, inertia: str) -> dict[str, str]:
+    """File name and text of one superelement kernel."""
+    kernel = superelement(Layout.parse(layout), frame, inertia)
+    return {f"{kernel.name}.py": superelement_text(kernel)}
+
+
+def parse_variant(text: str) -> tuple[str, str, str]:
+    """``LAYOUT[:FRAME[:INERTIA]]`` with the defaults filled in."""
+    parts = text.split(":")
+    layout = Layout.parse(parts[0])
+    default = "converged_mean" if layout.rotations else "positions"
+    frame = parts[1] if len(parts) > 1 else default
+    inertia = parts[2] if len(parts) > 2 else "b"
+    for value, known, what in ((frame, FRAMES, "frame"), (inertia, OPTIONS, "inertia option")):
+        if value not in known:
+            raise LayoutError(f"{what} {value!r} is unknown: use one of {', '.join(known)}")
+    return layout.name, frame, inertia
+
+
+def write(directory: Path, files: dict[str, str]) -> list[str]:
+    """Write the files whose text changed; the others keep their compiled cache."""
+    directory.mkdir(parents=True, exist_ok=True)
+    changed = []
+    for name, text in files.items():
+        path = directory / name
+        if not path.exists() or path.read_text() != text:
+            path.write_text(text)
+            changed.append(name)
+    return changed
+
+
+def differences(directory: Path, files: dict[str, str]) -> list[str]:
+    """What `--check` prints: diffs of stale files, names of missing and orphaned ones."""
+    out = []
+    for name, text in files.items():
+        path = directory / name
+        if not path.exists():
+            out.append(f"missing: {name} (run python -m sebody.derive)")
+        elif path.read_text() != text:
+            out.append(f"stale: {name} (run python -m sebody.derive)")
+            out += difflib.unified_diff(path.read_text().splitlines(), text.splitlines(),
+                                        f"generated/{name}", f"derived/{name}", lineterm="", n=1)
+    for path in sorted(directory.glob("*.py")):
+        if path.name.startswith(KERNEL_PREFIXES) and path.name not in files:
+            out.append(f"orphaned: {path.name} is not in derive/manifest.py: add it or delete it")
+    return out
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m sebody.derive", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("layouts", nargs="*", metavar="LAYOUT[:FRAME[:INERTIA]]")
+    parser.add_argument("--check", action="store_true", help="compare, writing nothing")
+    options = parser.parse_args(arguments)
+    directory = Path(sebody.generated.__file__).parent
+    try:
+        if options.layouts:
+            files = {}
+            for text in options.layouts:
+                files |= variant_file(*parse_variant(text))
+            directory = directory if os.access(directory, os.W_OK) and not os.environ.get(
+                "SEBODY_KERNELS") else user_directory()
+        else:
+            files = shipped()
+    except LayoutError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    if options.check:
+        found = differences(directory, files)
+        print("\n".join(found) if found else f"{len(files)} kernels are up to date")
+        return 1 if found else 0
+    changed = write(directory, files)
+    print(f"{len(files)} kernels derived, {len(changed)} written to {directory}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,122 @@
+"""Joints and loads: small elements written out in components.
+
+A constraint adds ``lambda . phi`` to the Lagrangian: its force is the coefficient of the unknowns'
+variation in ``lambda . delta phi``, its tangent the differential of that force (the exact
+second-order term), and ``phi`` differentiated twice in time starts the simulation.
+"""
+
+from typing import NamedTuple
+
+import sympy as sp
+
+from .elastic import _of
+from .rotations import skew
+from .stages import Quantity, Space
+from .variation import along, check_same, differential, turning
+
+
+class Element(NamedTuple):
+    """Description of a joint or a load."""
+
+    name: str
+    summary: str
+    space: Space
+    constants: tuple[Quantity, ...]     # in the order of the constants row
+    rotations: tuple[Quantity, ...]     # rotation matrices it reads
+    rates: tuple[Quantity, ...]         # velocities of its coordinates, block by block
+    accelerations: tuple[Quantity, ...]
+    directions: tuple[Quantity, ...]    # variations of its coordinates, block by block
+    multipliers: tuple[sp.Symbol, ...]
+    residual: tuple[sp.Expr, ...]       # force on the coordinates, then phi
+    second: tuple[sp.Expr, ...]         # phi differentiated twice in time
+    linear: tuple[sp.Expr, ...]         # differential of the residual, as `directions` vary
+    on_multipliers: sp.Matrix           # derivative of the force by the multipliers
+    power: sp.Expr | None = None        # rate of work done on the system
+
+
+def revolute(grounded: bool) -> Element:
+    """Revolute joint: an axis fixed in a body stays normal to two directions of another one.
+
+    ``phi_k = (R_a e) . (R_b n_k)``, k = 1, 2; the position is shared, so it needs no constraint.
+    To the ground ``R_b = I``.
+    """
+    space = Space(False)
+    make = space.quantity
+    e, n = make("e", "vector", "element"), [make(f"n{k}", "vector", "element") for k in (1, 2)]
+    bodies = "a" if grounded else "ab"
+    R = [make(f"R{b}", "rotation", "element") for b in bodies]
+    rates = [make(f"Om{b}", "axial", "element") for b in bodies]
+    accelerations = [make(f"A{b}", "axial", "element") for b in bodies]
+    dth = [make(f"dth{b}", "axial", "element") for b in bodies]
+    other = sp.eye(3) if grounded else R[1].symbols
+    phi = [(R[0].symbols * e.symbols).dot(other * nk.symbols) for nk in n]
+    return _constraint("revolute_ground" if grounded else "revolute", (
+        "revolute joint to the ground" if grounded else "revolute joint between two bodies")
+        + ": the axis stays normal to two directions", space, (e, *n), R, rates, accelerations,
+        dth, phi)
+
+
+def _constraint(name, summary, space, constants, R, rates, accelerations, dth, phi) -> Element:
+    lam = sp.symbols(f"lam_1:{len(phi) + 1}")
+    vary = _turning_all(R, dth)
+    work = sum(l * differential(p, vary) for l, p in zip(lam, phi, strict=True))
+    force = sp.Matrix.vstack(*[_of(work, d.symbols) for d in dth])
+    linear = [differential(f, vary) for f in force] + [differential(p, vary) for p in phi]
+    in_time = _turning_all(R, rates)
+    for rate, acceleration in zip(rates, accelerations, strict=True):
+        in_time |= along(rate.symbols, acceleration.symbols)
+    second = [differential(differential(p, in_time), in_time) for p in phi]
+    gradient = force.jacobian(sp.Matrix(lam))
+    for k, p in enumerate(phi):
+        check_same("constraint force is the gradient", sp.Matrix([differential(p, vary)]),
+                   sp.Matrix([gradient[:, k].dot(sp.Matrix.vstack(*[d.symbols for d in dth]))]))
+    return Element(name, summary, space, tuple(constants), tuple(R), tuple(rates),
+                   tuple(accelerations), tuple(dth), lam, (*force, *phi), tuple(second),
+                   tuple(linear), gradient)
+
+
+def _turning_all(R, dth) -> dict:
+    rules = {}
+    for rotation, d in zip(R, dth, strict=True):
+        rules |= turning(rotation.symbols, d.symbols)
+    return rules
+
+
+def force(planar: bool) -> Element:
+    """Dead force on a position: fixed direction in space, amplitude from the load's history."""
+    space = Space(planar)
+    d, v, dx, a = (space.quantity(name, "vector", "element") for name in ("d", "v", "dx", "a"))
+    amplitude = sp.Symbol("amplitude")
+    push = space.components("vector", -amplitude * d.symbols)
+    return Element("planar_force" if planar else "force", "dead force on a position", space, (d,),
+                   (), (v,), (a,), (dx,), (), tuple(push), (), tuple(sp.S.Zero for _ in push),
+                   sp.zeros(len(push), 0), amplitude * d.symbols.dot(v.symbols))
+
+
+def torque(planar: bool) -> Element:
+    """Dead torque on a rotation: ``delta W = m . R dTheta``, so its material value turns."""
+    space = Space(planar)
+    d = space.quantity("d", "axial", "element")
+    R = space.quantity("Ra", "rotation", "element")
+    Om, dth, A = (space.quantity(name, "axial", "element") for name in ("Om", "dth", "A"))
+    amplitude = sp.Symbol("amplitude")
+    work = amplitude * d.symbols.dot(R.symbols * dth.symbols)
+    material = -_of(work, dth.symbols)
+    linear = differential(material, turning(R.symbols, dth.symbols))
+    check_same("rate of a dead torque in material axes", linear,
+               -amplitude * skew(R.symbols.T * d.symbols) * dth.symbols, [R.symbols])
+    kept = space.components("axial", material)
+    return Element("planar_torque" if planar else "torque", "dead torque on a rotation", space,
+                   (d,), () if planar else (R,), (Om,), (A,), (dth,), (), tuple(kept), (),
+                   tuple(space.components("axial", linear)), sp.zeros(len(kept), 0),
+                   amplitude * (R.symbols * Om.symbols).dot(d.symbols))
+
+
+ELEMENTS = {
+    "revolute_ground": lambda: revolute(True),
+    "revolute": lambda: revolute(False),
+    "force": lambda: force(False),
+    "torque": lambda: torque(False),
+    "planar_force": lambda: force(True),
+    "planar_torque": lambda: torque(True),
+}

@@ -1,0 +1,75 @@
+"""Layouts: which triplets each boundary node of a superelement keeps (23), (39)."""
+
+import re
+from typing import NamedTuple
+
+LETTER = {"full": "f", "translation": "t", "rotation": "r"}
+PATTERN = re.compile(r"(planar-)?(?=[ftr])(f\d+)?(t\d+)?(r\d+)?")
+
+
+class LayoutError(ValueError):
+    """A layout name that cannot be read, or a layout no frame can carry."""
+
+
+class Layout(NamedTuple):
+    """Boundary nodes of a superelement and the space it moves in.
+
+    The local coordinates are ordered ``y = (positions, rotations, internal modes)``; a kernel
+    therefore depends on the two counts of triplets alone, never on the order of the nodes. The
+    number of internal modes is a run-time size of every kernel.
+    """
+
+    nodes: tuple[str, ...]      # what each boundary node keeps: full, translation or rotation
+    planar: bool = False        # motion in a plane: (x, y) and one angle in place of triplets
+
+    @classmethod
+    def parse(cls, name: str) -> "Layout":
+        """Read a name such as ``f2``, ``f2t1``, ``t8`` or ``planar-f2``."""
+        match = PATTERN.fullmatch(name)
+        if not match:
+            raise LayoutError(f"layout {name!r} is unknown: write counts of full, translation-only "
+                              "and rotation-only nodes, such as f2, f2t1, f2r1, t8 or planar-f2")
+        nodes = []
+        for part, kind in zip(match.groups()[1:], LETTER, strict=True):
+            nodes += [kind] * int(part[1:]) if part else []
+        layout = cls(tuple(nodes), bool(match.group(1)))
+        if not layout.positions:
+            raise LayoutError(f"layout {name!r} keeps no position: a superelement needs at least "
+                              "one node with translations to place its frame")
+        return layout
+
+    @property
+    def name(self) -> str:
+        """Canonical name; the order of the nodes does not enter."""
+        counts = [(LETTER[k], self.nodes.count(k)) for k in LETTER]
+        return "planar-" * self.planar + "".join(f"{c}{n}" for c, n in counts if n)
+
+    @property
+    def positions(self) -> int:
+        """Number of nodes that keep their position."""
+        return sum(kind != "rotation" for kind in self.nodes)
+
+    @property
+    def rotations(self) -> int:
+        """Number of nodes that keep their rotation."""
+        return sum(kind != "translation" for kind in self.nodes)
+
+    @property
+    def position_size(self) -> int:
+        """Coordinates of one position."""
+        return 2 if self.planar else 3
+
+    @property
+    def rotation_size(self) -> int:
+        """Coordinates of one rotation."""
+        return 1 if self.planar else 3
+
+    @property
+    def first_rotation(self) -> int:
+        """Index in ``y`` of the first rotation."""
+        return self.position_size * self.positions
+
+    @property
+    def first_mode(self) -> int:
+        """Index in ``y`` of the first internal mode."""
+        return self.first_rotation + self.rotation_size * self.rotations

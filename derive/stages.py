@@ -1,0 +1,200 @@
+"""Named quantities and the stages that compute one from another: what a kernel is made of.
+
+A kernel is a list of stages in the order of computation. Its linearization is the differential
+of each stage, by the chain rule over the *named* quantities, in the same order.
+"""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import sympy as sp
+
+from .rotations import skew, stumpff, tangent_inverse
+from .variation import Rules, along, check_same, differential
+
+AXES = "xyz"
+
+
+class Quantity(NamedTuple):
+    """Something with a name, components and a place in the kernel."""
+
+    name: str
+    kind: str           # vector | axial | scalar | rotation (a 3x3 matrix)
+    home: str           # element | position | rotation | mode: what carries one value each
+    array: str          # kernel array that holds it; "" for local variables of the element
+    symbols: sp.Matrix  # components in space; zeros where motion in a plane has none
+
+    @property
+    def kept(self) -> list[sp.Symbol]:
+        """The components that are stored: the symbols, without the zeros of a plane."""
+        return list(dict.fromkeys(s for s in self.symbols if isinstance(s, sp.Symbol)))
+
+
+@dataclass(frozen=True)
+class Space:
+    """Three-dimensional motion, or motion in the x-y plane with rotations about z."""
+
+    planar: bool
+    known: dict[str, Quantity] = field(default_factory=dict, hash=False, compare=False)
+
+    def quantity(self, name: str, kind: str, home: str, array: str = "") -> Quantity:
+        """Declare a quantity (or return the one of that name)."""
+        if name not in self.known:
+            symbols = getattr(self, "_" + kind)(name)
+            self.known[name] = Quantity(name, kind, home, array, symbols)
+        return self.known[name]
+
+    def d(self, quantity: Quantity) -> Quantity:
+        """The differential of a quantity, as a quantity of its own."""
+        array = quantity.array and "d" + quantity.array
+        kind = "axial" if quantity.kind == "rotation" else quantity.kind
+        return self.quantity("d" + quantity.name, kind, quantity.home, array)
+
+    def components(self, kind: str, value: sp.Matrix) -> list[sp.Expr]:
+        """Kept components of an expression; those a plane drops must vanish identically."""
+        value = sp.Matrix(value)
+        if not self.planar or kind == "scalar":
+            return list(value)
+        if kind == "rotation":
+            return [value[0], value[3]]
+        keep = [2] if kind == "axial" else [0, 1]
+        for k in set(range(3)) - set(keep):
+            check_same("out-of-plane component", sp.Matrix([value[k]]), sp.zeros(1, 1))
+        return [value[k] for k in keep]
+
+    def _vector(self, name):
+        axes = AXES[:2] if self.planar else AXES
+        return sp.Matrix([sp.Symbol(f"{name}_{a}") if a in axes else 0 for a in AXES])
+
+    def _axial(self, name):
+        axes = AXES[2:] if self.planar else AXES
+        return sp.Matrix([sp.Symbol(f"{name}_{a}") if a in axes else 0 for a in AXES])
+
+    def _scalar(self, name):
+        return sp.Matrix([sp.Symbol(name)])
+
+    def _rotation(self, name):
+        if not self.planar:
+            return sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"{name}_{AXES[i]}{AXES[j]}"))
+        c, s = sp.symbols(f"{name}_cos {name}_sin")
+        return sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+class Stage(NamedTuple):
+    """Explicit formulas: quantities set, or summed over the nodes."""
+
+    title: str
+    over: str                                   # element | position | rotation | mode
+    sets: tuple[tuple[Quantity, sp.Matrix], ...] = ()
+    adds: tuple[tuple[Quantity, sp.Matrix], ...] = ()
+    short: tuple[sp.Matrix, ...] = ()           # hand-shortened differentials of `sets`, proved
+    continues: bool = False                     # `adds` goes on with the sum of an earlier stage
+
+
+class Product(NamedTuple):
+    """``out = matrix vector`` with a symmetric matrix of the body's constants."""
+
+    title: str
+    matrix: str
+    vector: str
+    out: str
+
+
+class Solve(NamedTuple):
+    """A linear 3-vector equation ``sum_j summand_j(unknown) + constant = 0`` over `over` nodes.
+
+    The inverse of its matrix is kept in `inverse`, made where `invert` says so.
+    """
+
+    title: str
+    unknown: Quantity
+    over: str
+    summand: sp.Matrix
+    constant: sp.Matrix
+    inverse: str
+    transposed: bool = False
+    invert: bool = False
+
+
+class Text(NamedTuple):
+    """Kernel text that calls an algorithm of the runtime (a root search, a logarithm)."""
+
+    title: str
+    lines: tuple[str, ...]
+    calls: tuple[str, ...] = ()
+    over: str = "element"
+    operations: int = 0         # arithmetic of one pass, for the operation count
+
+
+Step = Stage | Product | Solve | Text
+
+
+class Linearizer:
+    """Differentiates stages by the chain rule over named quantities.
+
+    Parameters
+    ----------
+    space : Space
+    rules : dict
+        Differentials of the quantities the stages start from.
+    """
+
+    def __init__(self, space: Space, rules: Rules):
+        self.space = space
+        self.rules = dict(rules)
+
+    def move(self, quantity: Quantity) -> None:
+        """Let a quantity vary from here on, along its own differential."""
+        self.rules |= along_own(self.space, quantity)
+
+    def stage(self, step: Stage) -> Stage:
+        """The differential of a stage; a short form is proved against the chain rule first."""
+        chains = [differential(expression, self.rules) for _, expression in step.sets]
+        results = self._proved(step, chains) if step.short else chains
+        d = self.space.d
+        sets = tuple((d(q), e) for (q, _), e in zip(step.sets, results, strict=True))
+        adds = tuple((d(q), differential(e, self.rules)) for q, e in step.adds)
+        for quantity, _ in (*step.sets, *step.adds):
+            self.move(quantity)
+        return Stage("differential: " + step.title, step.over, sets, adds,
+                     continues=step.continues)
+
+    def _proved(self, step, chains):
+        frames = [q.symbols for q in self.space.known.values() if q.kind == "rotation"]
+        meaning = {s: e for q, value in step.sets
+                   for s, e in zip(q.symbols, value, strict=True) if isinstance(s, sp.Symbol)}
+        for (quantity, _), short, chain in zip(step.sets, step.short, chains, strict=True):
+            check_same(f"differential of {quantity.name}", short.subs(meaning), chain, frames)
+        return step.short
+
+    def solve(self, step: Solve) -> Solve:
+        """``B du = - d(equation) at fixed u``: the same matrix, a new right-hand side."""
+        d_unknown = self.space.d(step.unknown)
+        summand = solve_matrix(step) * d_unknown.symbols + differential(step.summand, self.rules)
+        constant = differential(step.constant, self.rules)
+        self.move(step.unknown)
+        return Solve("differential: " + step.title, d_unknown, step.over, summand, constant,
+                     step.inverse, step.transposed)
+
+
+def along_own(space: Space, quantity: Quantity) -> Rules:
+    """Rules that move a quantity along its own differential."""
+    return along(quantity.symbols, space.d(quantity).symbols)
+
+
+def solve_matrix(step: Solve) -> sp.Matrix:
+    """Matrix of one summand of a linear equation in its unknown."""
+    columns = [step.summand.diff(u) if isinstance(u, sp.Symbol) else sp.zeros(3, 1)
+               for u in step.unknown.symbols]
+    return sp.Matrix.hstack(*columns)
+
+
+def name_functions(expression: sp.Expr, names: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
+    """Replace evaluated opaque functions by the quantities that hold their values."""
+    found = {f: names[f] for f in expression.atoms(stumpff, tangent_inverse) if f in names}
+    return expression.xreplace(found)
+
+
+def cross(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
+    """``a x b`` of two columns."""
+    return skew(a) * b

@@ -1,0 +1,172 @@
+"""The superelement kernel of a layout, a frame and an inertia option, stage by stage.
+
+    locate the frame -> local coordinates and velocities -> Sbar y, Mbar ydot, Mbar yddot
+    -> moment on the frame, pulled back -> forces on the unknowns
+
+The tangent is the differential of these stages in the direction of each unknown in turn.
+"""
+
+from typing import NamedTuple
+
+import sympy as sp
+
+from .elastic import VirtualWork, _of, virtual_work
+from .frames import FRAMES, Frame, origin_stage, relative_rotation
+from .inertia import OPTIONS, Inertia, relative_turning
+from .kinematics import (
+    elastic_rotation_variation,
+    local_displacement,
+    local_velocity,
+    unknown_rules,
+)
+from .layouts import Layout, LayoutError
+from .quantities import Quantities
+from .stages import Linearizer, Product, Space, Stage, Step, Text, along_own, cross
+
+
+class Superelement(NamedTuple):
+    """Description of a kernel: what the printer turns into text."""
+
+    layout: Layout
+    space: Space
+    frame: Frame
+    inertia: Inertia
+    names: dict                 # opaque functions -> symbols that hold their values
+    residual: tuple[Step, ...]
+    energy: tuple[Step, ...]
+    tangent: tuple[Step, ...]   # of one column
+
+    @property
+    def name(self) -> str:
+        """Module name of the kernel."""
+        return kernel_name(self.layout, self.frame.name, self.inertia.name)
+
+
+def kernel_name(layout: Layout, frame: str, inertia: str) -> str:
+    """Module name of a superelement kernel."""
+    return f"superelement_{layout.name}_{frame}_{inertia}".replace("-", "_")
+
+
+def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
+    """Derive the kernel of a layout, frame and inertia option.
+
+    Raises
+    ------
+    LayoutError
+        If the layout cannot carry the frame.
+    """
+    if frame != "positions" and not layout.rotations:
+        raise LayoutError(f"layout {layout.name} keeps no rotation, so the frame {frame!r} has "
+                          "nothing to average: use the frame 'positions'")
+    if frame == "positions" and layout.positions < (2 if layout.planar else 3):
+        raise LayoutError(f"layout {layout.name} has too few positions for the frame 'positions', "
+                          "which needs three nodes (two in a plane): use 'converged_mean'")
+    q = Quantities(Space(layout.planar))
+    chosen, option = FRAMES[frame](q), OPTIONS[inertia](q)
+    moved = q.vs if frame == "positions" else q.Om
+    varied = q.dx if frame == "positions" else q.dth
+    work = virtual_work(q, local_displacement(q).short[0], elastic_rotation_variation(q))
+    before, after = _motion(q, chosen, option, moved), _forces(q, chosen, option, work)
+    residual = [origin_stage(q, q.x0, q.x), *chosen.locate, *before, *_products(""), *after]
+    tangent = _tangent(q, chosen, varied, before, after)
+    energy = _energy(q, option)
+    steps = [tuple(s for s in part if layout.rotations or getattr(s, "over", "") != "rotation")
+             for part in (residual, energy, tangent)]
+    return Superelement(layout, q.space, chosen, option, _names(q), *steps)
+
+
+def _motion(q: Quantities, frame: Frame, option: Inertia, moved) -> list[Step]:
+    relative = [relative_rotation(q)] if option.name == "a" else []
+    return [local_displacement(q), local_velocity(q), *relative, option.velocity,
+            *frame.rate(q.Om0, moved, True), *option.acceleration,
+            Stage("internal modes", "mode",
+                  sets=((q.ym, q.qm.symbols), (q.ydm, q.vm.symbols), (q.yddm, q.am.symbols)))]
+
+
+def _products(d: str) -> list[Step]:
+    title = "differential: " if d else ""
+    return [Product(title + "elastic force, s = Sbar y", "S", d + "y", d + "s"),
+            Product(title + "momentum, p = Mbar ydot", "M", d + "yd", d + "p"),
+            Product(title + "inertia force, pd = Mbar yddot", "M", d + "ydd", d + "pd")]
+
+
+def _forces(q: Quantities, frame: Frame, option: Inertia, work: VirtualWork) -> list[Step]:
+    R0, h, alpha = q.R0.symbols, q.h.symbols, q.alpha.symbols[0]
+    origin = [Stage("force on the origin, through the frame", "position",
+                    adds=((q.F, frame.origin),), continues=True)] if any(frame.origin) else []
+    return [
+        Stage("forces on the frame: elastic (30) and inertia (57)", "position",
+              adds=((q.F, work.origin), (q.W, work.frame_positions + option.frame_positions))),
+        Stage("moments on the frame: elastic (30) and inertia (45)", "rotation",
+              adds=((q.W, work.frame_rotations + option.frame_rotations),), continues=True),
+        *frame.pull, *origin,
+        Stage("force on the nodes in frame axes, (30), (57)", "position",
+              sets=((q.h, work.position + option.position + frame.position
+                     + alpha * q.F.symbols),)),
+        Stage("force on the nodes", "position", sets=((q.gx, R0 * h),),
+              short=(R0 * (q.space.d(q.h).symbols + cross(q.dth0.symbols, h)),)),
+        Stage("moment on the nodes, (30), (57)", "rotation",
+              sets=((q.gt, work.rotation + option.rotation + frame.rotation),)),
+        Stage("force of the internal modes", "mode",
+              sets=((q.gm, q.fm.symbols + q.pmd.symbols),)),
+    ]
+
+
+def _tangent(q: Quantities, frame: Frame, varied, before, after) -> list[Step]:
+    """Differential of all stages: first the local coordinates, then everything else."""
+    d = q.space.d
+    chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm)
+                       | along_own(q.space, q.vm) | along_own(q.space, q.am)
+                       | relative_turning(q.Q.symbols, q.dth.symbols, q.dth0.symbols))
+    skipped = ("rotation of the node in the frame",)
+    steps: list[Step] = [origin_stage(q, q.dx0, q.dx), *frame.rate(q.dth0, varied, False),
+                         chain.stage(before[0])]
+    steps.append(Stage("variation of the elastic rotations, (17)", "rotation",
+                       sets=((d(q.psi), elastic_rotation_variation(q)),)))
+    steps.append(Stage("differential: internal modes", "mode",
+                       sets=((d(q.ym), d(q.qm).symbols),)))
+    for quantity in (q.psi, q.ym, q.beta, q.beta0):
+        chain.move(quantity)
+    steps += [_products("d")[0], _geometric_switch(q), *frame.differentials]
+    for quantity in (q.f, q.m, q.fm):
+        chain.move(quantity)
+    for step in before[1:]:
+        if step.title not in skipped:
+            steps.append(chain.solve(step) if hasattr(step, "unknown") else chain.stage(step))
+    steps += _products("d")[1:]
+    for quantity in (q.px, q.pw, q.pxd, q.pwd, q.pmd):
+        chain.move(quantity)
+    for step in after:
+        steps.append(chain.solve(step) if hasattr(step, "unknown") else chain.stage(step))
+    return steps
+
+
+def _geometric_switch(q: Quantities) -> Text:
+    """Between the paper's tangent (31), (48)-(51), (60)-(63) and the consistent one."""
+    lines = [f"{s} *= c_geo" for s in q.dth0.kept]
+    return Text("c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here",
+                ("for i in range(n):", "    dy[i] *= c_geo", "    dqe[i] *= c_geo", *lines))
+
+
+def _energy(q: Quantities, option: Inertia) -> list[Step]:
+    """Momentum and its moment: what T is conjugate to in a rigid motion of the whole body."""
+    e, push = q.space.quantity("e", "axial", "element"), q.space.quantity("e_v", "vector",
+                                                                          "element")
+    R0, p, x = q.R0.symbols, q.px.symbols, q.x.symbols
+    of_positions = p.dot(R0.T * (push.symbols + cross(e.symbols, x)))
+    of_rotations = option.spin.dot(q.R.symbols.T * e.symbols)
+    return [Stage("momentum and its moment about the origin: positions", "position",
+                  adds=((q.P, _of(of_positions, push.symbols)),
+                        (q.H, _of(of_positions, e.symbols)))),
+            Stage("moment of momentum: rotations", "rotation",
+                  adds=((q.H, _of(of_rotations, e.symbols)),), continues=True)]
+
+
+def _names(q: Quantities) -> dict[sp.Expr, sp.Symbol]:
+    from .rotations import stumpff, tangent_inverse
+    names = {}
+    for vector, values in ((q.psi, (q.e0, q.e1)), (q.beta, (q.b0, q.b1))):
+        s = vector.symbols.dot(vector.symbols)
+        names |= {tangent_inverse(k, s): value.symbols[0] for k, value in enumerate(values)}
+    s = q.beta0.symbols.dot(q.beta0.symbols)
+    return names | {stumpff(k, s): getattr(q, f"c{k}").symbols[0] for k in range(2, 6)}

@@ -1,0 +1,61 @@
+"""The one signature of every compiled kernel, and how the time loop calls it.
+
+A kernel is reached through its address: a call costs a few nanoseconds and the loop's cache does
+not depend on which kernels a scene uses.
+
+===============  =================================================================================
+argument         meaning
+===============  =================================================================================
+task             RESIDUAL, TANGENT (residual and matrix), ENERGY or ACCELERATION (constraints)
+count            number of elements in the batch
+stride           length of an index row
+width            number n of unknowns of an element (coordinates, then multipliers)
+index            rows: offset into constants, frame or load, n, ids of rotations, ids of unknowns
+constants        one flat row per body type
+q, R             coordinates (positions, modes, multipliers; rotations' step increments), rotations
+v, a             velocities and accelerations of the coordinates
+reference        frames of the last converged step, (frames, 9)
+frames           frames of the current iterate, (frames, 9); superelements write theirs
+T                tangent operators of the step increments of rotations, (rotations, 9)
+loads            load amplitudes at the current time
+coefficients     c_mass, c_rate, c_place, c_geo, c_constraint of the matrix
+g, J             element blocks: forces (count, n), matrices (count, n, n)
+work             scratch memory, WORK_ROWS rows
+energy           sums: kinetic, strain, momentum (3), moment of momentum (3), power of the loads
+===============  =================================================================================
+
+``J = c_mass dG/da + c_rate dG/dv + c_place dG/dq T``: rotations vary multiplicatively, and T
+turns the variation of the step's increment into that of the rotation.
+"""
+
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+RESIDUAL, TANGENT, ENERGY, ACCELERATION = range(4)
+HEADER = 3          # integers of an index row before the ids
+HUGE = 1 << 40      # nominal length of the arrays behind the pointers
+ENERGIES = 9
+
+_floats = types.CPointer(types.float64)
+_ints = types.CPointer(types.int64)
+SIGNATURE = types.int64(types.int64, types.int64, types.int64, types.int64, _ints,
+                        *(_floats,) * 14)
+
+
+@intrinsic
+def call_kernel(typingctx, address, task, count, stride, width, arrays):
+    """Call the kernel at an address with the data pointers of a tuple of arrays."""
+    signature = types.int64(address, task, count, stride, width, arrays)
+
+    def codegen(context, builder, sig, args):
+        word = ir.IntType(64)
+        scalars = list(args[1:5])
+        pointers = [context.make_array(kind)(context, builder, builder.extract_value(args[5], k)
+                                             ).data
+                    for k, kind in enumerate(sig.args[5])]
+        function = ir.FunctionType(word, [word] * 4 + [p.type for p in pointers])
+        return builder.call(builder.inttoptr(args[0], function.as_pointer()),
+                            scalars + pointers)
+
+    return signature, codegen

@@ -1,0 +1,112 @@
+"""A rectangular block of 8-node hexahedra with incompatible modes (translation DOFs only)."""
+
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.errors import InputError
+from sebody.fem.model import SOLID, FEModel, assemble
+
+_CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
+
+
+def hexahedral_block(
+    corner: ArrayLike,
+    size: ArrayLike,
+    divisions: tuple[int, int, int],
+    youngs_modulus: float,
+    poisson_ratio: float,
+    density: float,
+) -> FEModel:
+    """Block with edges along the axes, of equal hexahedra; x runs fastest in the node order.
+
+    The incompatible modes of R.L. Taylor, P.J. Beresford and E.L. Wilson (Int. J. Numer. Meth.
+    Engng 10, 1976), condensed in each element, let one element follow pure bending.
+
+    Parameters
+    ----------
+    corner : (3,)
+        Corner with the smallest coordinates [length].
+    size : (3,)
+        Edge lengths [length].
+    divisions : (int, int, int)
+        Number of elements along each edge.
+    youngs_modulus, poisson_ratio, density : float
+        Isotropic material.
+
+    Raises
+    ------
+    InputError
+        A size, division, modulus or density that is not positive; a Poisson's ratio outside
+        (-1, 0.5).
+    """
+    corner, size = np.asarray(corner, dtype=float), np.asarray(size, dtype=float)
+    counts = np.asarray(divisions, dtype=int)
+    for name, value in (
+        ("size", size),
+        ("divisions", counts),
+        ("youngs_modulus", youngs_modulus),
+        ("density", density),
+    ):
+        if not np.all(np.asarray(value) > 0):
+            raise InputError(f"block {name} is {value}; give positive values")
+    if not -1 < poisson_ratio < 0.5:
+        raise InputError(f"block poisson_ratio is {poisson_ratio}; give a value in (-1, 0.5)")
+
+    nx, ny, nz = counts + 1
+    z, y, x = (grid.ravel() for grid in np.meshgrid(*map(np.arange, (nz, ny, nx)), indexing="ij"))
+    nodes = corner + np.column_stack([x, y, z]) * (size / counts)
+    inside = (x < nx - 1) & (y < ny - 1) & (z < nz - 1)
+    step = ((_CORNERS + 1) / 2).astype(int) @ np.array([1, nx, nx * ny])
+    connectivity = np.flatnonzero(inside)[:, None] + step
+    dofs = (3 * connectivity[:, :, None] + np.arange(3)).reshape(len(connectivity), 24)
+    stiffness, mass = (
+        assemble(dofs, np.broadcast_to(matrix, (len(dofs), 24, 24)), 3 * len(nodes))
+        for matrix in _brick(size / counts, youngs_modulus, poisson_ratio, density)
+    )
+    return FEModel(stiffness, mass, nodes, SOLID)
+
+
+def _brick(
+    edges: NDArray, youngs_modulus: float, poisson_ratio: float, density: float
+) -> tuple[NDArray, NDArray]:
+    """Stiffness and mass (24, 24) of one rectangular element, 2 x 2 x 2 Gauss points."""
+    elasticity = _elasticity(youngs_modulus, poisson_ratio)
+    weight = np.prod(edges) / 8
+    full, mass = np.zeros((33, 33)), np.zeros((8, 8))
+    for point in _CORNERS / np.sqrt(3):
+        factors = (1 + _CORNERS * point) / 2
+        shape = factors.prod(axis=1)
+        slopes = np.zeros((11, 3))  # 8 shape functions, then 1 - s^2 along each edge
+        for axis in range(3):
+            others = np.delete(factors, axis, axis=1).prod(axis=1)
+            slopes[:8, axis] = _CORNERS[:, axis] / 2 * others
+            slopes[8 + axis, axis] = -2 * point[axis]
+        strain = _strain(slopes * 2 / edges)
+        full += weight * strain.T @ elasticity @ strain
+        mass += weight * density * np.outer(shape, shape)
+    own, extra = slice(0, 24), slice(24, 33)
+    condensed = np.linalg.solve(full[extra, extra], full[extra, own])
+    stiffness = full[own, own] - full[own, extra] @ condensed
+    return (stiffness + stiffness.T) / 2, np.kron(mass, np.eye(3))
+
+
+def _elasticity(youngs_modulus: float, poisson_ratio: float) -> NDArray:
+    """Isotropic stress of the strains (xx, yy, zz, 2 yz, 2 zx, 2 xy), shape (6, 6)."""
+    shear = youngs_modulus / (2 * (1 + poisson_ratio))
+    lame = 2 * shear * poisson_ratio / (1 - 2 * poisson_ratio)
+    elasticity = np.diag([2 * shear] * 3 + [shear] * 3)
+    elasticity[:3, :3] += lame
+    return elasticity
+
+
+def _strain(slopes: NDArray) -> NDArray:
+    """Strains (6, 3 n) of n functions with gradients `slopes` (n, 3)."""
+    strain = np.zeros((6, len(slopes), 3))
+    for axis in range(3):
+        after, last = (axis + 1) % 3, (axis + 2) % 3
+        strain[axis, :, axis] = slopes[:, axis]
+        strain[3 + axis, :, after] = slopes[:, last]
+        strain[3 + axis, :, last] = slopes[:, after]
+    return strain.reshape(6, -1)

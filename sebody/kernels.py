@@ -1,0 +1,65 @@
+"""Find and load generated kernels by name: the shipped ones, then the user's directory."""
+
+import importlib.util
+import os
+import sys
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+from .errors import InputError
+
+MEANING = ("residual, matrix, energies or constraint accelerations of a batch; see sebody.abi")
+
+
+def user_directory() -> Path:
+    """Where kernels of other layouts go when the package's own folder cannot be written.
+
+    ``SEBODY_KERNELS``, or ``~/.sebody/kernels``.
+    """
+    return Path(os.environ.get("SEBODY_KERNELS") or Path.home() / ".sebody" / "kernels")
+
+
+@cache
+def load(name: str) -> ModuleType | None:
+    """The module of a kernel, compiled (or read from Numba's cache) on import; None if absent."""
+    try:
+        return import_module(f"sebody.generated.{name}")
+    except ModuleNotFoundError as error:
+        if error.name != f"sebody.generated.{name}":
+            raise
+    path = user_directory() / f"{name}.py"
+    if not path.exists():
+        return None
+    spec = importlib.util.spec_from_file_location(f"sebody_user_kernels.{name}", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def superelement_kernel(layout: str, frame: str, inertia: str) -> ModuleType:
+    """The kernel of a layout, frame and inertia option.
+
+    Raises
+    ------
+    InputError
+        If it has not been generated; the message gives the command that makes it.
+    """
+    name = f"superelement_{layout}_{frame}_{inertia}".replace("-", "_")
+    module = load(name)
+    if module is None:
+        raise InputError(f"there is no kernel for layout {layout!r}, frame {frame!r}, inertia "
+                         f"{inertia!r}: make it with\n    python -m sebody.derive "
+                         f"{layout}:{frame}:{inertia}")
+    return module
+
+
+def element_kernel(name: str) -> ModuleType:
+    """The kernel of a joint or load."""
+    module = load(f"element_{name}")
+    if module is None:
+        raise InputError(f"there is no kernel for element {name!r}: reinstall sebody or run "
+                         "python -m sebody.derive")
+    return module

@@ -1,0 +1,158 @@
+"""The superelement in the form the multibody code takes: reduced matrices and their layout."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import block_diag
+
+from sebody.errors import InputError
+from sebody.reduction import checks
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedBody:
+    """Reduced stiffness and mass of a free body, in the axes of its FE model (24), (37).
+
+    The reduced coordinates are ordered ``y = (u_B, psi_B, y_I)``: position triplets of the
+    boundary nodes that keep them, in node order, rotation triplets likewise, internal modes.
+    Planar bodies have (x, y) and one angle instead of triplets.
+
+    Parameters
+    ----------
+    stiffness, mass : (n, n)
+        Reduced matrices; stored exactly symmetric and read-only.
+    coordinates : (n_nodes, 3), planar (n_nodes, 2)
+        Boundary nodes in the FE axes [length].
+    keeps : tuple of 'full', 'translation' or 'rotation', one per boundary node
+        Triplets kept at each node (23), (39).
+    modes : int
+        Number of internal modes.
+
+    Raises
+    ------
+    InputError
+        Shapes that do not fit, values that are not finite, asymmetric matrices, indefinite mass,
+        no mass, negative stiffness, or a stiffness that resists rigid motion.
+    """
+
+    stiffness: NDArray
+    mass: NDArray
+    coordinates: NDArray
+    keeps: tuple[str, ...]
+    modes: int = 0
+
+    def __post_init__(self) -> None:
+        coordinates = np.array(self.coordinates, dtype=float)
+        keeps = tuple(self.keeps)
+        checks.check_layout(coordinates, keeps, self.modes)
+        names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
+        self._store("coordinates", coordinates)
+        object.__setattr__(self, "keeps", keeps)
+        for name in ("stiffness", "mass"):
+            matrix = np.array(getattr(self, name), dtype=float)
+            checks.check_matrix(name, matrix, names)
+            self._store(name, (matrix + matrix.T) / 2)
+        rigid = self.rigid_modes_about(coordinates.mean(axis=0))
+        checks.check_stiffness(self.stiffness, rigid, names)
+        checks.check_mass(self.mass, rigid, names)
+
+    def _store(self, name: str, array: NDArray) -> None:
+        array.flags.writeable = False
+        object.__setattr__(self, name, array)
+
+    @property
+    def planar(self) -> bool:
+        """Whether the body lives in the xy plane."""
+        return self.coordinates.shape[1] == 2
+
+    @property
+    def position_nodes(self) -> tuple[int, ...]:
+        """Boundary nodes that keep their position."""
+        return tuple(i for i, keep in enumerate(self.keeps) if keep != "rotation")
+
+    @property
+    def rotation_nodes(self) -> tuple[int, ...]:
+        """Boundary nodes that keep their rotation."""
+        return tuple(i for i, keep in enumerate(self.keeps) if keep != "translation")
+
+    @property
+    def rigid_modes(self) -> NDArray:
+        """Unit rigid translations and rotations about the FE origin, (n, 6), planar (n, 3)."""
+        return self.rigid_modes_about(np.zeros(self.coordinates.shape[1]))
+
+    def rigid_modes_about(self, point: ArrayLike) -> NDArray:
+        """Rigid modes with rotations about `point`: rows e, e x (X_i - point); e; zero."""
+        arms = self.coordinates[list(self.position_nodes)] - np.asarray(point, dtype=float)
+        count, dimension = arms.shape
+        if self.planar:
+            turned = np.column_stack([-arms[:, 1], arms[:, 0]]).reshape(-1, 1)
+        else:
+            # Row of node i: (e_1 x a, e_2 x a, e_3 x a) = -skew(a).
+            turned = np.cross(np.eye(3), arms[:, None, :]).transpose(0, 2, 1).reshape(-1, 3)
+        turns = turned.shape[1]
+        angles = len(self.rotation_nodes)
+        positions = np.hstack([np.tile(np.eye(dimension), (count, 1)), turned])
+        rotations = np.hstack(
+            [np.zeros((angles * turns, dimension)), np.tile(np.eye(turns), (angles, 1))]
+        )
+        internal = np.zeros((self.modes, dimension + turns))
+        return np.vstack([positions, rotations, internal])
+
+    @property
+    def total_mass(self) -> float:
+        """Mass from the rigid translations."""
+        dimension = self.coordinates.shape[1]
+        translations = self.rigid_modes[:, :dimension]
+        return float(np.trace(translations.T @ self.mass @ translations) / dimension)
+
+    @property
+    def centre_of_mass(self) -> NDArray:
+        """Centre of mass in the FE axes, (3,), planar (2,) [length]."""
+        # About the nodes' mean, so that a body far from the origin loses no digits.
+        middle = self.coordinates.mean(axis=0)
+        modes = self.rigid_modes_about(middle)
+        dimension = self.coordinates.shape[1]
+        moment = modes[:, :dimension].T @ self.mass @ modes[:, dimension:]
+        if self.planar:
+            return middle + np.array([moment[1, 0], -moment[0, 0]]) / self.total_mass
+        # e_i . (e_k x c) = epsilon_ikl c_l: the moment is -skew(c) times the mass.
+        skew = (moment - moment.T) / 2
+        return middle + np.array([skew[1, 2], skew[2, 0], skew[0, 1]]) / self.total_mass
+
+    def rotated(self, rotation: ArrayLike) -> "ReducedBody":
+        """The same body turned by `rotation` about the FE origin, in the old axes.
+
+        Parameters
+        ----------
+        rotation : (3, 3), planar (2, 2)
+            Proper rotation; a vector of the body a becomes ``rotation @ a``.
+
+        Raises
+        ------
+        InputError
+            `rotation` is not a rotation of the body's dimension.
+        """
+        rotation = np.asarray(rotation, dtype=float)
+        dimension = self.coordinates.shape[1]
+        if (
+            rotation.shape != (dimension, dimension)
+            or not np.allclose(rotation.T @ rotation, np.eye(dimension), atol=1e-12)
+            or np.linalg.det(rotation) < 0
+        ):
+            raise InputError(
+                f"rotation must be a proper rotation matrix of shape ({dimension}, {dimension}); "
+                "orthonormalise it"
+            )
+        angles = len(self.rotation_nodes)
+        turn = block_diag(
+            np.kron(np.eye(len(self.position_nodes)), rotation),
+            np.eye(angles) if self.planar else np.kron(np.eye(angles), rotation),
+            np.eye(self.modes),
+        )
+        return replace(
+            self,
+            stiffness=turn @ self.stiffness @ turn.T,
+            mass=turn @ self.mass @ turn.T,
+            coordinates=self.coordinates @ rotation.T,
+        )

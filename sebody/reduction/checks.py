@@ -1,0 +1,146 @@
+"""Checks of reduced matrices. Every message names the matrix, the entry and the remedy.
+
+Matrices are compared in unit-free form: positions, rotations and each internal mode are scaled
+by the square root of their largest diagonal entry, so no verdict depends on the units.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+
+KEEPS = ("full", "translation", "rotation")
+SYMMETRY_LIMIT = 1e-8
+NEGATIVE_MASS_LIMIT = 1e-8
+NEGATIVE_STIFFNESS_LIMIT = 1e-6
+RIGID_LIMIT = 1e-6
+
+
+def check_layout(coordinates: NDArray, keeps: tuple[str, ...], modes: int) -> None:
+    """Raise InputError unless coordinates, kept triplets and mode count describe a body."""
+    if coordinates.ndim != 2 or coordinates.shape[1] not in (2, 3) or not len(coordinates):
+        raise InputError(
+            f"coordinates have shape {coordinates.shape}; give one row per boundary node, "
+            "(n_nodes, 3) or planar (n_nodes, 2)"
+        )
+    if not np.all(np.isfinite(coordinates)):
+        node = np.argwhere(~np.isfinite(coordinates))[0][0]
+        raise InputError(f"coordinates of node {node} are not finite; correct them")
+    if len(keeps) != len(coordinates):
+        raise InputError(
+            f"keeps has {len(keeps)} entries for {len(coordinates)} boundary nodes; give one each"
+        )
+    for node, keep in enumerate(keeps):
+        if keep not in KEEPS:
+            raise InputError(f"keeps[{node}] is {keep!r}; choose one of {', '.join(KEEPS)}")
+    if all(keep == "rotation" for keep in keeps):
+        raise InputError(
+            "no boundary node keeps its position, so the body's place is undefined; "
+            "keep 'full' or 'translation' at one node at least"
+        )
+    if int(modes) != modes or modes < 0:
+        raise InputError(f"modes is {modes}; give the number of internal modes, 0 or more")
+
+
+def coordinate_names(keeps: tuple[str, ...], dimension: int, modes: int) -> list[str]:
+    """Name of every reduced coordinate, in order: positions, rotations, internal modes."""
+    axes, turns = "xyz"[:dimension], "z" if dimension == 2 else "xyz"
+    nodes = list(enumerate(keeps))
+    return (
+        [f"position {a} of node {i}" for i, keep in nodes if keep != "rotation" for a in axes]
+        + [f"rotation {a} of node {i}" for i, keep in nodes if keep != "translation" for a in turns]
+        + [f"mode {i}" for i in range(modes)]
+    )
+
+
+def check_matrix(name: str, matrix: NDArray, names: list[str]) -> None:
+    """Raise InputError unless `matrix` has the layout's size and is finite and symmetric."""
+    size = len(names)
+    if matrix.shape != (size, size):
+        raise InputError(
+            f"{name} has shape {matrix.shape}; the layout has {size} coordinates "
+            "(positions, then rotations, then internal modes) and needs "
+            f"({size}, {size})"
+        )
+    if not np.all(np.isfinite(matrix)):
+        i, j = np.argwhere(~np.isfinite(matrix))[0]
+        raise InputError(
+            f"{name}[{i}, {j}] is {matrix[i, j]}; the matrix must be finite, export it again"
+        )
+    scale = unit_scale(matrix, names)
+    defect = np.abs(matrix - matrix.T) / np.outer(scale, scale)
+    i, j = np.unravel_index(np.argmax(defect), defect.shape)
+    if defect[i, j] > SYMMETRY_LIMIT:
+        raise InputError(
+            f"{name} is not symmetric: {name}[{i}, {j}] = {matrix[i, j]:.6g} but "
+            f"{name}[{j}, {i}] = {matrix[j, i]:.6g} ({names[i]}, {names[j]}); "
+            "export both triangles or mirror one"
+        )
+
+
+def check_stiffness(stiffness: NDArray, rigid: NDArray, names: list[str]) -> None:
+    """Raise InputError unless rigid motion costs no force and no other motion gains energy."""
+    residual, row = rigid_residual(stiffness, rigid, names)
+    if residual > RIGID_LIMIT:
+        raise InputError(
+            f"stiffness resists rigid motion: |K R| is {residual:.2e} of |K| |R| (limit "
+            f"{RIGID_LIMIT:.0e}), worst in row {row} ({names[row]}); export the matrices with 14 "
+            "digits or more before reducing, and check coordinates, axes and coordinate order"
+        )
+    value, row = _lowest(stiffness, names)
+    if value < -NEGATIVE_STIFFNESS_LIMIT:
+        raise InputError(
+            f"stiffness has a negative eigenvalue, {value:.2e} of the largest, mostly in row {row} "
+            f"({names[row]}); check its sign and the digits it was exported with"
+        )
+
+
+def check_mass(mass: NDArray, rigid: NDArray, names: list[str]) -> None:
+    """Raise InputError unless the mass is semidefinite and the body has some."""
+    value, row = _lowest(mass, names)
+    if value < -NEGATIVE_MASS_LIMIT:
+        raise InputError(
+            f"mass is indefinite: eigenvalue {value:.2e} of the largest, mostly in row {row} "
+            f"({names[row]}); check the matrix and the order of its rows"
+        )
+    translations = rigid[:, : 2 if rigid.shape[1] == 3 else 3]
+    total = np.trace(translations.T @ mass @ translations)
+    if total <= 1e-12 * np.max(np.abs(mass)):
+        raise InputError("the body has no mass: mass gives no inertia to a rigid translation; "
+                         "give the FE model a density")
+
+
+def rigid_residual(stiffness: NDArray, rigid: NDArray, names: list[str]) -> tuple[float, int]:
+    """Largest ``|K r| / (|K_B| |r|)`` over the rigid modes r (columns), and its worst row.
+
+    K_B are the columns of the boundary coordinates; all in unit-free form.
+    """
+    scale = unit_scale(stiffness, names)
+    boundary = [not name.startswith("mode") for name in names]
+    scaled = stiffness / np.outer(scale, scale)
+    motion = rigid * scale[:, None]
+    force = scaled @ motion
+    reference = np.linalg.norm(scaled[:, boundary]) * np.linalg.norm(motion, axis=0)
+    relative = np.abs(force) / np.where(reference > 0, reference, 1.0)
+    row, _ = np.unravel_index(np.argmax(relative), relative.shape)
+    return float(np.max(np.linalg.norm(relative, axis=0))), int(row)
+
+
+def unit_scale(matrix: NDArray, names: list[str]) -> NDArray:
+    """Scale (n,): root of the largest diagonal entry of positions, rotations and each mode."""
+    groups = np.array([name if name.startswith("mode") else name.split()[0] for name in names])
+    largest = np.ones(len(names))
+    diagonal = np.diag(matrix)
+    for group in dict.fromkeys(groups):
+        top = np.max(diagonal[groups == group])
+        largest[groups == group] = top if top > 0 else 1.0
+    return np.sqrt(largest)
+
+
+def _lowest(matrix: NDArray, names: list[str]) -> tuple[float, int]:
+    """Lowest eigenvalue over the largest, unit-free, and the row that dominates its vector."""
+    scale = unit_scale(matrix, names)
+    values, vectors = np.linalg.eigh(matrix / np.outer(scale, scale))
+    largest = np.max(np.abs(values))
+    row = int(np.argmax(np.abs(vectors[:, 0])))
+    return float(values[0] / largest) if largest > 0 else 0.0, row

@@ -1,0 +1,67 @@
+"""Weights of the boundary nodes in the superelement's reference frame (14), (16)."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.errors import InputError
+from sebody.reduction.body import ReducedBody
+
+# Directions in which the nodes spread less than this, relative to the widest, are rounding.
+_FLAT = 1e-8
+
+
+def frame_weights(coordinates: ArrayLike, centre_of_mass: ArrayLike) -> NDArray:
+    """Smallest weights that add up to one and bring the weighted mean nearest to the centre.
+
+    Section 3.1 of the paper with its claims (i) to (iii) kept: the sum is an exact constraint and
+    coordinates are relative to the nodes' mean, where (21)-(22) mix lengths squared with a pure
+    number and so depend on units and origin.
+
+    Parameters
+    ----------
+    coordinates : (n_nodes, 3), planar (n_nodes, 2)
+        Boundary nodes [length].
+    centre_of_mass : (3,), planar (2,)
+        Centre of mass of the body in the same axes [length].
+
+    Returns
+    -------
+    (n_nodes,)
+        Weights alpha.
+
+    Raises
+    ------
+    InputError
+        Shapes that do not fit or values that are not finite.
+    """
+    coordinates = np.asarray(coordinates, dtype=float)
+    centre = np.asarray(centre_of_mass, dtype=float)
+    if coordinates.ndim != 2 or not len(coordinates) or centre.shape != coordinates.shape[1:]:
+        raise InputError(
+            f"coordinates have shape {coordinates.shape} and centre_of_mass {centre.shape}; give "
+            "(n_nodes, 3) and (3,), or planar (n_nodes, 2) and (2,)"
+        )
+    if not (np.all(np.isfinite(coordinates)) and np.all(np.isfinite(centre))):
+        raise InputError("coordinates or centre_of_mass are not finite; correct them")
+    middle = coordinates.mean(axis=0)
+    # The rows of the centred coordinates add up to zero, so the minimum-norm solution does too:
+    # added to 1/n it meets the constraint and keeps the norm minimal.
+    shift = np.linalg.pinv((coordinates - middle).T, rcond=_FLAT) @ (centre - middle)
+    return 1.0 / len(coordinates) + shift - shift.mean()
+
+
+def body_weights(body: ReducedBody) -> tuple[NDArray, NDArray]:
+    """Weights of the position triplets and of the rotation triplets (remark of section 3.1).
+
+    Returns
+    -------
+    positions : (n_position_nodes,)
+        Weights in the order of `body.position_nodes`.
+    rotations : (n_rotation_nodes,)
+        Weights in the order of `body.rotation_nodes`; empty if no rotation is kept.
+    """
+    positions = frame_weights(body.coordinates[list(body.position_nodes)], body.centre_of_mass)
+    if not body.rotation_nodes:
+        return positions, np.zeros(0)
+    rotations = frame_weights(body.coordinates[list(body.rotation_nodes)], body.centre_of_mass)
+    return positions, rotations

@@ -1,0 +1,140 @@
+"""Maps of SO(3) for compiled code: exp, log, tangent operator and the series behind them.
+
+Rotation matrices are nine numbers in row-major order.
+"""
+
+import math
+
+from numba import njit
+
+NEAR_PI = -0.98     # cosine beyond which the logarithm of a relative rotation is refused
+
+
+@njit(cache=True, error_model="numpy")
+def stumpff(k, s):
+    """``c_k(s) = sum_j (-s)^j / (k + 2j)!``; 24 terms serve ``0 <= s <= 10`` to rounding."""
+    term = 1.0
+    for j in range(2, k + 1):
+        term /= j
+    total = term
+    for j in range(24):
+        term *= -s / ((k + 2 * j + 1) * (k + 2 * j + 2))
+        total += term
+        if abs(term) < 1e-17 * abs(total):
+            break
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def stumpff_23(s):
+    """``c_2, c_3``: nested series for small arguments, closed forms where these are exact."""
+    if s < 0.25:
+        c2 = 0.5 * (1 - s / 12 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (
+            1 - s / 132 * (1 - s / 182))))))
+        c3 = (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (
+            1 - s / 156 * (1 - s / 210)))))) / 6
+        return c2, c3
+    t = math.sqrt(s)
+    half = math.sin(0.5 * t)
+    return 2.0 * half * half / s, (t - math.sin(t)) / (s * t)
+
+
+@njit(cache=True, error_model="numpy")
+def stumpff_2345(s):
+    """``c_2, c_3, c_4, c_5``."""
+    c4, c5 = stumpff(4, s), stumpff(5, s)
+    return 0.5 - s * c4, 1.0 / 6.0 - s * c5, c4, c5
+
+
+@njit(cache=True, error_model="numpy")
+def inverse_tangent_coefficients(s):
+    """``e`` and ``de/ds`` of ``T^-1 = I + skew/2 + e skew^2``, ``e = (c_3 - 2 c_4)/(2 c_2)``."""
+    if s < 0.25:        # series in Bernoulli numbers: B_2k / (2k)!
+        e = 1 / 12 + s * (1 / 720 + s * (1 / 30240 + s * (1 / 1209600 + s * (
+            1 / 47900160 + s * (691 / 1307674368000 + s * (
+                1 / 74724249600 + s * 3617 / 10670622842880000))))))
+        d = 1 / 720 + s * (1 / 15120 + s * (1 / 403200 + s * (1 / 11975040 + s * (
+            691 / 261534873600 + s * (1 / 12454041600 + s * 25319 / 10670622842880000)))))
+        return e, d
+    c2, c3, c4, c5 = stumpff_2345(s)
+    c6 = stumpff(6, s)
+    top = c3 - 2.0 * c4
+    d_top = 0.5 * (3.0 * c5 - c4) - (4.0 * c6 - c5)
+    d_c2 = 0.5 * (2.0 * c4 - c3)
+    return top / (2.0 * c2), (d_top - top * d_c2 / c2) / (2.0 * c2)
+
+
+@njit(cache=True, error_model="numpy")
+def tangent_operator(x, y, z):
+    """``T(psi)``, row by row: ``Omega = T(psi) psidot``."""
+    c2, c3 = stumpff_23(x * x + y * y + z * z)
+    return (1 - c3 * (y * y + z * z), c2 * z + c3 * x * y, c3 * x * z - c2 * y,
+            c3 * x * y - c2 * z, 1 - c3 * (x * x + z * z), c2 * x + c3 * y * z,
+            c2 * y + c3 * x * z, c3 * y * z - c2 * x, 1 - c3 * (x * x + y * y))
+
+
+@njit(cache=True, error_model="numpy")
+def exp_map(x, y, z):
+    """Rotation matrix of a rotation vector, row by row."""
+    s = x * x + y * y + z * z
+    c2, c3 = stumpff_23(s)
+    c1 = 1.0 - s * c3
+    return (1 - c2 * (y * y + z * z), c2 * x * y - c1 * z, c2 * x * z + c1 * y,
+            c2 * x * y + c1 * z, 1 - c2 * (x * x + z * z), c2 * y * z - c1 * x,
+            c2 * x * z - c1 * y, c2 * y * z + c1 * x, 1 - c2 * (x * x + y * y))
+
+
+@njit(cache=True, error_model="numpy")
+def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
+    """Rotation vector of a rotation matrix less than `NEAR_PI` from half a turn, and its cosine."""
+    x, y, z = 0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)
+    cosine = 0.5 * (xx + yy + zz - 1.0)
+    s2 = x * x + y * y + z * z
+    if cosine > 0.0 and s2 < 0.09:      # t / sin t in powers of sin^2 t
+        ratio = 1 + s2 * (1 / 6 + s2 * (3 / 40 + s2 * (5 / 112 + s2 * (35 / 1152 + s2 * (
+            63 / 2816 + s2 * (231 / 13312 + s2 * (143 / 10240 + s2 * (6435 / 557056 + s2 * (
+                12155 / 1245184 + s2 * (46189 / 5505024 + s2 * (
+                    88179 / 12058624 + s2 * (676039 / 104857600 + s2 * (
+                        1300075 / 226492416)))))))))))))
+    else:
+        sine = math.sqrt(s2)
+        ratio = math.atan2(sine, cosine) / sine
+    return ratio * x, ratio * y, ratio * z, cosine
+
+
+@njit(cache=True, error_model="numpy")
+def turn(R, first, x, y, z, out, to):
+    """``out = R exp(psi)``: the rotation at `first` of R, turned, to `to` of out."""
+    a, b, c, d, e, f, g, h, i = exp_map(x, y, z)
+    for k in range(3):
+        p, q, r = R[first + 3 * k], R[first + 3 * k + 1], R[first + 3 * k + 2]
+        out[to + 3 * k] = p * a + q * d + r * g
+        out[to + 3 * k + 1] = p * b + q * e + r * h
+        out[to + 3 * k + 2] = p * c + q * f + r * i
+
+
+@njit(cache=True, error_model="numpy")
+def relative_log(A, first, B, second):
+    """Rotation vector and cosine of ``A^T B`` of two stored rotations."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = (
+        A[first], A[first + 1], A[first + 2], A[first + 3], A[first + 4], A[first + 5],
+        A[first + 6], A[first + 7], A[first + 8])
+    b0, b1, b2, b3, b4, b5, b6, b7, b8 = (
+        B[second], B[second + 1], B[second + 2], B[second + 3], B[second + 4], B[second + 5],
+        B[second + 6], B[second + 7], B[second + 8])
+    return log_map(a0 * b0 + a3 * b3 + a6 * b6, a0 * b1 + a3 * b4 + a6 * b7,
+                   a0 * b2 + a3 * b5 + a6 * b8, a1 * b0 + a4 * b3 + a7 * b6,
+                   a1 * b1 + a4 * b4 + a7 * b7, a1 * b2 + a4 * b5 + a7 * b8,
+                   a2 * b0 + a5 * b3 + a8 * b6, a2 * b1 + a5 * b4 + a8 * b7,
+                   a2 * b2 + a5 * b5 + a8 * b8)
+
+
+@njit(cache=True, error_model="numpy")
+def relative_rotations(count, nodes, R, frame, psi):
+    """``psi_j = log(R0^T R_j)``; returns 1 where one is too near half a turn."""
+    for j in range(count):
+        psi[3 * j], psi[3 * j + 1], psi[3 * j + 2], cosine = relative_log(
+            frame, 0, R, 9 * nodes[j])
+        if not cosine > NEAR_PI:
+            return 1
+    return 0
