@@ -7,3 +7,11 @@ class SebodyError(Exception):
 
 class InputError(SebodyError, ValueError):
     """Input that cannot be used; the message names the offending thing and the remedy."""
+
+
+class SimulationError(SebodyError):
+    """A run that stopped; `result` holds what it computed until then."""
+
+    def __init__(self, message: str, result: object):
+        super().__init__(message)
+        self.result = result

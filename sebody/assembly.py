@@ -1,0 +1,314 @@
+"""Numbering of the unknowns and the flat arrays the compiled loop runs on."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import InputError
+from .kernels import element_kernel
+from .model import Model, Superelement, Triplet
+
+DENSE_LIMIT = 150       # above this many unknowns a sparse factorization is faster
+
+
+class System(NamedTuple):
+    """A model as arrays: constant during a run."""
+
+    # batches of equal elements: kernel, count, index stride, unknowns an element, and where the
+    # batch starts in index, g and J
+    address: NDArray
+    count: NDArray
+    stride: NDArray
+    width: NDArray
+    at_index: NDArray
+    at_g: NDArray
+    at_J: NDArray
+    first_load: NDArray     # (1,) first batch of loads
+    index: NDArray
+    constants: NDArray
+    g_unknown: NDArray      # unknown of every entry of the element forces
+    J_entry: NDArray        # entry of the matrix of every entry of the element matrices
+    rows: NDArray           # row and column of every entry of the matrix (n x n or sparse, CSC)
+    columns: NDArray
+    diagonal: NDArray       # entry on the diagonal of each unknown
+    is_multiplier: NDArray  # 1.0 for multipliers, by unknown, fixed coordinates included
+    rotation_at: NDArray    # first unknown of each rotation
+    turned: NDArray         # (k, 2) first unknown and frame of free positions solved in body axes
+    turned_blocks: NDArray  # (k, 4) the same in element matrices: start, width, row, frame
+    dimension: NDArray      # (1,) coordinates of a position
+    magnitude: NDArray      # size of each coordinate, for the rounding floor
+    load_at: NDArray        # (loads + 1,) where each table starts
+    load_times: NDArray
+    load_values: NDArray
+    load_function: NDArray  # address of a compiled history, 0 for a table
+
+
+class Numbering(NamedTuple):
+    """Where the user's things are among the unknowns."""
+
+    free: int                       # number of unknowns; fixed coordinates come behind
+    total: int
+    triplets: dict[int, int]        # id(triplet) -> first coordinate
+    rotations: dict[int, int]       # id(triplet) -> number of its rotation matrix
+    modes: dict[str, int]           # superelement -> first modal amplitude
+    multipliers: dict[int, int]     # joint -> first multiplier
+    names: list[str]                # of every coordinate
+
+
+def number(model: Model) -> Numbering:
+    """Number the unknowns body by body, each joint's multipliers as soon as its bodies are.
+
+    A sparse factorization then keeps its fill near the diagonal.
+    """
+    seen, names, at, modes, multipliers = set(), [], {}, {}, {}
+    fixed: list[Triplet] = []
+
+    def place(triplet: Triplet) -> None:
+        if id(triplet) in seen:
+            return
+        seen.add(id(triplet))
+        if triplet.fixed:
+            fixed.append(triplet)
+            return
+        at[id(triplet)] = len(names)
+        names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
+
+    def place_joints() -> None:
+        for k, joint in enumerate(model.joints):
+            if k not in multipliers and all(id(r) in seen for r in joint.rotations):
+                multipliers[k] = len(names)
+                names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
+
+    for body in model.bodies.values():
+        for triplet in (*body.positions, *body.rotations):
+            place(triplet)
+        modes[body.name] = len(names)
+        names.extend(f"mode {k} of {body.name}" for k in range(body.body.modes))
+        place_joints()
+    used = set(seen)
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and not triplet.fixed and id(triplet) not in used:
+                raise InputError(f"{triplet.name} belongs to no superelement, so nothing holds "
+                                 "it: attach a body or fix it")
+    free = len(names)
+    for triplet in fixed:
+        at[id(triplet)] = len(names)
+        names.extend(f"{triplet.name}[{k}] (fixed)" for k in range(triplet.start.size))
+    rotations = {}
+    if not model.planar:
+        for node in model.nodes.values():
+            if node.rotation is not None and id(node.rotation) in at:
+                rotations.setdefault(id(node.rotation), len(rotations))
+    return Numbering(free, len(names), at, rotations, modes, multipliers, names)
+
+
+class Batch(NamedTuple):
+    """Elements that share a kernel and a number of unknowns."""
+
+    kernel: object
+    width: int
+    rows: list[list[int]]           # index rows
+    unknowns: list[list[int]]       # unknowns of each element
+
+
+def build(model: Model) -> tuple[System, Numbering]:
+    """Flat arrays of a model.
+
+    Raises
+    ------
+    InputError
+        No superelements, or a triplet that nothing holds.
+    """
+    if not model.bodies:
+        raise InputError("the model has no superelement: add one with model.superelement(...)")
+    numbering = number(model)
+    constants: list[NDArray] = []
+    batches = _body_batches(model, numbering, constants)
+    batches += _joint_batches(model, numbering, constants)
+    first_load = len(batches)
+    batches += _load_batches(model, numbering, constants)
+    dense = numbering.free <= DENSE_LIMIT
+    entries, rows, columns, diagonal = _pattern(batches, numbering.free, dense)
+    tables = _load_tables(model)
+    widths = [b.width for b in batches]
+    sizes = [len(b.rows) for b in batches]
+    integers = np.array
+    multiplier = np.zeros(numbering.total)
+    for k, first in numbering.multipliers.items():
+        multiplier[first:first + model.joints[k].multipliers] = 1.0
+    system = System(
+        address=integers([b.kernel.kernel.address for b in batches]),
+        count=integers(sizes), stride=integers([len(b.rows[0]) for b in batches]),
+        width=integers(widths),
+        at_index=_starts([len(b.rows) * len(b.rows[0]) for b in batches]),
+        at_g=_starts([s * w for s, w in zip(sizes, widths, strict=True)]),
+        at_J=_starts([s * w * w for s, w in zip(sizes, widths, strict=True)]),
+        first_load=integers([first_load]),
+        index=integers([i for b in batches for row in b.rows for i in row]),
+        constants=np.concatenate(constants),
+        g_unknown=integers([u for b in batches for row in b.unknowns for u in row]),
+        J_entry=entries, rows=rows, columns=columns, diagonal=diagonal, is_multiplier=multiplier,
+        rotation_at=_rotation_starts(model, numbering), **_body_axes(model, numbering, batches),
+        dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering), **tables)
+    return system, numbering
+
+
+def _starts(sizes: list[int]) -> NDArray:
+    return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
+
+
+def _coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
+    first = numbering.triplets[id(triplet)]
+    return list(range(first, first + triplet.start.size))
+
+
+def _body_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:
+    batches: dict[tuple, Batch] = {}
+    rows_of: dict[int, int] = {}
+    at = 0
+    for number_, body in enumerate(model.bodies.values()):
+        key = id(body.body), body.frame, tuple(body.alpha), tuple(body.alpha_r)
+        if key not in rows_of:
+            row = _body_constants(body)
+            rows_of[key] = at
+            constants.append(row)
+            at += len(row)
+        unknowns = [c for t in (*body.positions, *body.rotations)
+                    for c in _coordinates(numbering, t)]
+        first = numbering.modes[body.name]
+        unknowns += range(first, first + body.body.modes)
+        nodes = ([] if not model.planar and not body.rotations else
+                 [numbering.rotations[id(t)] for t in body.rotations] if not model.planar
+                 else [0] * len(body.rotations))
+        batch = batches.setdefault((body.kernel.__name__, len(unknowns)),
+                                   Batch(body.kernel, len(unknowns), [], []))
+        batch.rows.append([rows_of[key], number_, len(unknowns), *nodes, *unknowns])
+        batch.unknowns.append(unknowns)
+    return list(batches.values())
+
+
+def _body_constants(body: Superelement) -> NDArray:
+    reduced = body.body
+    points = reduced.coordinates[list(reduced.position_nodes)]
+    local = points - body.alpha @ points
+    fit = np.full(len(points), 1.0 / len(points))
+    return np.concatenate([body.alpha, fit, body.alpha_r, local.ravel(),
+                           reduced.stiffness.ravel(), reduced.mass.ravel()])
+
+
+def _joint_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:
+    batches: dict[str, Batch] = {}
+    at = sum(map(len, constants))
+    for k, joint in enumerate(model.joints):
+        unknowns = [c for t in joint.rotations for c in _coordinates(numbering, t)]
+        first = numbering.multipliers[k]
+        unknowns += range(first, first + joint.multipliers)
+        batch = batches.setdefault(joint.kind, Batch(element_kernel(joint.kind), len(unknowns),
+                                                     [], []))
+        nodes = [numbering.rotations[id(t)] for t in joint.rotations]
+        batch.rows.append([at, 0, len(unknowns), *nodes, *unknowns])
+        batch.unknowns.append(unknowns)
+        constants.append(joint.constants)
+        at += len(joint.constants)
+    return list(batches.values())
+
+
+def _load_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:
+    batches: dict[str, Batch] = {}
+    at = sum(map(len, constants))
+    for k, load in enumerate(model.loads):
+        if id(load.triplet) not in numbering.triplets:
+            raise InputError(f"{load.name}: nothing holds this triplet: attach a body to it")
+        unknowns = _coordinates(numbering, load.triplet)
+        batch = batches.setdefault(load.kind, Batch(element_kernel(load.kind), len(unknowns),
+                                                    [], []))
+        nodes = ([numbering.rotations[id(load.triplet)]] if load.kind == "torque" else [])
+        batch.rows.append([at, k, len(unknowns), *nodes, *unknowns])
+        batch.unknowns.append(unknowns)
+        constants.append(load.direction)
+        at += len(load.direction)
+    return list(batches.values())
+
+
+def _pattern(batches: list[Batch], n: int, dense: bool) -> tuple[NDArray, ...]:
+    """Matrix entries: of each element entry, and row and column of each; fixed ones are dropped."""
+    rows, columns = [], []
+    for batch in batches:
+        unknowns = np.array(batch.unknowns, dtype=np.int64)
+        shape = (len(unknowns), batch.width, batch.width)
+        rows.append(np.broadcast_to(unknowns[:, :, None], shape).ravel())
+        columns.append(np.broadcast_to(unknowns[:, None, :], shape).ravel())
+    row, column = np.concatenate(rows), np.concatenate(columns)
+    free = (row < n) & (column < n)
+    if dense:
+        entries = np.where(free, row * n + column, n * n)
+        all_rows, all_columns = np.divmod(np.arange(n * n), n)
+        return entries, all_rows, all_columns, np.arange(n) * (n + 1)
+    everything = np.concatenate([column[free] * n + row[free], np.arange(n) * (n + 1)])
+    unique = np.unique(everything)          # column by column: CSC order
+    entries = np.full(len(row), len(unique))
+    entries[free] = np.searchsorted(unique, column[free] * n + row[free])
+    return entries, unique % n, unique // n, np.searchsorted(unique, np.arange(n) * (n + 1))
+
+
+def _rotation_starts(model: Model, numbering: Numbering) -> NDArray:
+    starts = np.zeros(len(numbering.rotations), dtype=np.int64)
+    for key, k in numbering.rotations.items():
+        starts[k] = numbering.triplets[key]
+    return starts
+
+
+def _body_axes(model: Model, numbering: Numbering, batches: list[Batch]) -> dict[str, NDArray]:
+    """Free positions are solved for in the axes of the first body they belong to.
+
+    There the tangent of a body hardly changes, so one factorization serves many steps.
+    """
+    frame_of: dict[int, int] = {}
+    for k, body in enumerate(model.bodies.values()):
+        for triplet in body.positions:
+            if not triplet.fixed:
+                frame_of.setdefault(numbering.triplets[id(triplet)], k)
+    blocks, start = [], 0
+    for batch in batches:
+        for unknowns in batch.unknowns:
+            for local, unknown in enumerate(unknowns):
+                if unknown in frame_of:
+                    blocks.append((start, batch.width, local, frame_of[unknown]))
+            start += batch.width ** 2
+    return {"turned": np.array(list(frame_of.items()), dtype=np.int64).reshape(-1, 2),
+            "turned_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 4)}
+
+
+def _magnitude(model: Model, numbering: Numbering) -> NDArray:
+    """Sizes that rounding acts on: the model's extent for positions, one radian for rotations."""
+    points = np.array([n.point for n in model.nodes.values()])
+    size = np.zeros(numbering.total)
+    for node in model.nodes.values():
+        if node.position is not None and id(node.position) in numbering.triplets:
+            size[_coordinates(numbering, node.position)] = np.abs(points).max()
+        if node.rotation is not None and id(node.rotation) in numbering.triplets:
+            size[_coordinates(numbering, node.rotation)] = 1.0
+    return size
+
+
+def _load_tables(model: Model) -> dict[str, NDArray]:
+    histories = [load.history for load in model.loads]
+    return {"load_at": _starts([len(h.times) for h in histories]),
+            "load_times": np.array([t for h in histories for t in h.times], dtype=float),
+            "load_values": np.array([v for h in histories for v in h.values], dtype=float),
+            "load_function": np.array([h.address for h in histories], dtype=np.int64)}
+
+
+def work_size(model: Model) -> int:
+    """Scratch memory the kernels of a model need."""
+    rows = [b.kernel.WORK_ROWS * max(_width(b), 9 * b.kernel.N_ROTATIONS)
+            for b in model.bodies.values()]
+    return max([*rows, 64])
+
+
+def _width(body: Superelement) -> int:
+    return body.body.stiffness.shape[0]
+
+

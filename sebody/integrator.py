@@ -1,0 +1,292 @@
+"""HHT and generalized-alpha runs: schemes, consistent start, and driving the compiled loop."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import splu
+
+from . import loop
+from .abi import ACCELERATION, ENERGIES, TANGENT
+from .assembly import DENSE_LIMIT, Numbering, System, build, work_size
+from .errors import InputError, SimulationError
+from .loop import Record, Scheme, State
+from .model import Model
+from .results import Result
+
+REASONS = {
+    loop.HALF_TURN: "a node is turned by nearly half a turn against its body's frame",
+    loop.NO_FRAME: "the search for a body's frame did not end",
+    loop.NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
+    loop.SLOW: "Newton's iteration did not converge",
+}
+
+
+def generalized_alpha(rho: float = 0.9, tolerance: float = 1e-8,
+                      tangent: str = "consistent") -> Scheme:
+    """Chung and Hulbert's scheme with spectral radius `rho` at infinite frequency.
+
+    Parameters
+    ----------
+    rho : float
+        In [0, 1]; 1 has no numerical damping.
+    tolerance : float
+        Of the Newton correction left, relative to the increment of the step.
+    tangent : {'consistent', 'paper'}
+        Iteration matrix: exact, or (31) with (60)-(63).
+
+    Raises
+    ------
+    InputError
+        Values out of range.
+    """
+    if not 0.0 <= rho <= 1.0:
+        raise InputError(f"rho is {rho}: use a spectral radius between 0 and 1")
+    alpha_m, alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
+    gamma = 0.5 + alpha_f - alpha_m
+    return _scheme(alpha_m, alpha_f, 0.25 * (gamma + 0.5) ** 2, gamma, tolerance, tangent)
+
+
+def hht(alpha: float = -0.05, tolerance: float = 1e-8, tangent: str = "consistent") -> Scheme:
+    """Hilber, Hughes and Taylor's scheme, ``alpha`` in [-1/3, 0]."""
+    if not -1.0 / 3.0 <= alpha <= 0.0:
+        raise InputError(f"alpha is {alpha}: HHT needs a value between -1/3 and 0")
+    return _scheme(0.0, -alpha, 0.25 * (1 - alpha) ** 2, 0.5 - alpha, tolerance, tangent)
+
+
+def _scheme(alpha_m, alpha_f, beta, gamma, tolerance, tangent) -> Scheme:
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"tolerance is {tolerance}: use a number between 0 and 1, such as 1e-8")
+    if tangent not in ("consistent", "paper"):
+        raise InputError(f"tangent {tangent!r} is unknown: use 'consistent' or 'paper'")
+    return Scheme(alpha_m, alpha_f, beta, gamma, tolerance, 1.0 if tangent == "consistent" else 0.0)
+
+
+class Simulation:
+    """A run that can be driven piece by piece: ``run_to(t)`` as often as wanted.
+
+    Parameters
+    ----------
+    model : Model
+    h : float
+        Time step, also the output grid [time].
+    scheme : Scheme, optional
+        `generalized_alpha` with rho 0.9 by default.
+    output_every : int
+        Keep every so many steps.
+
+    Raises
+    ------
+    InputError
+        Bad step, singular constraints or mass, or an initial state that violates constraints.
+    """
+
+    def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
+                 output_every: int = 1):
+        if not (np.isfinite(h) and h > 0):
+            raise InputError(f"the time step is {h}: give a positive number")
+        if int(output_every) < 1:
+            raise InputError(f"output_every is {output_every}: give a whole number of steps >= 1")
+        self.model, self.h, self.every = model, float(h), int(output_every)
+        self.scheme = scheme or generalized_alpha()
+        self.system, self.numbering = build(model)
+        self.dense = self.numbering.free <= DENSE_LIMIT
+        self.state = _initial_state(model, self.system, self.numbering, self.h, self.dense)
+        self.records: list[Record] = []
+        self.seconds = 0.0
+        self.failure = ""
+        self._factors = None
+        _start(self.system, self.numbering, self.state)
+        first = _record(self.system, self.state, 1, self.every)
+        self.state.control[loop.RECORDED] = 0
+        loop.write_record(self.state, first)
+        self.records.append(first)
+
+    @property
+    def time(self) -> float:
+        """Time reached."""
+        return float(self.state.clock[loop.TIME])
+
+    def run_to(self, t_end: float, progress: Callable[[float], None] | None = None,
+               chunk: int = 2000) -> "Simulation":
+        """Advance to the grid step nearest to `t_end`.
+
+        Raises
+        ------
+        SimulationError
+            When a step does not converge however small; what was computed is kept, also in the
+            error's `result`.
+        """
+        last = int(round(t_end / self.h))
+        if not np.isfinite(t_end) or last < self.state.control[loop.GRID]:
+            raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
+        steps = last // self.every - self.state.control[loop.GRID] // self.every
+        record = _record(self.system, self.state, int(steps), self.every)
+        self.state.control[loop.RECORDED] = 0
+        code = loop.CHUNK
+        while code not in (loop.DONE, loop.FAILED):
+            began = time.perf_counter()
+            code = loop.advance(self.system, self.state, record, self.scheme, last, chunk,
+                                self.dense)
+            if code == loop.FACTOR:
+                self._factorize()
+            elif code == loop.SOLVE:
+                n = self.numbering.free
+                self.state.correction[:n] = self._factors.solve(self.state.residual[:n])
+            self.seconds += time.perf_counter() - began
+            if progress and code in (loop.CHUNK, loop.DONE):
+                progress(self.time / t_end if t_end else 1.0)
+        self.records.append(_trimmed(record, int(self.state.control[loop.RECORDED])))
+        if code == loop.FAILED:
+            self.failure = self._explain()
+            raise SimulationError(self.failure, self.result())
+        return self
+
+    def result(self) -> Result:
+        """What has been computed so far."""
+        return Result.of(self)
+
+    def _factorize(self) -> None:
+        n, entries = self.numbering.free, self.system.rows.size
+        starts = np.searchsorted(self.system.columns, np.arange(n + 1))
+        matrix = csc_matrix((self.state.matrix[:entries], self.system.rows, starts), shape=(n, n))
+        self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01,
+                             options={"SymmetricMode": False})
+
+    def _explain(self) -> str:
+        reason = REASONS[int(self.state.control[loop.REASON])]
+        return (f"stopped at t = {self.time:.6g}: {reason}, even with the step cut to "
+                f"{self.h / loop.FINEST:.3g}; results up to there are kept. Use a smaller step, "
+                "check the loads, or split the body into more superelements")
+
+
+def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
+             output_every: int = 1, progress: Callable[[float], None] | None = None) -> Result:
+    """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
+    return Simulation(model, h, scheme, output_every).run_to(t_end, progress).result()
+
+
+def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
+                   dense: bool) -> State:
+    n, total = numbering.free, numbering.total
+    bodies, turns = len(model.bodies), len(numbering.rotations)
+    zeros = np.zeros
+    q, v = zeros(total), zeros(total)
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                first = numbering.triplets[id(triplet)]
+                q[first:first + triplet.start.size] = triplet.start
+                v[first:first + triplet.start.size] = 0.0 if triplet.fixed else triplet.rate
+    for body in model.bodies.values():
+        first = numbering.modes[body.name]
+        v[first:first + body.body.modes] = body.mode_rates
+    R, frames = np.tile(np.eye(3).ravel(), turns), np.tile(np.eye(3).ravel(), bodies)
+    clock, control = zeros(loop.CLOCKS), np.zeros(loop.CONTROLS, dtype=np.int64)
+    clock[loop.STEP] = clock[loop.CURRENT_STEP] = h
+    clock[loop.CONTRACTION] = 0.95
+    control[loop.WANTED] = 1
+    return State(
+        q=q, R=R, v=v, a=zeros(total), aux=zeros(total), frames=frames, q_old=q.copy(),
+        R_old=R.copy(), v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total),
+        frames_old=frames.copy(), dq=zeros(total), T=np.tile(np.eye(3).ravel(), turns),
+        loads=zeros(max(len(model.loads), 1)), coefficients=zeros(5),
+        g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])), residual=zeros(total),
+        correction=zeros(total), matrix=zeros(system.rows.size + 1), scale=zeros(total),
+        inverse=zeros((n, n) if dense else (1, 1)), work=zeros(work_size(model)),
+        energy=zeros(ENERGIES), clock=clock, control=control)
+
+
+def _start(system: System, numbering: Numbering, state: State) -> None:
+    """Accelerations and multipliers at t = 0 from the index-1 form, after checking the state."""
+    n = numbering.free
+    loop.set_loads(system, state, 0.0)
+    _check_start(system, numbering, state)
+    state.coefficients[:] = (1.0, 0.0, 0.0, 1.0, 1.0)
+    _evaluate(system, state, TANGENT)
+    matrix = csc_matrix((state.matrix[:-1], (system.rows, system.columns)), shape=(n, n))
+    _evaluate(system, state, ACCELERATION)
+    loop.to_body_axes(system, state.frames, state.residual, False)
+    answer = _solve_start(matrix, state.residual[:n].copy(), numbering)
+    full = np.zeros(numbering.total)
+    full[:n] = -answer
+    loop.to_body_axes(system, state.frames, full, True)
+    multiplier = system.is_multiplier > 0
+    state.a[:] = np.where(multiplier, 0.0, full)
+    state.q[multiplier] = full[multiplier]
+    state.aux[:] = state.a
+    state.frames_old[:] = state.frames
+    state.clock[loop.POWER] = loop.load_power(system, state)
+
+
+def _evaluate(system: System, state: State, task: int) -> None:
+    status = loop.assemble(task, system, state, state.residual)
+    if status:
+        raise InputError(f"the initial state cannot be evaluated: {REASONS[status]}")
+
+
+def _solve_start(matrix, residual: NDArray, numbering: Numbering) -> NDArray:
+    """Solve the scaled index-1 system; a singular one names the unknown that makes it so."""
+    scale = 1.0 / np.sqrt(np.maximum(abs(matrix).max(axis=0).toarray().ravel(), 1e-300))
+    scaled = csc_matrix(matrix.multiply(scale[:, None]).multiply(scale[None, :]))
+    try:
+        factors = splu(scaled)
+        pivots = np.abs(factors.U.diagonal())
+        weakest = int(np.argmin(pivots))
+        singular = pivots[weakest] < 1e-13 * pivots.max()
+        name = numbering.names[int(np.argsort(factors.perm_c)[weakest])]
+    except RuntimeError:
+        singular, name = True, _null_unknown(scaled, numbering)
+    if singular:
+        raise InputError(f"the constraints or the mass are singular at {name}: two joints demand "
+                         "the same thing, a joint acts on fixed triplets only, or an unknown has "
+                         "no mass; remove the redundant joint or support")
+    return scale * factors.solve(scale * residual)
+
+
+def _null_unknown(matrix, numbering: Numbering) -> str:
+    """Largest entry of the null vector of a small singular matrix."""
+    if numbering.free > 1000:
+        return "an unknown"
+    _, _, vectors = np.linalg.svd(matrix.toarray())
+    return numbering.names[int(np.argmax(np.abs(vectors[-1])))]
+
+
+def _check_start(system: System, numbering: Numbering, state: State) -> None:
+    """Initial positions and velocities must satisfy the constraints."""
+    multipliers = np.flatnonzero(system.is_multiplier)
+    if not multipliers.size:
+        return
+    state.coefficients[:] = (0.0, 0.0, 0.0, 1.0, 1.0)
+    _evaluate(system, state, TANGENT)
+    gap = state.residual[multipliers]
+    n = numbering.free
+    matrix = csc_matrix((state.matrix[:-1], (system.rows, system.columns)), shape=(n, n))
+    velocity = state.v.copy()
+    loop.to_body_axes(system, state.frames, velocity, False)
+    velocity[multipliers] = 0.0
+    rate = (matrix @ velocity[:n])[multipliers]
+    size = max(np.abs(state.v).max(), 1e-300)
+    for what, values, limit in (("position", gap, 1e-8), ("velocity", rate, 1e-8 * size)):
+        worst = int(np.argmax(np.abs(values)))
+        if abs(values[worst]) > limit:
+            raise InputError(f"the initial {what} violates {numbering.names[multipliers[worst]]} "
+                             f"by {abs(values[worst]):.3g}: start from a state the joints allow")
+
+
+def _record(system: System, state: State, steps: int, every: int) -> Record:
+    def block(width):
+        return np.zeros((steps, width))
+    return Record(t=np.zeros(steps), q=block(state.q.size), R=block(state.R.size),
+                  v=block(state.v.size), a=block(state.a.size), frames=block(state.frames.size),
+                  reference=block(state.frames.size), work=np.zeros(steps),
+                  iterations=np.zeros(steps, dtype=np.int64), every=np.array([every]))
+
+
+def _trimmed(record: Record, length: int) -> Record:
+    return Record(*[a if name == "every" else a[:length]
+                    for name, a in record._asdict().items()])
+
+

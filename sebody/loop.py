@@ -1,0 +1,500 @@
+"""The compiled time loop: generalized-alpha on the Lie group, modified Newton, step control.
+
+One loop for every scene, resumable: it works on flat arrays and returns a code. Small systems are
+solved inside; for large ones it returns FACTOR and SOLVE and is called again with the answer.
+
+The unknowns of a step are the increments dq (rotations: R exp(dTheta)) and the multipliers. The
+matrix is kept in body axes and reused until convergence asks for a new one.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic
+from numpy.typing import NDArray
+
+from .abi import ENERGIES, ENERGY, RESIDUAL, TANGENT, call_kernel
+from .assembly import System
+from .rotations import tangent_operator, turn
+
+DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
+BEGIN, ITERATE, FACTORED, SOLVED = range(4)             # where it goes on
+# why a step failed
+NO_REASON, HALF_TURN, NO_FRAME, NOT_FINITE, SLOW = range(5)
+FINEST = 4096           # a grid step is cut into at most this many parts
+MAX_ITERATIONS = 12
+REFRESH = 0.3           # contraction slower than this asks for a new matrix
+
+
+class State(NamedTuple):
+    """Everything a restart needs, and scratch memory."""
+
+    q: NDArray              # positions, modes, angles, multipliers; rotations: step increments
+    R: NDArray              # rotation matrices, nine numbers each
+    v: NDArray
+    a: NDArray              # true accelerations
+    aux: NDArray            # auxiliary accelerations of the integrator
+    frames: NDArray         # of superelements, nine numbers each
+    q_old: NDArray          # the last accepted step
+    R_old: NDArray
+    v_old: NDArray
+    a_old: NDArray
+    aux_old: NDArray
+    frames_old: NDArray
+    dq: NDArray             # increment of the step
+    T: NDArray              # tangent operators of the rotation increments
+    loads: NDArray          # load amplitudes now
+    coefficients: NDArray   # (5,) of the matrix, see sebody.abi
+    g: NDArray              # element forces
+    J: NDArray              # element matrices
+    residual: NDArray       # in body axes, scaled
+    correction: NDArray
+    matrix: NDArray         # entries, dense (n x n) or CSC, in body axes, scaled
+    scale: NDArray          # of the unknowns: the matrix has a unit diagonal
+    inverse: NDArray        # (n, n) of small systems
+    work: NDArray
+    energy: NDArray
+    clock: NDArray          # see the CLOCK indices
+    control: NDArray        # see the CONTROL indices
+
+
+# State.clock
+(TIME, STEP, CURRENT_STEP, WORK, POWER, LAST_NORM, CONTRACTION, FACTOR_STEP) = range(8)
+CLOCKS = 8
+# State.control
+(PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
+ RECORDED) = range(13)
+CONTROLS = 13
+
+
+class Record(NamedTuple):
+    """What is kept of the output steps."""
+
+    t: NDArray
+    q: NDArray
+    R: NDArray
+    v: NDArray
+    a: NDArray
+    frames: NDArray         # and the frames they started from
+    reference: NDArray
+    work: NDArray           # work of the loads so far
+    iterations: NDArray     # so far
+    every: NDArray          # (1,) grid steps between records
+
+
+class Scheme(NamedTuple):
+    """Parameters of generalized-alpha; HHT is ``alpha_m = 0``."""
+
+    alpha_m: float
+    alpha_f: float
+    beta: float
+    gamma: float
+    tolerance: float
+    geometric: float        # 1 for consistent tangents, 0 for the paper's
+
+
+@intrinsic
+def _call_function(typingctx, address, t):
+    def codegen(context, builder, sig, args):
+        function = ir.FunctionType(ir.DoubleType(), [ir.DoubleType()])
+        return builder.call(builder.inttoptr(args[0], function.as_pointer()), [args[1]])
+    return types.float64(address, t), codegen
+
+
+@njit(cache=True, error_model="numpy")
+def run_kernels(task, first, last, system, state):
+    """Evaluate batches; returns the status of the first element that fails."""
+    for b in range(first, last):
+        status = call_kernel(
+            system.address[b], task, system.count[b], system.stride[b], system.width[b],
+            (system.index[system.at_index[b]:], system.constants, state.q, state.R, state.v,
+             state.a, state.frames_old, state.frames, state.T, state.loads, state.coefficients,
+             state.g[system.at_g[b]:], state.J[system.at_J[b]:], state.work, state.energy))
+        if status != 0:
+            return status
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def set_loads(system, state, t):
+    """Amplitudes of the loads at a time."""
+    for k in range(system.load_function.size):
+        if system.load_function[k] != 0:
+            state.loads[k] = _call_function(system.load_function[k], t)
+            continue
+        first, last = system.load_at[k], system.load_at[k + 1] - 1
+        if t <= system.load_times[first]:
+            state.loads[k] = system.load_values[first]
+        elif t >= system.load_times[last]:
+            state.loads[k] = system.load_values[last]
+        else:
+            i = first
+            while system.load_times[i + 1] < t:
+                i += 1
+            x = (t - system.load_times[i]) / (system.load_times[i + 1] - system.load_times[i])
+            state.loads[k] = (1.0 - x) * system.load_values[i] + x * system.load_values[i + 1]
+
+
+@njit(cache=True, error_model="numpy")
+def assemble(task, system, state, residual):
+    """Sum of the element forces in `residual` and, for TANGENT, of the element matrices."""
+    status = run_kernels(task, 0, system.address.size, system, state)
+    if status != 0:
+        return status
+    residual[:] = 0.0
+    for k in range(system.g_unknown.size):
+        residual[system.g_unknown[k]] += state.g[k]
+    if task == TANGENT:
+        for k in range(system.turned_blocks.shape[0]):
+            _turn_block(system.turned_blocks[k], system.dimension[0], state.J, state.frames)
+        state.matrix[:] = 0.0
+        for k in range(system.J_entry.size):
+            state.matrix[system.J_entry[k]] += state.J[k]
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def _turn_block(block, dimension, J, frames):
+    """Rows and columns of a position in an element matrix, from global to body axes."""
+    start, width, row, frame = block[0], block[1], block[2], 9 * block[3]
+    for across in range(2):
+        first, next_line, step = ((start + row, width, 1) if across == 0 else
+                                  (start + row * width, 1, width))
+        for i in range(width):
+            at = first + i * next_line
+            x, y = J[at], J[at + step]
+            z = J[at + 2 * step] if dimension == 3 else 0.0
+            for k in range(dimension):
+                J[at + k * step] = (frames[frame + k] * x + frames[frame + 3 + k] * y
+                                    + frames[frame + 6 + k] * z)
+
+
+@njit(cache=True, error_model="numpy")
+def to_body_axes(system, frames, vector, back):
+    """Turn the free positions of a vector into body axes, or back."""
+    for k in range(system.turned.shape[0]):
+        at, f = system.turned[k, 0], 9 * system.turned[k, 1]
+        x, y = vector[at], vector[at + 1]
+        if system.dimension[0] == 2:
+            c, s = frames[f], frames[f + 3]
+            if back:
+                s = -s
+            vector[at] = c * x + s * y
+            vector[at + 1] = c * y - s * x
+            continue
+        z = vector[at + 2]
+        across, down = (1, 3) if not back else (3, 1)
+        for r in range(3):
+            vector[at + r] = (frames[f + across * r] * x + frames[f + across * r + down] * y
+                              + frames[f + across * r + 2 * down] * z)
+
+
+@njit(cache=True, error_model="numpy")
+def equilibrate(system, state):
+    """Scale the matrix to a unit diagonal and unit constraint rows: free of units and of h."""
+    n = system.diagonal.size
+    for i in range(n):
+        diagonal = abs(state.matrix[system.diagonal[i]])
+        state.scale[i] = 0.0 if system.is_multiplier[i] > 0.0 else (
+            1.0 / np.sqrt(diagonal) if diagonal > 0.0 else 1.0)
+    sums = state.correction
+    sums[:] = 0.0
+    for k in range(system.rows.size):
+        if system.is_multiplier[system.rows[k]] > 0.0:
+            entry = state.matrix[k] * state.scale[system.columns[k]]
+            sums[system.rows[k]] += entry * entry
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            state.scale[i] = 1.0 / np.sqrt(sums[i]) if sums[i] > 0.0 else 1.0
+    for k in range(system.rows.size):
+        state.matrix[k] *= state.scale[system.rows[k]] * state.scale[system.columns[k]]
+
+
+@njit(cache=True, error_model="numpy")
+def invert_dense(state, n):
+    """Inverse of the scaled matrix of a small system; False if it is singular."""
+    dense = state.matrix[:n * n].reshape((n, n))
+    if not np.isfinite(dense).all():
+        return False
+    if np.linalg.cond(dense) > 1e15:
+        return False
+    state.inverse[:, :] = np.linalg.inv(dense).T
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def solve_dense(state, n):
+    """Correction from the residual with the inverse: columns added up, which vectorizes."""
+    for i in range(n):
+        state.correction[i] = 0.0
+    for j in range(n):
+        r = state.residual[j]
+        for i in range(n):
+            state.correction[i] += state.inverse[j, i] * r
+
+
+@njit(cache=True, error_model="numpy")
+def begin_step(system, state, scheme):
+    """Remember the accepted state, predict the next one."""
+    h = state.clock[CURRENT_STEP]
+    state.q_old[:] = state.q
+    state.R_old[:] = state.R
+    state.v_old[:] = state.v
+    state.a_old[:] = state.a
+    state.aux_old[:] = state.aux
+    state.frames_old[:] = state.frames
+    for i in range(state.dq.size):
+        state.dq[i] = 0.0 if system.is_multiplier[i] > 0.0 else (
+            h * state.v[i] + 0.5 * h * h * state.aux[i])
+    set_loads(system, state, state.clock[TIME] + h)
+    set_coefficients(state, scheme, h)
+    update(system, state, scheme)
+    state.control[ITERATION] = 0
+    state.clock[LAST_NORM] = 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def set_coefficients(state, scheme, h):
+    """Derivatives of acceleration and velocity by the increment."""
+    state.coefficients[0] = (1 - scheme.alpha_m) / ((1 - scheme.alpha_f) * scheme.beta * h * h)
+    state.coefficients[1] = scheme.gamma / (scheme.beta * h)
+    state.coefficients[2] = 1.0
+    state.coefficients[3] = scheme.geometric
+    state.coefficients[4] = 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def update(system, state, scheme):
+    """Configuration, velocities and accelerations from the increment of the step."""
+    h = state.clock[CURRENT_STEP]
+    to_aux = 1.0 / (scheme.beta * h * h)
+    half = h * h * (0.5 - scheme.beta)
+    to_a = 1.0 / (1.0 - scheme.alpha_f)
+    for i in range(state.dq.size):
+        if system.is_multiplier[i] > 0.0:
+            continue
+        d = state.dq[i]
+        aux = (d - h * state.v_old[i] - half * state.aux_old[i]) * to_aux
+        state.aux[i] = aux
+        state.v[i] = state.v_old[i] + h * ((1 - scheme.gamma) * state.aux_old[i]
+                                           + scheme.gamma * aux)
+        state.a[i] = to_a * ((1 - scheme.alpha_m) * aux + scheme.alpha_m * state.aux_old[i]
+                             - scheme.alpha_f * state.a_old[i])
+        state.q[i] = state.q_old[i] + d
+    for r in range(system.rotation_at.size):
+        at = system.rotation_at[r]
+        x, y, z = state.dq[at], state.dq[at + 1], state.dq[at + 2]
+        state.q[at], state.q[at + 1], state.q[at + 2] = x, y, z
+        turn(state.R_old, 9 * r, x, y, z, state.R, 9 * r)
+
+
+@njit(cache=True, error_model="numpy")
+def set_tangent_operators(system, state):
+    """``T(dTheta)`` of the rotation increments, for the columns of the matrix."""
+    for r in range(system.rotation_at.size):
+        at = system.rotation_at[r]
+        (state.T[9 * r], state.T[9 * r + 1], state.T[9 * r + 2], state.T[9 * r + 3],
+         state.T[9 * r + 4], state.T[9 * r + 5], state.T[9 * r + 6], state.T[9 * r + 7],
+         state.T[9 * r + 8]) = tangent_operator(state.dq[at], state.dq[at + 1],
+                                                state.dq[at + 2])
+
+
+@njit(cache=True, error_model="numpy")
+def apply_correction(system, state, scheme):
+    """Add the solved correction; returns 1 converged, 0 go on, -1 new matrix, -2 give up."""
+    n = system.diagonal.size
+    norm = size = floor = 0.0
+    for i in range(n):
+        d = state.correction[i]
+        if system.is_multiplier[i] == 0.0:
+            norm += d * d
+            x = state.dq[i] / state.scale[i]
+            size += x * x
+            m = system.magnitude[i] / state.scale[i]
+            floor += m * m
+        state.correction[i] = d * state.scale[i]
+    norm, size, floor = np.sqrt(norm), np.sqrt(size), np.sqrt(floor)
+    if not np.isfinite(norm):
+        state.clock[LAST_NORM] = norm
+        return -2
+    to_body_axes(system, state.frames, state.correction, True)
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            state.q[i] -= state.correction[i]
+        else:
+            state.dq[i] -= state.correction[i]
+    update(system, state, scheme)
+    iteration, last = state.control[ITERATION], state.clock[LAST_NORM]
+    rate = state.clock[CONTRACTION]
+    target = scheme.tolerance * size + 8.0 * 2.2e-16 * floor
+    if iteration > 0 and last > 0.0:
+        rate = norm / last
+        state.clock[CONTRACTION] = rate
+    state.control[ITERATION] = iteration + 1
+    state.control[ITERATIONS] += 1
+    state.clock[LAST_NORM] = norm
+    rate = min(max(rate, 1e-3), 0.95)
+    if rate / (1.0 - rate) * norm <= target:
+        return 1
+    if iteration + 1 >= MAX_ITERATIONS or (iteration > 2 and state.control[FRESH] == 1
+                                           and rate > 0.9):
+        return -2
+    return -1 if iteration > 0 and rate > REFRESH and state.control[FRESH] == 0 else 0
+
+
+@njit(cache=True, error_model="numpy")
+def accept(system, state, record):
+    """End a converged step: rotations stay orthogonal, work of the loads, output."""
+    clock, control = state.clock, state.control
+    h = clock[CURRENT_STEP]
+    for r in range(system.rotation_at.size):
+        _orthogonalize(state.R, 9 * r)
+    clock[WORK] += 0.5 * h * clock[POWER]
+    clock[POWER] = load_power(system, state)
+    clock[WORK] += 0.5 * h * clock[POWER]
+    control[STEPS] += 1
+    control[UNIT] += FINEST >> control[LEVEL]
+    if control[UNIT] >= FINEST:             # back on the output grid
+        control[UNIT] = 0
+        control[GRID] += 1
+        clock[TIME] = control[GRID] * clock[STEP]
+        if control[GRID] % record.every[0] == 0:
+            write_record(state, record)
+    else:
+        clock[TIME] = (control[GRID] + control[UNIT] / FINEST) * clock[STEP]
+    while control[LEVEL] > 0 and control[UNIT] % (FINEST >> (control[LEVEL] - 1)) == 0:
+        control[LEVEL] -= 1                 # try the longer step again
+    clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
+
+
+@njit(cache=True, error_model="numpy")
+def load_power(system, state):
+    """Rate of work of the loads in the current state."""
+    if system.load_function.size == 0:
+        return 0.0
+    state.energy[:] = 0.0
+    run_kernels(ENERGY, system.first_load[0], system.address.size, system, state)
+    return state.energy[ENERGIES - 1]
+
+
+@njit(cache=True, error_model="numpy")
+def _orthogonalize(R, at):
+    """One Newton step ``R (3 I - R^T R) / 2`` towards the nearest rotation."""
+    for i in range(3):
+        a, b, c = R[at + 3 * i], R[at + 3 * i + 1], R[at + 3 * i + 2]
+        s = 1.5 - 0.5 * (a * a + b * b + c * c)
+        R[at + 3 * i], R[at + 3 * i + 1], R[at + 3 * i + 2] = s * a, s * b, s * c
+    for i in range(2):
+        for j in range(i + 1, 3):
+            dot = 0.0
+            for k in range(3):
+                dot += R[at + 3 * i + k] * R[at + 3 * j + k]
+            for k in range(3):
+                x = R[at + 3 * i + k]
+                R[at + 3 * i + k] -= 0.5 * dot * R[at + 3 * j + k]
+                R[at + 3 * j + k] -= 0.5 * dot * x
+
+
+@njit(cache=True, error_model="numpy")
+def write_record(state, record):
+    """Store the accepted state."""
+    k = state.control[RECORDED]
+    record.t[k] = state.clock[TIME]
+    record.q[k, :] = state.q
+    record.R[k, :] = state.R
+    record.v[k, :] = state.v
+    record.a[k, :] = state.a
+    record.frames[k, :] = state.frames
+    record.reference[k, :] = state.frames_old
+    record.work[k] = state.clock[WORK]
+    record.iterations[k] = state.control[ITERATIONS]
+    state.control[RECORDED] = k + 1
+
+
+@njit(cache=True, error_model="numpy")
+def cut_step(state, reason):
+    """Back to the accepted state with half the step; False when it cannot be cut further."""
+    state.q[:] = state.q_old
+    state.R[:] = state.R_old
+    state.v[:] = state.v_old
+    state.a[:] = state.a_old
+    state.aux[:] = state.aux_old
+    state.frames[:] = state.frames_old
+    state.control[REASON] = reason
+    state.control[CUTS] += 1
+    state.control[LEVEL] += 1
+    if (1 << state.control[LEVEL]) > FINEST:
+        return False
+    state.clock[CURRENT_STEP] = state.clock[STEP] / (1 << state.control[LEVEL])
+    state.control[WANTED] = 1
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def advance(system, state, record, scheme, last_grid, chunk, dense):
+    """Run until `last_grid`, for at most `chunk` steps, or until Python is asked for something."""
+    control, clock = state.control, state.clock
+    n = system.diagonal.size
+    steps = 0
+    while True:
+        if control[PHASE] == BEGIN:
+            if control[GRID] >= last_grid:
+                return DONE
+            if steps >= chunk:
+                return CHUNK
+            steps += 1
+            begin_step(system, state, scheme)
+            control[FRESH] = 0
+            if clock[FACTOR_STEP] != clock[CURRENT_STEP]:
+                control[WANTED] = 1
+            control[PHASE] = ITERATE
+        if control[PHASE] == ITERATE:
+            reason = NO_REASON
+            if control[WANTED] == 1:
+                set_tangent_operators(system, state)
+                reason = assemble(TANGENT, system, state, state.residual)
+            else:
+                reason = assemble(RESIDUAL, system, state, state.residual)
+            if reason != NO_REASON:
+                control[PHASE] = BEGIN
+                if not cut_step(state, reason):
+                    return FAILED
+                continue
+            to_body_axes(system, state.frames, state.residual, False)
+            control[PHASE] = FACTORED
+            if control[WANTED] == 1:
+                equilibrate(system, state)
+                control[WANTED], control[FRESH] = 0, 1
+                control[MATRICES] += 1
+                clock[FACTOR_STEP] = clock[CURRENT_STEP]
+                if not dense:
+                    return FACTOR
+                if not invert_dense(state, n):
+                    control[PHASE] = BEGIN
+                    if not cut_step(state, NOT_FINITE):
+                        return FAILED
+                    continue
+        if control[PHASE] == FACTORED:
+            for i in range(n):
+                state.residual[i] *= state.scale[i]
+            control[PHASE] = SOLVED
+            if not dense:
+                return SOLVE
+            solve_dense(state, n)
+        verdict = apply_correction(system, state, scheme)
+        control[PHASE] = ITERATE
+        if verdict == 1:
+            accept(system, state, record)
+            control[PHASE] = BEGIN
+        elif verdict == -1:
+            control[WANTED] = 1
+        elif verdict == -2:
+            control[PHASE] = BEGIN
+            if control[FRESH] == 0 and np.isfinite(clock[LAST_NORM]):
+                # the old matrix may be to blame: the same step again with a new one
+                control[LEVEL] -= 1
+                control[CUTS] -= 1
+            if not cut_step(state, SLOW if np.isfinite(clock[LAST_NORM]) else NOT_FINITE):
+                return FAILED

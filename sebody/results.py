@@ -1,0 +1,187 @@
+"""Results of a run, by named node: histories, energies, momentum, and the file they go to."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from . import loop
+from .abi import ENERGIES, ENERGY
+from .assembly import Numbering, System
+from .errors import InputError
+from .loop import Record, State
+from .model import Model
+
+if TYPE_CHECKING:
+    from .integrator import Simulation
+
+NODE_QUANTITIES = ("position", "rotation", "velocity", "angular_velocity", "acceleration")
+SYSTEM_QUANTITIES = {"energy.kinetic": 0, "energy.strain": 1, "momentum": slice(2, 5),
+                     "angular_momentum": slice(5, 8)}
+
+
+@dataclass(eq=False)
+class Result:
+    """Histories on the output grid; ``result["tip.position"]`` by the rule ``<node>.<quantity>``.
+
+    Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
+    angular_velocity (n, 3), all in global axes; in a plane (n, 2) and (n,). Of the model:
+    energy.kinetic, energy.strain, energy.external_work (n,), momentum and angular_momentum
+    about the origin (n, 3), `<superelement>.modes` (n, m).
+    """
+
+    model: Model
+    numbering: Numbering
+    system: System
+    state: State
+    record: Record
+    seconds: float
+    failure: str = ""
+    _energies: NDArray | None = field(default=None, repr=False)
+
+    @classmethod
+    def of(cls, run: "Simulation") -> "Result":
+        """Everything a simulation has recorded so far."""
+        joined = Record(*[np.concatenate([getattr(r, name) for r in run.records])
+                          for name in Record._fields])
+        return cls(run.model, run.numbering, run.system, run.state, joined, run.seconds,
+                   run.failure)
+
+    @property
+    def t(self) -> NDArray:
+        """Output times [time]."""
+        return self.record.t
+
+    @property
+    def steps(self) -> int:
+        """Accepted steps, cut ones included."""
+        return int(self.state.control[loop.STEPS])
+
+    @property
+    def cuts(self) -> int:
+        """Steps that were cut because Newton's iteration did not converge."""
+        return int(self.state.control[loop.CUTS])
+
+    @property
+    def matrices(self) -> int:
+        """Iteration matrices made."""
+        return int(self.state.control[loop.MATRICES])
+
+    @property
+    def iterations_per_step(self) -> float:
+        """Newton iterations a step."""
+        return float(self.state.control[loop.ITERATIONS]) / max(self.steps, 1)
+
+    @property
+    def microseconds_per_step(self) -> float:
+        """Time in the compiled loop per step."""
+        return 1e6 * self.seconds / max(self.steps, 1)
+
+    def __getitem__(self, name: str) -> NDArray:
+        """History of a quantity by name; see the class."""
+        if name == "t":
+            return self.t
+        if name == "energy.external_work":
+            return self.record.work
+        if name in SYSTEM_QUANTITIES:
+            return self._energy_table()[:, SYSTEM_QUANTITIES[name]]
+        owner, _, quantity = name.rpartition(".")
+        if owner in self.model.bodies and quantity == "modes":
+            first = self.numbering.modes[owner]
+            return self.record.q[:, first:first + self.model.bodies[owner].body.modes]
+        if owner not in self.model.nodes:
+            raise InputError(f"{name!r} is unknown: nodes are {', '.join(self.model.nodes)}; of "
+                             f"the model there are t, energy.external_work, "
+                             f"{', '.join(SYSTEM_QUANTITIES)}")
+        if quantity not in NODE_QUANTITIES:
+            raise InputError(f"{quantity!r} is unknown: a node has {', '.join(NODE_QUANTITIES)}")
+        return self._of_node(owner, quantity)
+
+    def _of_node(self, name: str, quantity: str) -> NDArray:
+        node = self.model.nodes[name]
+        turning = quantity in ("rotation", "angular_velocity")
+        triplet = node.rotation if turning else node.position
+        if triplet is None or id(triplet) not in self.numbering.triplets:
+            raise InputError(f"node {name!r} has no {quantity}: the triplet is not in the model")
+        first = self.numbering.triplets[id(triplet)]
+        part = slice(first, first + triplet.start.size)
+        if not turning:
+            source = {"position": self.record.q, "velocity": self.record.v,
+                      "acceleration": self.record.a}[quantity]
+            return source[:, part]
+        if self.model.planar:
+            return (self.record.q if quantity == "rotation" else self.record.v)[:, first]
+        k = self.numbering.rotations[id(triplet)]
+        R = self.record.R[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
+        return R if quantity == "rotation" else np.einsum("nij,nj->ni", R, self.record.v[:, part])
+
+    def _energy_table(self) -> NDArray:
+        if self._energies is None:
+            self._energies = np.zeros((len(self.t), ENERGIES))
+            scratch = State(*[a.copy() for a in self.state])
+            status = _evaluate_energies(self.system, scratch, self.record, self._energies)
+            if status:
+                raise InputError("the energies of a recorded state cannot be evaluated")
+        return self._energies
+
+    def energy_balance(self) -> float:
+        """Largest drift of kinetic + strain - work, relative to the largest energy."""
+        total = self["energy.kinetic"] + self["energy.strain"]
+        drift = np.abs(total - total[0] - self["energy.external_work"]).max()
+        return float(drift / max(np.abs(total).max(), 1e-300))
+
+    def arrays(self) -> dict[str, NDArray]:
+        """All named histories, as they are saved."""
+        out = {"t": self.t}
+        for name, node in self.model.nodes.items():
+            for quantity in NODE_QUANTITIES[:4]:
+                turning = quantity in ("rotation", "angular_velocity")
+                triplet = node.rotation if turning else node.position
+                if triplet is not None and id(triplet) in self.numbering.triplets:
+                    out[f"{name}.{quantity}"] = self[f"{name}.{quantity}"]
+        for name in ("energy.kinetic", "energy.strain", "energy.external_work", "momentum",
+                     "angular_momentum"):
+            out[name] = self[name]
+        return out
+
+    def save(self, path: str | Path) -> Path:
+        """Write all named histories to an npz file."""
+        path = Path(path)
+        if path.suffix != ".npz":
+            raise InputError(f"output file {path} must end in .npz")
+        if not path.parent.exists():
+            raise InputError(f"folder {path.parent} of the output file does not exist: make it")
+        np.savez_compressed(path, **self.arrays())
+        return path
+
+    def summary(self) -> str:
+        """A few lines: steps, iterations, time, energy balance."""
+        lines = [
+            f"unknowns             {self.numbering.free}",
+            f"steps                {self.steps} ({self.cuts} cut), to t = {self.t[-1]:.6g}",
+            f"iterations per step  {self.iterations_per_step:.2f} "
+            f"({self.matrices} iteration matrices)",
+            f"time per step        {self.microseconds_per_step:.2f} us in the compiled loop",
+            f"energy balance       {self.energy_balance():.2e} of the largest energy",
+        ]
+        return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
+
+
+@njit(cache=True, error_model="numpy")
+def _evaluate_energies(system, state, record, out):
+    """Energies and momentum of the superelements in every recorded state."""
+    for k in range(record.t.size):
+        state.q[:] = record.q[k]
+        state.R[:] = record.R[k]
+        state.v[:] = record.v[k]
+        state.frames[:] = record.frames[k]
+        state.frames_old[:] = record.reference[k]
+        state.energy[:] = 0.0
+        status = loop.run_kernels(ENERGY, 0, system.first_load[0], system, state)
+        if status != 0:
+            return status
+        out[k] = state.energy
+    return 0
