@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import sebody.generated
+
 from sebody.kernels import user_directory
 
 from .elements import ELEMENTS

@@ -59,7 +59,7 @@ def revolute(grounded: bool) -> Element:
 def _constraint(name, summary, space, constants, R, rates, accelerations, dth, phi) -> Element:
     lam = sp.symbols(f"lam_1:{len(phi) + 1}")
     vary = _turning_all(R, dth)
-    work = sum(l * differential(p, vary) for l, p in zip(lam, phi, strict=True))
+    work = sum(force * differential(p, vary) for force, p in zip(lam, phi, strict=True))
     force = sp.Matrix.vstack(*[_of(work, d.symbols) for d in dth])
     linear = [differential(f, vary) for f in force] + [differential(p, vary) for p in phi]
     in_time = _turning_all(R, rates)

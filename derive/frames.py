@@ -1,4 +1,4 @@
-"""Floating frames: where the frame is, how it varies with the unknowns, and what it returns to them.
+"""Floating frames: where the frame is, how it varies, and what it returns to the unknowns.
 
 Each frame is a condition on the nodes. Its variation is the differential of that condition, and
 the force on an unknown is the moment ``W`` on the frame pulled back through the same variation.
@@ -146,7 +146,8 @@ def mean(q: Quantities) -> Frame:
         angular_rate,
         (Stage("moment on the frame, pulled back to the mean increment", "element",
                sets=((q.wp, T0.T * q.W.symbols),)),),
-        sp.zeros(3, 1), sp.zeros(3, 1), alpha * inverse_tangent_transposed_times(beta, q.wp.symbols),
+        sp.zeros(3, 1), sp.zeros(3, 1),
+        alpha * inverse_tangent_transposed_times(beta, q.wp.symbols),
         (Stage("variation of the rotation increments, (18)", "rotation",
                sets=((d(q.beta), inverse_tangent_times(beta, q.dth.symbols)),)),
          Stage("variation of their mean, (18)", "rotation",

@@ -1,4 +1,4 @@
-"""The quantities of a superelement kernel, in the paper's symbols, and where the kernel keeps them."""
+"""The quantities of a superelement kernel: name, paper symbol, place in the kernel, unit."""
 
 from .stages import Quantity, Space
 

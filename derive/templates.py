@@ -39,7 +39,8 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
     index = carray(index_, (HUGE,))
     constants = carray(constants_, (HUGE,))
     q, R, v, a = carray(q_, (HUGE,)), carray(R_, (HUGE,)), carray(v_, (HUGE,)), carray(a_, (HUGE,))
-    references, frames, T = carray(reference_, (HUGE,)), carray(frames_, (HUGE,)), carray(T_, (HUGE,))
+    references, frames = carray(reference_, (HUGE,)), carray(frames_, (HUGE,))
+    T = carray(T_, (HUGE,))
     coefficients, work = carray(coefficients_, (HUGE,)), carray(work_, (HUGE,))
     forces, matrices, energies = carray(g_, (HUGE,)), carray(J_, (HUGE,)), carray(energy_, (HUGE,))
     n = width
@@ -158,7 +159,8 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
            loads_, coefficients_, g_, J_, work_, energy_):
     index, constants = carray(index_, (HUGE,)), carray(constants_, (HUGE,))
     q, R, v, a = carray(q_, (HUGE,)), carray(R_, (HUGE,)), carray(v_, (HUGE,)), carray(a_, (HUGE,))
-    T, loads, coefficients = carray(T_, (HUGE,)), carray(loads_, (HUGE,)), carray(coefficients_, (HUGE,))
+    T, loads = carray(T_, (HUGE,)), carray(loads_, (HUGE,))
+    coefficients = carray(coefficients_, (HUGE,))
     forces, matrices = carray(g_, (HUGE,)), carray(J_, (HUGE,))
     work, energies = carray(work_, (HUGE,)), carray(energy_, (HUGE,))
     for element in range(count):

@@ -23,7 +23,8 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
            loads_, coefficients_, g_, J_, work_, energy_):
     index, constants = carray(index_, (HUGE,)), carray(constants_, (HUGE,))
     q, R, v, a = carray(q_, (HUGE,)), carray(R_, (HUGE,)), carray(v_, (HUGE,)), carray(a_, (HUGE,))
-    T, loads, coefficients = carray(T_, (HUGE,)), carray(loads_, (HUGE,)), carray(coefficients_, (HUGE,))
+    T, loads = carray(T_, (HUGE,)), carray(loads_, (HUGE,))
+    coefficients = carray(coefficients_, (HUGE,))
     forces, matrices = carray(g_, (HUGE,)), carray(J_, (HUGE,))
     work, energies = carray(work_, (HUGE,)), carray(energy_, (HUGE,))
     for element in range(count):

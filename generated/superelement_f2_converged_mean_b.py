@@ -33,12 +33,12 @@ LEAVES = {
     "converged_mean": "f4e9efe3ba89",
     "exp_map": "833cbc6b09c9",
     "inverse_3": "207e4e8e3ea0",
-    "inverse_tangent_coefficients": "c77eccc20266",
+    "inverse_tangent_coefficients": "2b53d9add89f",
     "log_map": "2d5d06a001d3",
     "relative_log": "9c938be62c7a",
     "relative_rotations": "d4201b2363c1",
     "stumpff": "e2d39fe1e40e",
-    "stumpff_23": "fd5f67dfb930",
+    "stumpff_23": "cb6d47703394",
     "stumpff_2345": "e63f3043d779",
     "symmetric_product": "780d88034cec",
     "turn": "dadd9bd35a76",
@@ -51,7 +51,8 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
     index = carray(index_, (HUGE,))
     constants = carray(constants_, (HUGE,))
     q, R, v, a = carray(q_, (HUGE,)), carray(R_, (HUGE,)), carray(v_, (HUGE,)), carray(a_, (HUGE,))
-    references, frames, T = carray(reference_, (HUGE,)), carray(frames_, (HUGE,)), carray(T_, (HUGE,))
+    references, frames = carray(reference_, (HUGE,)), carray(frames_, (HUGE,))
+    T = carray(T_, (HUGE,))
     coefficients, work = carray(coefficients_, (HUGE,)), carray(work_, (HUGE,))
     forces, matrices, energies = carray(g_, (HUGE,)), carray(J_, (HUGE,)), carray(energy_, (HUGE,))
     n = width

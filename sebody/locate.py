@@ -9,7 +9,7 @@ import math
 from numba import njit
 
 from .dense import inverse_3
-from .rotations import NEAR_PI, inverse_tangent_coefficients, relative_log, relative_rotations, turn
+from .rotations import NEAR_PI, inverse_tangent_coefficients, relative_rotations, turn
 
 HALF_TURN = 1
 NO_FRAME = 2

@@ -16,7 +16,6 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from .abi import ENERGIES, ENERGY, RESIDUAL, TANGENT, call_kernel
-from .assembly import System
 from .rotations import tangent_operator, turn
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
@@ -53,6 +52,7 @@ class State(NamedTuple):
     correction: NDArray
     matrix: NDArray         # entries, dense (n x n) or CSC, in body axes, scaled
     scale: NDArray          # of the unknowns: the matrix has a unit diagonal
+    weight: NDArray         # its inverse, zero for multipliers: the norm of a correction
     inverse: NDArray        # (n, n) of small systems
     work: NDArray
     energy: NDArray
@@ -61,8 +61,8 @@ class State(NamedTuple):
 
 
 # State.clock
-(TIME, STEP, CURRENT_STEP, WORK, POWER, LAST_NORM, CONTRACTION, FACTOR_STEP) = range(8)
-CLOCKS = 8
+(TIME, STEP, CURRENT_STEP, WORK, POWER, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR) = range(9)
+CLOCKS = 9
 # State.control
 (PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
  RECORDED) = range(13)
@@ -103,7 +103,7 @@ def _call_function(typingctx, address, t):
     return types.float64(address, t), codegen
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def run_kernels(task, first, last, system, state):
     """Evaluate batches; returns the status of the first element that fails."""
     for b in range(first, last):
@@ -117,7 +117,7 @@ def run_kernels(task, first, last, system, state):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def set_loads(system, state, t):
     """Amplitudes of the loads at a time."""
     for k in range(system.load_function.size):
@@ -137,13 +137,14 @@ def set_loads(system, state, t):
             state.loads[k] = (1.0 - x) * system.load_values[i] + x * system.load_values[i + 1]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def assemble(task, system, state, residual):
     """Sum of the element forces in `residual` and, for TANGENT, of the element matrices."""
     status = run_kernels(task, 0, system.address.size, system, state)
     if status != 0:
         return status
-    residual[:] = 0.0
+    for i in range(residual.size):
+        residual[i] = 0.0
     for k in range(system.g_unknown.size):
         residual[system.g_unknown[k]] += state.g[k]
     if task == TANGENT:
@@ -171,7 +172,7 @@ def _turn_block(block, dimension, J, frames):
                                     + frames[frame + 6 + k] * z)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def to_body_axes(system, frames, vector, back):
     """Turn the free positions of a vector into body axes, or back."""
     for k in range(system.turned.shape[0]):
@@ -208,6 +209,12 @@ def equilibrate(system, state):
     for i in range(n):
         if system.is_multiplier[i] > 0.0:
             state.scale[i] = 1.0 / np.sqrt(sums[i]) if sums[i] > 0.0 else 1.0
+    floor = 0.0
+    for i in range(n):
+        state.weight[i] = (1.0 - system.is_multiplier[i]) / state.scale[i]
+        size = system.magnitude[i] * state.weight[i]
+        floor += size * size
+    state.clock[FLOOR] = 8.0 * 2.2e-16 * np.sqrt(floor)     # what rounding of positions leaves
     for k in range(system.rows.size):
         state.matrix[k] *= state.scale[system.rows[k]] * state.scale[system.columns[k]]
 
@@ -224,7 +231,7 @@ def invert_dense(state, n):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def solve_dense(state, n):
     """Correction from the residual with the inverse: columns added up, which vectorizes."""
     for i in range(n):
@@ -235,17 +242,19 @@ def solve_dense(state, n):
             state.correction[i] += state.inverse[j, i] * r
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def begin_step(system, state, scheme):
     """Remember the accepted state, predict the next one."""
     h = state.clock[CURRENT_STEP]
-    state.q_old[:] = state.q
-    state.R_old[:] = state.R
-    state.v_old[:] = state.v
-    state.a_old[:] = state.a
-    state.aux_old[:] = state.aux
-    state.frames_old[:] = state.frames
+    for i in range(state.R.size):
+        state.R_old[i] = state.R[i]
+    for i in range(state.frames.size):
+        state.frames_old[i] = state.frames[i]
     for i in range(state.dq.size):
+        state.q_old[i] = state.q[i]
+        state.v_old[i] = state.v[i]
+        state.a_old[i] = state.a[i]
+        state.aux_old[i] = state.aux[i]
         state.dq[i] = 0.0 if system.is_multiplier[i] > 0.0 else (
             h * state.v[i] + 0.5 * h * h * state.aux[i])
     set_loads(system, state, state.clock[TIME] + h)
@@ -255,7 +264,7 @@ def begin_step(system, state, scheme):
     state.clock[LAST_NORM] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def set_coefficients(state, scheme, h):
     """Derivatives of acceleration and velocity by the increment."""
     state.coefficients[0] = (1 - scheme.alpha_m) / ((1 - scheme.alpha_f) * scheme.beta * h * h)
@@ -265,7 +274,7 @@ def set_coefficients(state, scheme, h):
     state.coefficients[4] = 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def update(system, state, scheme):
     """Configuration, velocities and accelerations from the increment of the step."""
     h = state.clock[CURRENT_STEP]
@@ -301,21 +310,19 @@ def set_tangent_operators(system, state):
                                                 state.dq[at + 2])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def apply_correction(system, state, scheme):
     """Add the solved correction; returns 1 converged, 0 go on, -1 new matrix, -2 give up."""
     n = system.diagonal.size
-    norm = size = floor = 0.0
+    norm = size = 0.0
     for i in range(n):
         d = state.correction[i]
         if system.is_multiplier[i] == 0.0:
             norm += d * d
-            x = state.dq[i] / state.scale[i]
+            x = state.dq[i] * state.weight[i]
             size += x * x
-            m = system.magnitude[i] / state.scale[i]
-            floor += m * m
         state.correction[i] = d * state.scale[i]
-    norm, size, floor = np.sqrt(norm), np.sqrt(size), np.sqrt(floor)
+    norm, size = np.sqrt(norm), np.sqrt(size)
     if not np.isfinite(norm):
         state.clock[LAST_NORM] = norm
         return -2
@@ -328,7 +335,7 @@ def apply_correction(system, state, scheme):
     update(system, state, scheme)
     iteration, last = state.control[ITERATION], state.clock[LAST_NORM]
     rate = state.clock[CONTRACTION]
-    target = scheme.tolerance * size + 8.0 * 2.2e-16 * floor
+    target = scheme.tolerance * size + state.clock[FLOOR]
     if iteration > 0 and last > 0.0:
         rate = norm / last
         state.clock[CONTRACTION] = rate
@@ -344,7 +351,7 @@ def apply_correction(system, state, scheme):
     return -1 if iteration > 0 and rate > REFRESH and state.control[FRESH] == 0 else 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def accept(system, state, record):
     """End a converged step: rotations stay orthogonal, work of the loads, output."""
     clock, control = state.clock, state.control
@@ -369,17 +376,17 @@ def accept(system, state, record):
     clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def load_power(system, state):
     """Rate of work of the loads in the current state."""
     if system.load_function.size == 0:
         return 0.0
-    state.energy[:] = 0.0
+    state.energy[ENERGIES - 1] = 0.0
     run_kernels(ENERGY, system.first_load[0], system.address.size, system, state)
     return state.energy[ENERGIES - 1]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def _orthogonalize(R, at):
     """One Newton step ``R (3 I - R^T R) / 2`` towards the nearest rotation."""
     for i in range(3):
@@ -397,17 +404,20 @@ def _orthogonalize(R, at):
                 R[at + 3 * j + k] -= 0.5 * dot * x
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def write_record(state, record):
     """Store the accepted state."""
     k = state.control[RECORDED]
     record.t[k] = state.clock[TIME]
-    record.q[k, :] = state.q
-    record.R[k, :] = state.R
-    record.v[k, :] = state.v
-    record.a[k, :] = state.a
-    record.frames[k, :] = state.frames
-    record.reference[k, :] = state.frames_old
+    for i in range(state.q.size):       # loops: assigning slices costs more than the copy
+        record.q[k, i] = state.q[i]
+        record.v[k, i] = state.v[i]
+        record.a[k, i] = state.a[i]
+    for i in range(state.R.size):
+        record.R[k, i] = state.R[i]
+    for i in range(state.frames.size):
+        record.frames[k, i] = state.frames[i]
+        record.reference[k, i] = state.frames_old[i]
     record.work[k] = state.clock[WORK]
     record.iterations[k] = state.control[ITERATIONS]
     state.control[RECORDED] = k + 1
