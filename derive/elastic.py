@@ -4,48 +4,58 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from .kinematics import elastic_rotation_variation, local_displacement
 from .quantities import Quantities
 from .rotations import inverse_tangent_times, inverse_tangent_transposed_times
+from .stages import cross
 from .variation import check_same, coefficients
 
 
 class VirtualWork(NamedTuple):
     """Forces conjugate to the variations a frame leaves to be pulled back."""
 
-    position: sp.Matrix     # on R0^T delta x_i
-    rotation: sp.Matrix     # on delta Theta_j, directly
-    origin: sp.Matrix       # on R0^T delta x_0, summed over positions
+    position: sp.Matrix         # on R0^T delta x_i
+    origin: sp.Matrix           # on R0^T delta x_0, summed over positions
     frame_positions: sp.Matrix  # on delta Theta_0, summed over positions
+    rotation: sp.Matrix         # on delta Theta_j, directly
     frame_rotations: sp.Matrix  # on delta Theta_0, summed over rotations
-    mean: sp.Matrix | None = None   # on sum alpha_j delta Theta_j (small increments only)
+    mean: sp.Matrix | None = None   # on sum alpha_j delta Theta_j, summed (small increments only)
 
 
-def virtual_work(q: Quantities, du: sp.Matrix, dpsi: sp.Matrix,
-                 mean: sp.Matrix | None = None) -> VirtualWork:
+def virtual_work(q: Quantities) -> VirtualWork:
     """Coefficients of ``delta V = sum f_i . delta u_i + sum m_j . delta psi_j``, (30).
 
-    ``Sbar`` is constant, so ``delta V = (Sbar y) . delta y`` and only the variations (17) of the
-    local coordinates enter.
-
-    Parameters
-    ----------
-    du, dpsi : sympy.Matrix
-        Variations of the local displacement and rotation of one node.
-    mean : sympy.Matrix, optional
-        Symbols of ``sum alpha_j delta Theta_j`` where `dpsi` contains them.
+    ``Sbar`` is constant, so ``delta V = (Sbar y) . delta y`` and only the exact variations (17)
+    of the local coordinates enter.
     """
-    of_position = q.f.symbols.dot(du)
-    of_rotation = q.m.symbols.dot(dpsi)
-    dth0, psi, m = q.dth0.symbols, q.psi.symbols, q.m.symbols
-    moment = check_same("elastic moment (30)", inverse_tangent_transposed_times(psi, m),
-                        _of(of_rotation, q.dth.symbols))
-    on_frame = check_same("elastic moment on the frame (30)", -inverse_tangent_times(psi, m),
-                          _of(of_rotation, dth0))
+    of_rotation = q.m.symbols.dot(elastic_rotation_variation(q))
+    psi, m = q.psi.symbols, q.m.symbols
     return VirtualWork(
-        position=_of(of_position, q.dx.symbols), rotation=moment,
-        origin=_of(of_position, q.dx0.symbols), frame_positions=_of(of_position, dth0),
-        frame_rotations=on_frame,
-        mean=None if mean is None else _of(of_rotation, mean))
+        *_of_positions(q),
+        rotation=check_same("elastic moment (30)", inverse_tangent_transposed_times(psi, m),
+                            _of(of_rotation, q.dth.symbols)),
+        frame_rotations=check_same("elastic moment on the frame (30)",
+                                   -inverse_tangent_times(psi, m),
+                                   _of(of_rotation, q.dth0.symbols)))
+
+
+def virtual_work_small(q: Quantities) -> VirtualWork:
+    """The same with the paper's small increments (20), (28)-(29).
+
+    ``delta psi_i = (I + psi_i~/2) dTheta_i - sum_j a_j (I + (psi_j~ - psi_i~)/2) dTheta_j``: the
+    sum is ``dTheta_0`` of (43) less ``psi_i~/2`` times the mean of the variations.
+    """
+    psi, m, mean = q.psi.symbols, q.m.symbols, q.space.quantity("dmean", "axial", "element")
+    varied = (q.dth.symbols + cross(psi, q.dth.symbols) / 2 - q.dth0.symbols
+              + cross(psi, mean.symbols) / 2)
+    work = m.dot(varied)
+    return VirtualWork(*_of_positions(q), rotation=_of(work, q.dth.symbols),
+                       frame_rotations=_of(work, q.dth0.symbols), mean=_of(work, mean.symbols))
+
+
+def _of_positions(q: Quantities) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
+    work = q.f.symbols.dot(local_displacement(q).short[0])
+    return tuple(_of(work, d.symbols) for d in (q.dx, q.dx0, q.dth0))
 
 
 def _of(form, variables):

@@ -154,6 +154,26 @@ def mean(q: Quantities) -> Frame:
                adds=((d(q.beta0), alpha * inverse_tangent_times(beta, q.dth.symbols)),))))
 
 
+def mean_small(q: Quantities) -> Frame:
+    """The paper's mean with its small-increment variation (20), (43)-(44): cheaper forces.
+
+    The forces are no gradient of the energy; they differ from those of (19) by terms of second
+    order in psi where beta_0 = 0. The tangent is the exact differential of these forces.
+    """
+    exact, alpha, psi = mean(q), q.alpha_r.symbols[0], q.psi.symbols
+
+    def angular_rate(rate: Quantity, of: Quantity, first: bool) -> tuple[Step, ...]:
+        if not first:       # a true variation of the frame, for the tangent
+            return exact.rate(rate, of, first)
+        return (Stage("rate of the frame, (43)", "rotation", adds=(
+            (rate, alpha * (of.symbols + cross(psi, of.symbols) / 2)),)),)
+
+    W = q.W.symbols
+    return exact._replace(
+        name="mean_small", summary=exact.summary + ", varied for small increments",
+        rate=angular_rate, pull=(), rotation=alpha * (W - cross(psi, W) / 2), small=True)
+
+
 def _check_mean_variation(q: Quantities) -> None:
     """(15)-(18): ``exp(beta)`` turns with ``T(beta) dbeta``, so ``dTheta_0 = T(beta0) dbeta0``."""
     beta, d = q.beta.symbols, q.space.d(q.beta).symbols
@@ -210,4 +230,5 @@ def positions(q: Quantities) -> Frame:
         -_of(work, q.dx.symbols), -_of(work, q.dx0.symbols), sp.zeros(3, 1))
 
 
-FRAMES = {"converged_mean": converged_mean, "mean": mean, "positions": positions}
+FRAMES = {"converged_mean": converged_mean, "mean": mean, "mean_small": mean_small,
+          "positions": positions}

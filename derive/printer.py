@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable
+from functools import cache
 
 import sympy as sp
 from sympy.printing.pycode import PythonCodePrinter
@@ -68,9 +69,7 @@ class StepPrinter:
         expressions = [name_functions(sp.sympify(e), self.names) for e in expressions]
         stored = [(q, s, op, e) for (q, s, op), e in zip(targets, expressions, strict=True)]
         stored = [entry for entry in stored if not (entry[2] == "+=" and entry[3] == 0)]
-        temporaries, reduced = sp.cse([e for *_, e in stored],
-                                      sp.numbered_symbols("t", start=self.temporaries),
-                                      order="canonical")
+        temporaries, reduced = _shared(tuple(e for *_, e in stored), self.temporaries)
         self.temporaries += len(temporaries)    # names used once keep Numba's SSA pass short
         used = set().union(*(e.free_symbols for *_, e in stored)) if stored else set()
         body = self._loads(over, used)
@@ -170,6 +169,12 @@ class StepPrinter:
         times = {"element": 1, "mode": 0, "position": self.layout.positions,
                  "rotation": self.layout.rotations}[over]
         self.operations += times * sum(int(sp.count_ops(e)) for e in expressions)
+
+
+@cache
+def _shared(expressions: tuple, start: int) -> tuple[list, list]:
+    """Common subexpressions of some expressions, named from t<start> on."""
+    return sp.cse(expressions, sp.numbered_symbols("t", start=start), order="canonical")
 
 
 def _constant_sum(matrix: sp.Matrix, weights: list) -> sp.Matrix | None:

@@ -58,6 +58,7 @@ TABLE = {
     "F": ("vector", "element", "", "sum f_i", "sum of the elastic forces [force]"),
     "W": ("axial", "element", "", "W", "moment on the frame [moment]"),
     "wp": ("axial", "element", "", "B^-T W", "moment pulled back through the frame's variation"),
+    "Ms": ("axial", "element", "", "", "moment on the mean of the variations, (20) [moment]"),
     "P": ("vector", "element", "", "", "momentum of the body [mass length/time]"),
     "H": ("axial", "element", "", "", "its moment about the origin"),
     # directions of a variation: d is the differential of position, velocity or acceleration

@@ -6,11 +6,12 @@
 The tangent is the differential of these stages in the direction of each unknown in turn.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import sympy as sp
 
-from .elastic import VirtualWork, _of, virtual_work
+from .elastic import VirtualWork, _of, virtual_work, virtual_work_small
 from .frames import FRAMES, Frame, origin_stage, relative_rotation
 from .inertia import OPTIONS, Inertia, relative_turning
 from .kinematics import (
@@ -61,18 +62,27 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
     if frame == "positions" and layout.positions < (2 if layout.planar else 3):
         raise LayoutError(f"layout {layout.name} has too few positions for the frame 'positions', "
                           "which needs three nodes (two in a plane): use 'converged_mean'")
-    q = Quantities(Space(layout.planar))
+    if layout.planar and frame in ("mean", "mean_small"):
+        raise LayoutError(f"in a plane the frame {frame!r} coincides with 'converged_mean': use "
+                          "that one")
+    q, chosen, option, parts = _derived(layout.planar, frame, inertia)
+    steps = [tuple(s for s in part if layout.rotations or getattr(s, "over", "") != "rotation")
+             for part in parts]
+    return Superelement(layout, q.space, chosen, option, _names(q), *steps)
+
+
+@cache
+def _derived(planar: bool, frame: str, inertia: str):
+    """Stages at node level, the same for every layout: residual, energy and tangent."""
+    q = Quantities(Space(planar))
     chosen, option = FRAMES[frame](q), OPTIONS[inertia](q)
     moved = q.vs if frame == "positions" else q.Om
     varied = q.dx if frame == "positions" else q.dth
-    work = virtual_work(q, local_displacement(q).short[0], elastic_rotation_variation(q))
+    work = virtual_work_small(q) if chosen.small else virtual_work(q)
     before, after = _motion(q, chosen, option, moved), _forces(q, chosen, option, work)
     residual = [origin_stage(q, q.x0, q.x), *chosen.locate, *before, *_products(""), *after]
     tangent = _tangent(q, chosen, varied, before, after)
-    energy = _energy(q, option)
-    steps = [tuple(s for s in part if layout.rotations or getattr(s, "over", "") != "rotation")
-             for part in (residual, energy, tangent)]
-    return Superelement(layout, q.space, chosen, option, _names(q), *steps)
+    return q, chosen, option, (residual, _energy(q, option), tangent)
 
 
 def _motion(q: Quantities, frame: Frame, option: Inertia, moved) -> list[Step]:
@@ -94,19 +104,22 @@ def _forces(q: Quantities, frame: Frame, option: Inertia, work: VirtualWork) -> 
     R0, h, alpha = q.R0.symbols, q.h.symbols, q.alpha.symbols[0]
     origin = [Stage("force on the origin, through the frame", "position",
                     adds=((q.F, frame.origin),), continues=True)] if any(frame.origin) else []
+    on_mean = [Stage("moment on the mean of the variations, (20)", "rotation",
+                     adds=((q.Ms, work.mean),))] if work.mean else []
+    of_mean = q.alpha_r.symbols[0] * q.Ms.symbols if work.mean else sp.zeros(3, 1)
     return [
         Stage("forces on the frame: elastic (30) and inertia (57)", "position",
               adds=((q.F, work.origin), (q.W, work.frame_positions + option.frame_positions))),
         Stage("moments on the frame: elastic (30) and inertia (45)", "rotation",
               adds=((q.W, work.frame_rotations + option.frame_rotations),), continues=True),
-        *frame.pull, *origin,
+        *frame.pull, *origin, *on_mean,
         Stage("force on the nodes in frame axes, (30), (57)", "position",
               sets=((q.h, work.position + option.position + frame.position
                      + alpha * q.F.symbols),)),
         Stage("force on the nodes", "position", sets=((q.gx, R0 * h),),
               short=(R0 * (q.space.d(q.h).symbols + cross(q.dth0.symbols, h)),)),
         Stage("moment on the nodes, (30), (57)", "rotation",
-              sets=((q.gt, work.rotation + option.rotation + frame.rotation),)),
+              sets=((q.gt, work.rotation + option.rotation + frame.rotation + of_mean),)),
         Stage("force of the internal modes", "mode",
               sets=((q.gm, q.fm.symbols + q.pmd.symbols),)),
     ]

@@ -226,9 +226,9 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
             i3 = 3*i
             px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+            f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             t17 = X_z + u_z
             t18 = X_y + u_y
             t19 = X_x + u_x
@@ -576,9 +576,9 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
                     i3 = 3*i
                     px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                     vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+                    f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]

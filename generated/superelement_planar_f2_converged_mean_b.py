@@ -163,9 +163,9 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
             i3 = 2*i
             px_x, px_y = p[i3], p[i3 + 1]
             vs_x, vs_y = yd[i3], yd[i3 + 1]
+            f_x, f_y = s[i3], s[i3 + 1]
             X_x, X_y = X[i3], X[i3 + 1]
             u_x, u_y = y[i3], y[i3 + 1]
-            f_x, f_y = s[i3], s[i3 + 1]
             F_x += -f_x
             F_y += -f_y
             W_z += f_x*(X_y + u_y) + f_y*(-X_x - u_x) - px_x*vs_y + px_y*vs_x
@@ -347,9 +347,9 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
                     i3 = 2*i
                     px_x, px_y = p[i3], p[i3 + 1]
                     vs_x, vs_y = yd[i3], yd[i3 + 1]
+                    f_x, f_y = s[i3], s[i3 + 1]
                     X_x, X_y = X[i3], X[i3 + 1]
                     u_x, u_y = y[i3], y[i3 + 1]
-                    f_x, f_y = s[i3], s[i3 + 1]
                     du_x, du_y = dy[i3], dy[i3 + 1]
                     df_x, df_y = ds[i3], ds[i3 + 1]
                     dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]

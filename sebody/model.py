@@ -16,7 +16,7 @@ from .kernels import superelement_kernel
 from .loads import History, history
 from .reduction import ReducedBody, body_weights
 
-FRAMES = ("converged_mean", "mean", "node", "positions")
+FRAMES = ("converged_mean", "mean", "mean_small", "node", "positions")
 INERTIAS = ("a", "b")
 
 
@@ -160,7 +160,7 @@ class Model:
             Reduced matrices in any axes.
         nodes : iterable of Node or str
             One node for each boundary node of the body, in its order.
-        frame : {'converged_mean', 'mean', 'node', 'positions'}
+        frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
         inertia : {'a', 'b'}
         rotation : (3, 3), planar (2, 2), optional
             Turns FE axes into global axes; identity by default.

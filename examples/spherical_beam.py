@@ -1,0 +1,38 @@
+"""The paper's beam on a spherical joint (section 8.2) under its own slow loads.
+
+The joint is a fixed position triplet: the system has no constraint and no multiplier.
+"""
+
+import numpy as np
+
+from sebody import Model
+from sebody.fem import straight_beam
+from sebody.reduction import craig_bampton
+from sebody.scenes.hinged_beam import SECTION
+from sebody.scenes.scene import Scene
+
+LENGTH = 141.42
+TORQUE = [(0.0, 0.0), (0.2, 200.0), (10.0, 200.0), (10.2, 0.0)]
+PUSH = [(15.0, 0.0), (15.2, 100.0), (15.4, 0.0)]
+
+
+def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 8,
+          elements: int = 20) -> Scene:
+    """The scene: a torque of impulse 2000 about z at the base, an impulse of 20 along z at 15."""
+    end = np.array([LENGTH, 0.0, 0.0])
+    body = craig_bampton(straight_beam(np.zeros(3), end, SECTION, elements),
+                         [(0, "full"), (elements, "full")], modes)
+    model = Model()
+    base, tip = model.node("base", np.zeros(3)), model.node("tip", end)
+    model.superelement("beam", body, [base, tip], frame=frame, inertia=inertia)
+    model.fix(base, "position")
+    model.torque(base, (0, 0, 1), TORQUE)
+    model.force(tip, (0, 0, 1), PUSH)
+    return Scene("spherical-beam", "beam on a spherical joint, the paper's loads", model, h=0.02,
+                 t_end=30.0)
+
+
+if __name__ == "__main__":
+    from sebody.scenes.scene import main
+
+    main(build)

@@ -1,0 +1,38 @@
+"""A beam on a spherical joint, spun fast and struck at its tip: where formulations differ."""
+
+import math
+
+import numpy as np
+
+from sebody import Model
+from sebody.fem import straight_beam
+from sebody.reduction import craig_bampton
+from sebody.scenes.hinged_beam import SECTION, TORQUE
+from sebody.scenes.scene import Scene
+
+
+def strike(t: float) -> float:
+    """Half a sine between t = 15 and t = 15.1."""
+    return math.sin(math.pi * (t - 15.0) / 0.1) if 15.0 < t < 15.1 else 0.0
+
+
+def build(F0: float = 2800.0, frame: str = "converged_mean", inertia: str = "b",
+          modes: int = 4, elements: int = 20) -> Scene:
+    """The scene: torque of the hinged beam, then a force of peak `F0` along z at the tip."""
+    end = np.array([100.0, 100.0, 0.0])
+    body = craig_bampton(straight_beam(np.zeros(3), end, SECTION, elements),
+                         [(0, "full"), (elements, "full")], modes)
+    model = Model()
+    base, tip = model.node("base", np.zeros(3)), model.node("tip", end)
+    model.superelement("beam", body, [base, tip], frame=frame, inertia=inertia)
+    model.fix(base, "position")
+    model.torque(base, (0, 0, 1), TORQUE)
+    model.force(tip, (0, 0, F0), strike)
+    return Scene("spherical-beam-strong", "fast beam on a spherical joint, struck at its tip",
+                 model, h=0.0025, t_end=30.0)
+
+
+if __name__ == "__main__":
+    from sebody.scenes.scene import main
+
+    main(build)
