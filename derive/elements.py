@@ -35,10 +35,11 @@ class Element(NamedTuple):
 
 
 def revolute(grounded: bool) -> Element:
-    """Revolute joint: an axis fixed in a body stays normal to two directions of another one.
+    """Revolute joint: two directions of a body stay normal to an axis fixed in another one.
 
-    ``phi_k = (R_a e) . (R_b n_k)``, k = 1, 2; the position is shared, so it needs no constraint.
-    To the ground ``R_b = I``.
+    ``phi_k = (R_a n_k) . (R_b e)``, k = 1, 2; the position is shared, so it needs no constraint.
+    To the ground ``R_b = I``. With the normals in body a, the gradient in its material axes does
+    not change as it turns about the axis, and one factorization lasts.
     """
     space = Space(False)
     make = space.quantity
@@ -49,10 +50,10 @@ def revolute(grounded: bool) -> Element:
     accelerations = [make(f"A{b}", "axial", "element") for b in bodies]
     dth = [make(f"dth{b}", "axial", "element") for b in bodies]
     other = sp.eye(3) if grounded else R[1].symbols
-    phi = [(R[0].symbols * e.symbols).dot(other * nk.symbols) for nk in n]
+    phi = [(R[0].symbols * nk.symbols).dot(other * e.symbols) for nk in n]
     return _constraint("revolute_ground" if grounded else "revolute", (
         "revolute joint to the ground" if grounded else "revolute joint between two bodies")
-        + ": the axis stays normal to two directions", space, (e, *n), R, rates, accelerations,
+        + ": two directions stay normal to the axis", space, (e, *n), R, rates, accelerations,
         dth, phi)
 
 

@@ -11,6 +11,7 @@ SUPERELEMENTS = (
     ("f3", "converged_mean", "b"),
     ("f2t1", "positions", "b"),
     ("t8", "positions", "b"),
+    ("f8", "converged_mean", "b"),
     ("planar-f2", "converged_mean", "b"),
     ("planar-f2", "converged_mean", "a"),
     ("planar-f2", "positions", "b"),

@@ -1,4 +1,4 @@
-"""Element kernel: revolute joint between two bodies: the axis stays normal to two directions.
+"""Element kernel: revolute joint between two bodies: two directions stay normal to the axis.
 
 6 coordinates, 2 multipliers.
 
@@ -74,93 +74,93 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
         Ab_z = a[unknowns[5]]
         lam_1 = q[unknowns[6]]
         lam_2 = q[unknowns[7]]
-        t0 = -Ra_xy*e_z + Ra_xz*e_y
-        t1 = Rb_xx*n1_x + Rb_xy*n1_y + Rb_xz*n1_z
-        t2 = -Ra_yy*e_z + Ra_yz*e_y
-        t3 = Rb_yx*n1_x + Rb_yy*n1_y + Rb_yz*n1_z
-        t4 = -Ra_zy*e_z + Ra_zz*e_y
-        t5 = Rb_zx*n1_x + Rb_zy*n1_y + Rb_zz*n1_z
-        t6 = Rb_xx*n2_x + Rb_xy*n2_y + Rb_xz*n2_z
-        t7 = Rb_yx*n2_x + Rb_yy*n2_y + Rb_yz*n2_z
-        t8 = Rb_zx*n2_x + Rb_zy*n2_y + Rb_zz*n2_z
-        t9 = Ra_xx*e_z - Ra_xz*e_x
-        t10 = Ra_yx*e_z - Ra_yz*e_x
-        t11 = Ra_zx*e_z - Ra_zz*e_x
-        t12 = -Ra_xx*e_y + Ra_xy*e_x
-        t13 = -Ra_yx*e_y + Ra_yy*e_x
-        t14 = -Ra_zx*e_y + Ra_zy*e_x
-        t15 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-        t16 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-        t17 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-        g[0] = lam_1*(t0*t1 + t2*t3 + t4*t5) + lam_2*(t0*t6 + t2*t7 + t4*t8)
-        g[1] = lam_1*(t1*t9 + t10*t3 + t11*t5) + lam_2*(t10*t7 + t11*t8 + t6*t9)
-        g[2] = lam_1*(t1*t12 + t13*t3 + t14*t5) + lam_2*(t12*t6 + t13*t7 + t14*t8)
-        g[3] = (lam_1*(t15*(-Rb_xy*n1_z + Rb_xz*n1_y) + t16*(-Rb_yy*n1_z + Rb_yz*n1_y) +
-            t17*(-Rb_zy*n1_z + Rb_zz*n1_y)) + lam_2*(t15*(-Rb_xy*n2_z + Rb_xz*n2_y) +
-            t16*(-Rb_yy*n2_z + Rb_yz*n2_y) + t17*(-Rb_zy*n2_z + Rb_zz*n2_y)))
-        g[4] = (lam_1*(t15*(Rb_xx*n1_z - Rb_xz*n1_x) + t16*(Rb_yx*n1_z - Rb_yz*n1_x) +
-            t17*(Rb_zx*n1_z - Rb_zz*n1_x)) + lam_2*(t15*(Rb_xx*n2_z - Rb_xz*n2_x) +
-            t16*(Rb_yx*n2_z - Rb_yz*n2_x) + t17*(Rb_zx*n2_z - Rb_zz*n2_x)))
-        g[5] = (lam_1*(t15*(-Rb_xx*n1_y + Rb_xy*n1_x) + t16*(-Rb_yx*n1_y + Rb_yy*n1_x) +
-            t17*(-Rb_zx*n1_y + Rb_zy*n1_x)) + lam_2*(t15*(-Rb_xx*n2_y + Rb_xy*n2_x) +
-            t16*(-Rb_yx*n2_y + Rb_yy*n2_x) + t17*(-Rb_zx*n2_y + Rb_zy*n2_x)))
-        g[6] = t1*t15 + t16*t3 + t17*t5
-        g[7] = t15*t6 + t16*t7 + t17*t8
+        t0 = Rb_xx*e_x + Rb_xy*e_y + Rb_xz*e_z
+        t1 = Rb_yx*e_x + Rb_yy*e_y + Rb_yz*e_z
+        t2 = Rb_zx*e_x + Rb_zy*e_y + Rb_zz*e_z
+        t3 = -Rb_xy*e_z + Rb_xz*e_y
+        t4 = Ra_xx*n1_x + Ra_xy*n1_y + Ra_xz*n1_z
+        t5 = -Rb_yy*e_z + Rb_yz*e_y
+        t6 = Ra_yx*n1_x + Ra_yy*n1_y + Ra_yz*n1_z
+        t7 = -Rb_zy*e_z + Rb_zz*e_y
+        t8 = Ra_zx*n1_x + Ra_zy*n1_y + Ra_zz*n1_z
+        t9 = Ra_xx*n2_x + Ra_xy*n2_y + Ra_xz*n2_z
+        t10 = Ra_yx*n2_x + Ra_yy*n2_y + Ra_yz*n2_z
+        t11 = Ra_zx*n2_x + Ra_zy*n2_y + Ra_zz*n2_z
+        t12 = Rb_xx*e_z - Rb_xz*e_x
+        t13 = Rb_yx*e_z - Rb_yz*e_x
+        t14 = Rb_zx*e_z - Rb_zz*e_x
+        t15 = -Rb_xx*e_y + Rb_xy*e_x
+        t16 = -Rb_yx*e_y + Rb_yy*e_x
+        t17 = -Rb_zx*e_y + Rb_zy*e_x
+        g[0] = (lam_1*(t0*(-Ra_xy*n1_z + Ra_xz*n1_y) + t1*(-Ra_yy*n1_z + Ra_yz*n1_y) +
+            t2*(-Ra_zy*n1_z + Ra_zz*n1_y)) + lam_2*(t0*(-Ra_xy*n2_z + Ra_xz*n2_y) +
+            t1*(-Ra_yy*n2_z + Ra_yz*n2_y) + t2*(-Ra_zy*n2_z + Ra_zz*n2_y)))
+        g[1] = (lam_1*(t0*(Ra_xx*n1_z - Ra_xz*n1_x) + t1*(Ra_yx*n1_z - Ra_yz*n1_x) +
+            t2*(Ra_zx*n1_z - Ra_zz*n1_x)) + lam_2*(t0*(Ra_xx*n2_z - Ra_xz*n2_x) + t1*(Ra_yx*n2_z -
+            Ra_yz*n2_x) + t2*(Ra_zx*n2_z - Ra_zz*n2_x)))
+        g[2] = (lam_1*(t0*(-Ra_xx*n1_y + Ra_xy*n1_x) + t1*(-Ra_yx*n1_y + Ra_yy*n1_x) +
+            t2*(-Ra_zx*n1_y + Ra_zy*n1_x)) + lam_2*(t0*(-Ra_xx*n2_y + Ra_xy*n2_x) +
+            t1*(-Ra_yx*n2_y + Ra_yy*n2_x) + t2*(-Ra_zx*n2_y + Ra_zy*n2_x)))
+        g[3] = lam_1*(t3*t4 + t5*t6 + t7*t8) + lam_2*(t10*t5 + t11*t7 + t3*t9)
+        g[4] = lam_1*(t12*t4 + t13*t6 + t14*t8) + lam_2*(t10*t13 + t11*t14 + t12*t9)
+        g[5] = lam_1*(t15*t4 + t16*t6 + t17*t8) + lam_2*(t10*t16 + t11*t17 + t15*t9)
+        g[6] = t0*t4 + t1*t6 + t2*t8
+        g[7] = t0*t9 + t1*t10 + t11*t2
         if task == ACCELERATION:
-            t900 = -Omb_y*Rb_xz + Omb_z*Rb_xy
-            t901 = Omb_x*Rb_xz - Omb_z*Rb_xx
-            t902 = -Omb_x*Rb_xy + Omb_y*Rb_xx
-            t903 = -Oma_y*Ra_xz + Oma_z*Ra_xy
-            t904 = Oma_x*Ra_xz - Oma_z*Ra_xx
-            t905 = -Oma_x*Ra_xy + Oma_y*Ra_xx
+            t900 = -Oma_y*Ra_xz + Oma_z*Ra_xy
+            t901 = Oma_x*Ra_xz - Oma_z*Ra_xx
+            t902 = -Oma_x*Ra_xy + Oma_y*Ra_xx
+            t903 = -Omb_y*Rb_xz + Omb_z*Rb_xy
+            t904 = Omb_x*Rb_xz - Omb_z*Rb_xx
+            t905 = -Omb_x*Rb_xy + Omb_y*Rb_xx
             t906 = 2*e_x*t903 + 2*e_y*t904 + 2*e_z*t905
-            t907 = -Omb_y*Rb_yz + Omb_z*Rb_yy
-            t908 = Omb_x*Rb_yz - Omb_z*Rb_yx
-            t909 = -Omb_x*Rb_yy + Omb_y*Rb_yx
-            t910 = -Oma_y*Ra_yz + Oma_z*Ra_yy
-            t911 = Oma_x*Ra_yz - Oma_z*Ra_yx
-            t912 = -Oma_x*Ra_yy + Oma_y*Ra_yx
+            t907 = -Oma_y*Ra_yz + Oma_z*Ra_yy
+            t908 = Oma_x*Ra_yz - Oma_z*Ra_yx
+            t909 = -Oma_x*Ra_yy + Oma_y*Ra_yx
+            t910 = -Omb_y*Rb_yz + Omb_z*Rb_yy
+            t911 = Omb_x*Rb_yz - Omb_z*Rb_yx
+            t912 = -Omb_x*Rb_yy + Omb_y*Rb_yx
             t913 = 2*e_x*t910 + 2*e_y*t911 + 2*e_z*t912
-            t914 = -Omb_y*Rb_zz + Omb_z*Rb_zy
-            t915 = Omb_x*Rb_zz - Omb_z*Rb_zx
-            t916 = -Omb_x*Rb_zy + Omb_y*Rb_zx
-            t917 = -Oma_y*Ra_zz + Oma_z*Ra_zy
-            t918 = Oma_x*Ra_zz - Oma_z*Ra_zx
-            t919 = -Oma_x*Ra_zy + Oma_y*Ra_zx
+            t914 = -Oma_y*Ra_zz + Oma_z*Ra_zy
+            t915 = Oma_x*Ra_zz - Oma_z*Ra_zx
+            t916 = -Oma_x*Ra_zy + Oma_y*Ra_zx
+            t917 = -Omb_y*Rb_zz + Omb_z*Rb_zy
+            t918 = Omb_x*Rb_zz - Omb_z*Rb_zx
+            t919 = -Omb_x*Rb_zy + Omb_y*Rb_zx
             t920 = 2*e_x*t917 + 2*e_y*t918 + 2*e_z*t919
-            t921 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-            t922 = -Ab_y*Rb_xz + Ab_z*Rb_xy - Omb_y*t902 + Omb_z*t901
-            t923 = Ab_x*Rb_xz - Ab_z*Rb_xx + Omb_x*t902 - Omb_z*t900
-            t924 = -Ab_x*Rb_xy + Ab_y*Rb_xx - Omb_x*t901 + Omb_y*t900
-            t925 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-            t926 = -Ab_y*Rb_yz + Ab_z*Rb_yy - Omb_y*t909 + Omb_z*t908
-            t927 = Ab_x*Rb_yz - Ab_z*Rb_yx + Omb_x*t909 - Omb_z*t907
-            t928 = -Ab_x*Rb_yy + Ab_y*Rb_yx - Omb_x*t908 + Omb_y*t907
-            t929 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-            t930 = -Ab_y*Rb_zz + Ab_z*Rb_zy - Omb_y*t916 + Omb_z*t915
-            t931 = Ab_x*Rb_zz - Ab_z*Rb_zx + Omb_x*t916 - Omb_z*t914
-            t932 = -Ab_x*Rb_zy + Ab_y*Rb_zx - Omb_x*t915 + Omb_y*t914
-            t933 = (e_x*(-Aa_y*Ra_xz + Aa_z*Ra_xy - Oma_y*t905 + Oma_z*t904) + e_y*(Aa_x*Ra_xz -
-                Aa_z*Ra_xx + Oma_x*t905 - Oma_z*t903) + e_z*(-Aa_x*Ra_xy + Aa_y*Ra_xx - Oma_x*t904
-                + Oma_y*t903))
-            t934 = (e_x*(-Aa_y*Ra_yz + Aa_z*Ra_yy - Oma_y*t912 + Oma_z*t911) + e_y*(Aa_x*Ra_yz -
-                Aa_z*Ra_yx + Oma_x*t912 - Oma_z*t910) + e_z*(-Aa_x*Ra_yy + Aa_y*Ra_yx - Oma_x*t911
-                + Oma_y*t910))
-            t935 = (e_x*(-Aa_y*Ra_zz + Aa_z*Ra_zy - Oma_y*t919 + Oma_z*t918) + e_y*(Aa_x*Ra_zz -
-                Aa_z*Ra_zx + Oma_x*t919 - Oma_z*t917) + e_z*(-Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t918
-                + Oma_y*t917))
+            t921 = (e_x*(-Ab_y*Rb_xz + Ab_z*Rb_xy - Omb_y*t905 + Omb_z*t904) + e_y*(Ab_x*Rb_xz -
+                Ab_z*Rb_xx + Omb_x*t905 - Omb_z*t903) + e_z*(-Ab_x*Rb_xy + Ab_y*Rb_xx - Omb_x*t904
+                + Omb_y*t903))
+            t922 = (e_x*(-Ab_y*Rb_yz + Ab_z*Rb_yy - Omb_y*t912 + Omb_z*t911) + e_y*(Ab_x*Rb_yz -
+                Ab_z*Rb_yx + Omb_x*t912 - Omb_z*t910) + e_z*(-Ab_x*Rb_yy + Ab_y*Rb_yx - Omb_x*t911
+                + Omb_y*t910))
+            t923 = (e_x*(-Ab_y*Rb_zz + Ab_z*Rb_zy - Omb_y*t919 + Omb_z*t918) + e_y*(Ab_x*Rb_zz -
+                Ab_z*Rb_zx + Omb_x*t919 - Omb_z*t917) + e_z*(-Ab_x*Rb_zy + Ab_y*Rb_zx - Omb_x*t918
+                + Omb_y*t917))
+            t924 = Rb_xx*e_x + Rb_xy*e_y + Rb_xz*e_z
+            t925 = -Aa_y*Ra_xz + Aa_z*Ra_xy - Oma_y*t902 + Oma_z*t901
+            t926 = Aa_x*Ra_xz - Aa_z*Ra_xx + Oma_x*t902 - Oma_z*t900
+            t927 = -Aa_x*Ra_xy + Aa_y*Ra_xx - Oma_x*t901 + Oma_y*t900
+            t928 = Rb_yx*e_x + Rb_yy*e_y + Rb_yz*e_z
+            t929 = -Aa_y*Ra_yz + Aa_z*Ra_yy - Oma_y*t909 + Oma_z*t908
+            t930 = Aa_x*Ra_yz - Aa_z*Ra_yx + Oma_x*t909 - Oma_z*t907
+            t931 = -Aa_x*Ra_yy + Aa_y*Ra_yx - Oma_x*t908 + Oma_y*t907
+            t932 = Rb_zx*e_x + Rb_zy*e_y + Rb_zz*e_z
+            t933 = -Aa_y*Ra_zz + Aa_z*Ra_zy - Oma_y*t916 + Oma_z*t915
+            t934 = Aa_x*Ra_zz - Aa_z*Ra_zx + Oma_x*t916 - Oma_z*t914
+            t935 = -Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t915 + Oma_y*t914
             g[6] = (t906*(n1_x*t900 + n1_y*t901 + n1_z*t902) + t913*(n1_x*t907 + n1_y*t908 +
-                n1_z*t909) + t920*(n1_x*t914 + n1_y*t915 + n1_z*t916) + t921*(n1_x*t922 +
-                n1_y*t923 + n1_z*t924) + t925*(n1_x*t926 + n1_y*t927 + n1_z*t928) +
-                t929*(n1_x*t930 + n1_y*t931 + n1_z*t932) + t933*(Rb_xx*n1_x + Rb_xy*n1_y +
-                Rb_xz*n1_z) + t934*(Rb_yx*n1_x + Rb_yy*n1_y + Rb_yz*n1_z) + t935*(Rb_zx*n1_x +
-                Rb_zy*n1_y + Rb_zz*n1_z))
+                n1_z*t909) + t920*(n1_x*t914 + n1_y*t915 + n1_z*t916) + t921*(Ra_xx*n1_x +
+                Ra_xy*n1_y + Ra_xz*n1_z) + t922*(Ra_yx*n1_x + Ra_yy*n1_y + Ra_yz*n1_z) +
+                t923*(Ra_zx*n1_x + Ra_zy*n1_y + Ra_zz*n1_z) + t924*(n1_x*t925 + n1_y*t926 +
+                n1_z*t927) + t928*(n1_x*t929 + n1_y*t930 + n1_z*t931) + t932*(n1_x*t933 +
+                n1_y*t934 + n1_z*t935))
             g[7] = (t906*(n2_x*t900 + n2_y*t901 + n2_z*t902) + t913*(n2_x*t907 + n2_y*t908 +
-                n2_z*t909) + t920*(n2_x*t914 + n2_y*t915 + n2_z*t916) + t921*(n2_x*t922 +
-                n2_y*t923 + n2_z*t924) + t925*(n2_x*t926 + n2_y*t927 + n2_z*t928) +
-                t929*(n2_x*t930 + n2_y*t931 + n2_z*t932) + t933*(Rb_xx*n2_x + Rb_xy*n2_y +
-                Rb_xz*n2_z) + t934*(Rb_yx*n2_x + Rb_yy*n2_y + Rb_yz*n2_z) + t935*(Rb_zx*n2_x +
-                Rb_zy*n2_y + Rb_zz*n2_z))
+                n2_z*t909) + t920*(n2_x*t914 + n2_y*t915 + n2_z*t916) + t921*(Ra_xx*n2_x +
+                Ra_xy*n2_y + Ra_xz*n2_z) + t922*(Ra_yx*n2_x + Ra_yy*n2_y + Ra_yz*n2_z) +
+                t923*(Ra_zx*n2_x + Ra_zy*n2_y + Ra_zz*n2_z) + t924*(n2_x*t925 + n2_y*t926 +
+                n2_z*t927) + t928*(n2_x*t929 + n2_y*t930 + n2_z*t931) + t932*(n2_x*t933 +
+                n2_y*t934 + n2_z*t935))
         if task == TANGENT:
             c_place, c_constraint = coefficients[2], coefficients[4]
             J = matrices[element*WIDTH*WIDTH:(element + 1)*WIDTH*WIDTH]
@@ -177,125 +177,127 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
                 dthb_x = dq[3]
                 dthb_y = dq[4]
                 dthb_z = dq[5]
-                t18 = Rb_xx*n1_x + Rb_xy*n1_y + Rb_xz*n1_z
+                t18 = Rb_xx*e_x + Rb_xy*e_y + Rb_xz*e_z
                 t19 = Ra_xx*dtha_y - Ra_xy*dtha_x
                 t20 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t21 = e_y*t19 - e_z*t20
-                t22 = Rb_yx*n1_x + Rb_yy*n1_y + Rb_yz*n1_z
-                t23 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t24 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t25 = e_y*t23 - e_z*t24
-                t26 = Rb_zx*n1_x + Rb_zy*n1_y + Rb_zz*n1_z
-                t27 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t28 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t29 = e_y*t27 - e_z*t28
-                t30 = -Ra_xy*e_z + Ra_xz*e_y
-                t31 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t32 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t33 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t34 = n1_x*t31 + n1_y*t32 + n1_z*t33
-                t35 = -Ra_yy*e_z + Ra_yz*e_y
-                t36 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t37 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t38 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t39 = n1_x*t36 + n1_y*t37 + n1_z*t38
-                t40 = -Ra_zy*e_z + Ra_zz*e_y
-                t41 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t42 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t43 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t44 = n1_x*t41 + n1_y*t42 + n1_z*t43
-                t45 = Rb_xx*n2_x + Rb_xy*n2_y + Rb_xz*n2_z
-                t46 = Rb_yx*n2_x + Rb_yy*n2_y + Rb_yz*n2_z
-                t47 = Rb_zx*n2_x + Rb_zy*n2_y + Rb_zz*n2_z
-                t48 = n2_x*t31 + n2_y*t32 + n2_z*t33
-                t49 = n2_x*t36 + n2_y*t37 + n2_z*t38
-                t50 = n2_x*t41 + n2_y*t42 + n2_z*t43
-                t51 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t52 = -e_x*t19 + e_z*t51
-                t53 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t54 = -e_x*t23 + e_z*t53
-                t55 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t56 = -e_x*t27 + e_z*t55
-                t57 = Ra_xx*e_z - Ra_xz*e_x
-                t58 = Ra_yx*e_z - Ra_yz*e_x
-                t59 = Ra_zx*e_z - Ra_zz*e_x
-                t60 = e_x*t20 - e_y*t51
-                t61 = e_x*t24 - e_y*t53
-                t62 = e_x*t28 - e_y*t55
-                t63 = -Ra_xx*e_y + Ra_xy*e_x
-                t64 = -Ra_yx*e_y + Ra_yy*e_x
-                t65 = -Ra_zx*e_y + Ra_zy*e_x
-                t66 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-                t67 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-                t68 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-                t69 = e_x*t51 + e_y*t20 + e_z*t19
-                t70 = e_x*t53 + e_y*t24 + e_z*t23
-                t71 = e_x*t55 + e_y*t28 + e_z*t27
-                J[0 + column] = (c_place*(lam_1*(t18*t21 + t22*t25 + t26*t29 + t30*t34 + t35*t39 +
-                    t40*t44) + lam_2*(t21*t45 + t25*t46 + t29*t47 + t30*t48 + t35*t49 + t40*t50)))
-                J[8 + column] = (c_place*(lam_1*(t18*t52 + t22*t54 + t26*t56 + t34*t57 + t39*t58 +
-                    t44*t59) + lam_2*(t45*t52 + t46*t54 + t47*t56 + t48*t57 + t49*t58 + t50*t59)))
-                J[16 + column] = (c_place*(lam_1*(t18*t60 + t22*t61 + t26*t62 + t34*t63 + t39*t64
-                    + t44*t65) + lam_2*(t45*t60 + t46*t61 + t47*t62 + t48*t63 + t49*t64 +
-                    t50*t65)))
-                J[24 + column] = (c_place*(lam_1*(t66*(n1_y*t33 - n1_z*t32) + t67*(n1_y*t38 -
-                    n1_z*t37) + t68*(n1_y*t43 - n1_z*t42) + t69*(-Rb_xy*n1_z + Rb_xz*n1_y) +
-                    t70*(-Rb_yy*n1_z + Rb_yz*n1_y) + t71*(-Rb_zy*n1_z + Rb_zz*n1_y)) +
-                    lam_2*(t66*(n2_y*t33 - n2_z*t32) + t67*(n2_y*t38 - n2_z*t37) + t68*(n2_y*t43 -
-                    n2_z*t42) + t69*(-Rb_xy*n2_z + Rb_xz*n2_y) + t70*(-Rb_yy*n2_z + Rb_yz*n2_y) +
-                    t71*(-Rb_zy*n2_z + Rb_zz*n2_y))))
-                J[32 + column] = (c_place*(lam_1*(t66*(-n1_x*t33 + n1_z*t31) + t67*(-n1_x*t38 +
-                    n1_z*t36) + t68*(-n1_x*t43 + n1_z*t41) + t69*(Rb_xx*n1_z - Rb_xz*n1_x) +
-                    t70*(Rb_yx*n1_z - Rb_yz*n1_x) + t71*(Rb_zx*n1_z - Rb_zz*n1_x)) +
-                    lam_2*(t66*(-n2_x*t33 + n2_z*t31) + t67*(-n2_x*t38 + n2_z*t36) +
-                    t68*(-n2_x*t43 + n2_z*t41) + t69*(Rb_xx*n2_z - Rb_xz*n2_x) + t70*(Rb_yx*n2_z -
-                    Rb_yz*n2_x) + t71*(Rb_zx*n2_z - Rb_zz*n2_x))))
-                J[40 + column] = (c_place*(lam_1*(t66*(n1_x*t32 - n1_y*t31) + t67*(n1_x*t37 -
-                    n1_y*t36) + t68*(n1_x*t42 - n1_y*t41) + t69*(-Rb_xx*n1_y + Rb_xy*n1_x) +
-                    t70*(-Rb_yx*n1_y + Rb_yy*n1_x) + t71*(-Rb_zx*n1_y + Rb_zy*n1_x)) +
-                    lam_2*(t66*(n2_x*t32 - n2_y*t31) + t67*(n2_x*t37 - n2_y*t36) + t68*(n2_x*t42 -
-                    n2_y*t41) + t69*(-Rb_xx*n2_y + Rb_xy*n2_x) + t70*(-Rb_yx*n2_y + Rb_yy*n2_x) +
-                    t71*(-Rb_zx*n2_y + Rb_zy*n2_x))))
-                J[48 + column] = (c_constraint*(t18*t69 + t22*t70 + t26*t71 + t34*t66 + t39*t67 +
-                    t44*t68))
-                J[56 + column] = (c_constraint*(t45*t69 + t46*t70 + t47*t71 + t48*t66 + t49*t67 +
-                    t50*t68))
-            t700 = -Ra_xy*e_z + Ra_xz*e_y
-            t701 = Rb_xx*n1_x + Rb_xy*n1_y + Rb_xz*n1_z
-            t702 = -Ra_yy*e_z + Ra_yz*e_y
-            t703 = Rb_yx*n1_x + Rb_yy*n1_y + Rb_yz*n1_z
-            t704 = -Ra_zy*e_z + Ra_zz*e_y
-            t705 = Rb_zx*n1_x + Rb_zy*n1_y + Rb_zz*n1_z
-            t706 = Ra_xx*e_z - Ra_xz*e_x
-            t707 = Ra_yx*e_z - Ra_yz*e_x
-            t708 = Ra_zx*e_z - Ra_zz*e_x
-            t709 = -Ra_xx*e_y + Ra_xy*e_x
-            t710 = -Ra_yx*e_y + Ra_yy*e_x
-            t711 = -Ra_zx*e_y + Ra_zy*e_x
-            t712 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-            t713 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-            t714 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-            t715 = Rb_xx*n2_x + Rb_xy*n2_y + Rb_xz*n2_z
-            t716 = Rb_yx*n2_x + Rb_yy*n2_y + Rb_yz*n2_z
-            t717 = Rb_zx*n2_x + Rb_zy*n2_y + Rb_zz*n2_z
-            J[6] = c_constraint*(t700*t701 + t702*t703 + t704*t705)
-            J[14] = c_constraint*(t701*t706 + t703*t707 + t705*t708)
-            J[22] = c_constraint*(t701*t709 + t703*t710 + t705*t711)
-            J[30] = (c_constraint*(t712*(-Rb_xy*n1_z + Rb_xz*n1_y) + t713*(-Rb_yy*n1_z +
-                Rb_yz*n1_y) + t714*(-Rb_zy*n1_z + Rb_zz*n1_y)))
-            J[38] = (c_constraint*(t712*(Rb_xx*n1_z - Rb_xz*n1_x) + t713*(Rb_yx*n1_z - Rb_yz*n1_x)
-                + t714*(Rb_zx*n1_z - Rb_zz*n1_x)))
-            J[46] = (c_constraint*(t712*(-Rb_xx*n1_y + Rb_xy*n1_x) + t713*(-Rb_yx*n1_y +
-                Rb_yy*n1_x) + t714*(-Rb_zx*n1_y + Rb_zy*n1_x)))
-            J[7] = c_constraint*(t700*t715 + t702*t716 + t704*t717)
-            J[15] = c_constraint*(t706*t715 + t707*t716 + t708*t717)
-            J[23] = c_constraint*(t709*t715 + t710*t716 + t711*t717)
-            J[31] = (c_constraint*(t712*(-Rb_xy*n2_z + Rb_xz*n2_y) + t713*(-Rb_yy*n2_z +
-                Rb_yz*n2_y) + t714*(-Rb_zy*n2_z + Rb_zz*n2_y)))
-            J[39] = (c_constraint*(t712*(Rb_xx*n2_z - Rb_xz*n2_x) + t713*(Rb_yx*n2_z - Rb_yz*n2_x)
-                + t714*(Rb_zx*n2_z - Rb_zz*n2_x)))
-            J[47] = (c_constraint*(t712*(-Rb_xx*n2_y + Rb_xy*n2_x) + t713*(-Rb_yx*n2_y +
-                Rb_yy*n2_x) + t714*(-Rb_zx*n2_y + Rb_zy*n2_x)))
+                t21 = Rb_yx*e_x + Rb_yy*e_y + Rb_yz*e_z
+                t22 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t23 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t24 = Rb_zx*e_x + Rb_zy*e_y + Rb_zz*e_z
+                t25 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t26 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t27 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t28 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t29 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t30 = e_x*t27 + e_y*t28 + e_z*t29
+                t31 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t32 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t33 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t34 = e_x*t31 + e_y*t32 + e_z*t33
+                t35 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t36 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t37 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t38 = e_x*t35 + e_y*t36 + e_z*t37
+                t39 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t40 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t41 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t42 = Ra_xx*n1_x + Ra_xy*n1_y + Ra_xz*n1_z
+                t43 = e_y*t29 - e_z*t28
+                t44 = Ra_yx*n1_x + Ra_yy*n1_y + Ra_yz*n1_z
+                t45 = e_y*t33 - e_z*t32
+                t46 = Ra_zx*n1_x + Ra_zy*n1_y + Ra_zz*n1_z
+                t47 = e_y*t37 - e_z*t36
+                t48 = -Rb_xy*e_z + Rb_xz*e_y
+                t49 = n1_x*t39 + n1_y*t20 + n1_z*t19
+                t50 = -Rb_yy*e_z + Rb_yz*e_y
+                t51 = n1_x*t40 + n1_y*t23 + n1_z*t22
+                t52 = -Rb_zy*e_z + Rb_zz*e_y
+                t53 = n1_x*t41 + n1_y*t26 + n1_z*t25
+                t54 = Ra_xx*n2_x + Ra_xy*n2_y + Ra_xz*n2_z
+                t55 = Ra_yx*n2_x + Ra_yy*n2_y + Ra_yz*n2_z
+                t56 = Ra_zx*n2_x + Ra_zy*n2_y + Ra_zz*n2_z
+                t57 = n2_x*t39 + n2_y*t20 + n2_z*t19
+                t58 = n2_x*t40 + n2_y*t23 + n2_z*t22
+                t59 = n2_x*t41 + n2_y*t26 + n2_z*t25
+                t60 = -e_x*t29 + e_z*t27
+                t61 = -e_x*t33 + e_z*t31
+                t62 = -e_x*t37 + e_z*t35
+                t63 = Rb_xx*e_z - Rb_xz*e_x
+                t64 = Rb_yx*e_z - Rb_yz*e_x
+                t65 = Rb_zx*e_z - Rb_zz*e_x
+                t66 = e_x*t28 - e_y*t27
+                t67 = e_x*t32 - e_y*t31
+                t68 = e_x*t36 - e_y*t35
+                t69 = -Rb_xx*e_y + Rb_xy*e_x
+                t70 = -Rb_yx*e_y + Rb_yy*e_x
+                t71 = -Rb_zx*e_y + Rb_zy*e_x
+                J[0 + column] = (c_place*(lam_1*(t18*(n1_y*t19 - n1_z*t20) + t21*(n1_y*t22 -
+                    n1_z*t23) + t24*(n1_y*t25 - n1_z*t26) + t30*(-Ra_xy*n1_z + Ra_xz*n1_y) +
+                    t34*(-Ra_yy*n1_z + Ra_yz*n1_y) + t38*(-Ra_zy*n1_z + Ra_zz*n1_y)) +
+                    lam_2*(t18*(n2_y*t19 - n2_z*t20) + t21*(n2_y*t22 - n2_z*t23) + t24*(n2_y*t25 -
+                    n2_z*t26) + t30*(-Ra_xy*n2_z + Ra_xz*n2_y) + t34*(-Ra_yy*n2_z + Ra_yz*n2_y) +
+                    t38*(-Ra_zy*n2_z + Ra_zz*n2_y))))
+                J[8 + column] = (c_place*(lam_1*(t18*(-n1_x*t19 + n1_z*t39) + t21*(-n1_x*t22 +
+                    n1_z*t40) + t24*(-n1_x*t25 + n1_z*t41) + t30*(Ra_xx*n1_z - Ra_xz*n1_x) +
+                    t34*(Ra_yx*n1_z - Ra_yz*n1_x) + t38*(Ra_zx*n1_z - Ra_zz*n1_x)) +
+                    lam_2*(t18*(-n2_x*t19 + n2_z*t39) + t21*(-n2_x*t22 + n2_z*t40) +
+                    t24*(-n2_x*t25 + n2_z*t41) + t30*(Ra_xx*n2_z - Ra_xz*n2_x) + t34*(Ra_yx*n2_z -
+                    Ra_yz*n2_x) + t38*(Ra_zx*n2_z - Ra_zz*n2_x))))
+                J[16 + column] = (c_place*(lam_1*(t18*(n1_x*t20 - n1_y*t39) + t21*(n1_x*t23 -
+                    n1_y*t40) + t24*(n1_x*t26 - n1_y*t41) + t30*(-Ra_xx*n1_y + Ra_xy*n1_x) +
+                    t34*(-Ra_yx*n1_y + Ra_yy*n1_x) + t38*(-Ra_zx*n1_y + Ra_zy*n1_x)) +
+                    lam_2*(t18*(n2_x*t20 - n2_y*t39) + t21*(n2_x*t23 - n2_y*t40) + t24*(n2_x*t26 -
+                    n2_y*t41) + t30*(-Ra_xx*n2_y + Ra_xy*n2_x) + t34*(-Ra_yx*n2_y + Ra_yy*n2_x) +
+                    t38*(-Ra_zx*n2_y + Ra_zy*n2_x))))
+                J[24 + column] = (c_place*(lam_1*(t42*t43 + t44*t45 + t46*t47 + t48*t49 + t50*t51
+                    + t52*t53) + lam_2*(t43*t54 + t45*t55 + t47*t56 + t48*t57 + t50*t58 +
+                    t52*t59)))
+                J[32 + column] = (c_place*(lam_1*(t42*t60 + t44*t61 + t46*t62 + t49*t63 + t51*t64
+                    + t53*t65) + lam_2*(t54*t60 + t55*t61 + t56*t62 + t57*t63 + t58*t64 +
+                    t59*t65)))
+                J[40 + column] = (c_place*(lam_1*(t42*t66 + t44*t67 + t46*t68 + t49*t69 + t51*t70
+                    + t53*t71) + lam_2*(t54*t66 + t55*t67 + t56*t68 + t57*t69 + t58*t70 +
+                    t59*t71)))
+                J[48 + column] = (c_constraint*(t18*t49 + t21*t51 + t24*t53 + t30*t42 + t34*t44 +
+                    t38*t46))
+                J[56 + column] = (c_constraint*(t18*t57 + t21*t58 + t24*t59 + t30*t54 + t34*t55 +
+                    t38*t56))
+            t700 = Rb_xx*e_x + Rb_xy*e_y + Rb_xz*e_z
+            t701 = Rb_yx*e_x + Rb_yy*e_y + Rb_yz*e_z
+            t702 = Rb_zx*e_x + Rb_zy*e_y + Rb_zz*e_z
+            t703 = -Rb_xy*e_z + Rb_xz*e_y
+            t704 = Ra_xx*n1_x + Ra_xy*n1_y + Ra_xz*n1_z
+            t705 = -Rb_yy*e_z + Rb_yz*e_y
+            t706 = Ra_yx*n1_x + Ra_yy*n1_y + Ra_yz*n1_z
+            t707 = -Rb_zy*e_z + Rb_zz*e_y
+            t708 = Ra_zx*n1_x + Ra_zy*n1_y + Ra_zz*n1_z
+            t709 = Rb_xx*e_z - Rb_xz*e_x
+            t710 = Rb_yx*e_z - Rb_yz*e_x
+            t711 = Rb_zx*e_z - Rb_zz*e_x
+            t712 = -Rb_xx*e_y + Rb_xy*e_x
+            t713 = -Rb_yx*e_y + Rb_yy*e_x
+            t714 = -Rb_zx*e_y + Rb_zy*e_x
+            t715 = Ra_xx*n2_x + Ra_xy*n2_y + Ra_xz*n2_z
+            t716 = Ra_yx*n2_x + Ra_yy*n2_y + Ra_yz*n2_z
+            t717 = Ra_zx*n2_x + Ra_zy*n2_y + Ra_zz*n2_z
+            J[6] = (c_constraint*(t700*(-Ra_xy*n1_z + Ra_xz*n1_y) + t701*(-Ra_yy*n1_z +
+                Ra_yz*n1_y) + t702*(-Ra_zy*n1_z + Ra_zz*n1_y)))
+            J[14] = (c_constraint*(t700*(Ra_xx*n1_z - Ra_xz*n1_x) + t701*(Ra_yx*n1_z - Ra_yz*n1_x)
+                + t702*(Ra_zx*n1_z - Ra_zz*n1_x)))
+            J[22] = (c_constraint*(t700*(-Ra_xx*n1_y + Ra_xy*n1_x) + t701*(-Ra_yx*n1_y +
+                Ra_yy*n1_x) + t702*(-Ra_zx*n1_y + Ra_zy*n1_x)))
+            J[30] = c_constraint*(t703*t704 + t705*t706 + t707*t708)
+            J[38] = c_constraint*(t704*t709 + t706*t710 + t708*t711)
+            J[46] = c_constraint*(t704*t712 + t706*t713 + t708*t714)
+            J[7] = (c_constraint*(t700*(-Ra_xy*n2_z + Ra_xz*n2_y) + t701*(-Ra_yy*n2_z +
+                Ra_yz*n2_y) + t702*(-Ra_zy*n2_z + Ra_zz*n2_y)))
+            J[15] = (c_constraint*(t700*(Ra_xx*n2_z - Ra_xz*n2_x) + t701*(Ra_yx*n2_z - Ra_yz*n2_x)
+                + t702*(Ra_zx*n2_z - Ra_zz*n2_x)))
+            J[23] = (c_constraint*(t700*(-Ra_xx*n2_y + Ra_xy*n2_x) + t701*(-Ra_yx*n2_y +
+                Ra_yy*n2_x) + t702*(-Ra_zx*n2_y + Ra_zy*n2_x)))
+            J[31] = c_constraint*(t703*t715 + t705*t716 + t707*t717)
+            J[39] = c_constraint*(t709*t715 + t710*t716 + t711*t717)
+            J[47] = c_constraint*(t712*t715 + t713*t716 + t714*t717)
             J[54] = 0.0
             J[55] = 0.0
             J[62] = 0.0

@@ -1,4 +1,4 @@
-"""Element kernel: revolute joint to the ground: the axis stays normal to two directions.
+"""Element kernel: revolute joint to the ground: two directions stay normal to the axis.
 
 3 coordinates, 2 multipliers.
 
@@ -14,7 +14,7 @@ N_ROTATIONS = 1
 N_CONSTANTS = 9
 WIDTH = 5
 WORK_ROWS = 1
-OPERATIONS = {"residual": (91, 0), "column": (118, 0)}
+OPERATIONS = {"residual": (133, 0), "column": (160, 0)}
 LEAVES = {}
 
 
@@ -59,44 +59,42 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
         Aa_z = a[unknowns[2]]
         lam_1 = q[unknowns[3]]
         lam_2 = q[unknowns[4]]
-        t0 = -Ra_xy*e_z + Ra_xz*e_y
-        t1 = -Ra_yy*e_z + Ra_yz*e_y
-        t2 = -Ra_zy*e_z + Ra_zz*e_y
-        t3 = Ra_xx*e_z - Ra_xz*e_x
-        t4 = Ra_yx*e_z - Ra_yz*e_x
-        t5 = Ra_zx*e_z - Ra_zz*e_x
-        t6 = -Ra_xx*e_y + Ra_xy*e_x
-        t7 = -Ra_yx*e_y + Ra_yy*e_x
-        t8 = -Ra_zx*e_y + Ra_zy*e_x
-        t9 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-        t10 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-        t11 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-        g[0] = lam_1*(n1_x*t0 + n1_y*t1 + n1_z*t2) + lam_2*(n2_x*t0 + n2_y*t1 + n2_z*t2)
-        g[1] = lam_1*(n1_x*t3 + n1_y*t4 + n1_z*t5) + lam_2*(n2_x*t3 + n2_y*t4 + n2_z*t5)
-        g[2] = lam_1*(n1_x*t6 + n1_y*t7 + n1_z*t8) + lam_2*(n2_x*t6 + n2_y*t7 + n2_z*t8)
-        g[3] = n1_x*t9 + n1_y*t10 + n1_z*t11
-        g[4] = n2_x*t9 + n2_y*t10 + n2_z*t11
+        g[0] = (lam_1*(e_x*(-Ra_xy*n1_z + Ra_xz*n1_y) + e_y*(-Ra_yy*n1_z + Ra_yz*n1_y) +
+            e_z*(-Ra_zy*n1_z + Ra_zz*n1_y)) + lam_2*(e_x*(-Ra_xy*n2_z + Ra_xz*n2_y) +
+            e_y*(-Ra_yy*n2_z + Ra_yz*n2_y) + e_z*(-Ra_zy*n2_z + Ra_zz*n2_y)))
+        g[1] = (lam_1*(e_x*(Ra_xx*n1_z - Ra_xz*n1_x) + e_y*(Ra_yx*n1_z - Ra_yz*n1_x) +
+            e_z*(Ra_zx*n1_z - Ra_zz*n1_x)) + lam_2*(e_x*(Ra_xx*n2_z - Ra_xz*n2_x) +
+            e_y*(Ra_yx*n2_z - Ra_yz*n2_x) + e_z*(Ra_zx*n2_z - Ra_zz*n2_x)))
+        g[2] = (lam_1*(e_x*(-Ra_xx*n1_y + Ra_xy*n1_x) + e_y*(-Ra_yx*n1_y + Ra_yy*n1_x) +
+            e_z*(-Ra_zx*n1_y + Ra_zy*n1_x)) + lam_2*(e_x*(-Ra_xx*n2_y + Ra_xy*n2_x) +
+            e_y*(-Ra_yx*n2_y + Ra_yy*n2_x) + e_z*(-Ra_zx*n2_y + Ra_zy*n2_x)))
+        g[3] = (e_x*(Ra_xx*n1_x + Ra_xy*n1_y + Ra_xz*n1_z) + e_y*(Ra_yx*n1_x + Ra_yy*n1_y +
+            Ra_yz*n1_z) + e_z*(Ra_zx*n1_x + Ra_zy*n1_y + Ra_zz*n1_z))
+        g[4] = (e_x*(Ra_xx*n2_x + Ra_xy*n2_y + Ra_xz*n2_z) + e_y*(Ra_yx*n2_x + Ra_yy*n2_y +
+            Ra_yz*n2_z) + e_z*(Ra_zx*n2_x + Ra_zy*n2_y + Ra_zz*n2_z))
         if task == ACCELERATION:
             t900 = -Oma_x*Ra_xy + Oma_y*Ra_xx
             t901 = Oma_x*Ra_xz - Oma_z*Ra_xx
-            t902 = -Oma_y*Ra_xz + Oma_z*Ra_xy
-            t903 = (e_x*(-Aa_y*Ra_xz + Aa_z*Ra_xy - Oma_y*t900 + Oma_z*t901) + e_y*(Aa_x*Ra_xz -
-                Aa_z*Ra_xx + Oma_x*t900 - Oma_z*t902) + e_z*(-Aa_x*Ra_xy + Aa_y*Ra_xx - Oma_x*t901
-                + Oma_y*t902))
-            t904 = -Oma_x*Ra_yy + Oma_y*Ra_yx
-            t905 = Oma_x*Ra_yz - Oma_z*Ra_yx
-            t906 = -Oma_y*Ra_yz + Oma_z*Ra_yy
-            t907 = (e_x*(-Aa_y*Ra_yz + Aa_z*Ra_yy - Oma_y*t904 + Oma_z*t905) + e_y*(Aa_x*Ra_yz -
-                Aa_z*Ra_yx + Oma_x*t904 - Oma_z*t906) + e_z*(-Aa_x*Ra_yy + Aa_y*Ra_yx - Oma_x*t905
-                + Oma_y*t906))
-            t908 = -Oma_x*Ra_zy + Oma_y*Ra_zx
-            t909 = Oma_x*Ra_zz - Oma_z*Ra_zx
-            t910 = -Oma_y*Ra_zz + Oma_z*Ra_zy
-            t911 = (e_x*(-Aa_y*Ra_zz + Aa_z*Ra_zy - Oma_y*t908 + Oma_z*t909) + e_y*(Aa_x*Ra_zz -
-                Aa_z*Ra_zx + Oma_x*t908 - Oma_z*t910) + e_z*(-Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t909
-                + Oma_y*t910))
-            g[3] = n1_x*t903 + n1_y*t907 + n1_z*t911
-            g[4] = n2_x*t903 + n2_y*t907 + n2_z*t911
+            t902 = -Aa_y*Ra_xz + Aa_z*Ra_xy - Oma_y*t900 + Oma_z*t901
+            t903 = -Oma_y*Ra_xz + Oma_z*Ra_xy
+            t904 = Aa_x*Ra_xz - Aa_z*Ra_xx + Oma_x*t900 - Oma_z*t903
+            t905 = -Aa_x*Ra_xy + Aa_y*Ra_xx - Oma_x*t901 + Oma_y*t903
+            t906 = -Oma_x*Ra_yy + Oma_y*Ra_yx
+            t907 = Oma_x*Ra_yz - Oma_z*Ra_yx
+            t908 = -Aa_y*Ra_yz + Aa_z*Ra_yy - Oma_y*t906 + Oma_z*t907
+            t909 = -Oma_y*Ra_yz + Oma_z*Ra_yy
+            t910 = Aa_x*Ra_yz - Aa_z*Ra_yx + Oma_x*t906 - Oma_z*t909
+            t911 = -Aa_x*Ra_yy + Aa_y*Ra_yx - Oma_x*t907 + Oma_y*t909
+            t912 = -Oma_x*Ra_zy + Oma_y*Ra_zx
+            t913 = Oma_x*Ra_zz - Oma_z*Ra_zx
+            t914 = -Aa_y*Ra_zz + Aa_z*Ra_zy - Oma_y*t912 + Oma_z*t913
+            t915 = -Oma_y*Ra_zz + Oma_z*Ra_zy
+            t916 = Aa_x*Ra_zz - Aa_z*Ra_zx + Oma_x*t912 - Oma_z*t915
+            t917 = -Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t913 + Oma_y*t915
+            g[3] = (e_x*(n1_x*t902 + n1_y*t904 + n1_z*t905) + e_y*(n1_x*t908 + n1_y*t910 +
+                n1_z*t911) + e_z*(n1_x*t914 + n1_y*t916 + n1_z*t917))
+            g[4] = (e_x*(n2_x*t902 + n2_y*t904 + n2_z*t905) + e_y*(n2_x*t908 + n2_y*t910 +
+                n2_z*t911) + e_z*(n2_x*t914 + n2_y*t916 + n2_z*t917))
         if task == TANGENT:
             c_place, c_constraint = coefficients[2], coefficients[4]
             J = matrices[element*WIDTH*WIDTH:(element + 1)*WIDTH*WIDTH]
@@ -110,50 +108,40 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
                 dtha_x = dq[0]
                 dtha_y = dq[1]
                 dtha_z = dq[2]
-                t12 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t13 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t14 = e_y*t12 - e_z*t13
-                t15 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t16 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t17 = e_y*t15 - e_z*t16
-                t18 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t19 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t20 = e_y*t18 - e_z*t19
-                t21 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t22 = -e_x*t12 + e_z*t21
-                t23 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t24 = -e_x*t15 + e_z*t23
-                t25 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t26 = -e_x*t18 + e_z*t25
-                t27 = e_x*t13 - e_y*t21
-                t28 = e_x*t16 - e_y*t23
-                t29 = e_x*t19 - e_y*t25
-                t30 = e_x*t21 + e_y*t13 + e_z*t12
-                t31 = e_x*t23 + e_y*t16 + e_z*t15
-                t32 = e_x*t25 + e_y*t19 + e_z*t18
-                J[0 + column] = (c_place*(lam_1*(n1_x*t14 + n1_y*t17 + n1_z*t20) + lam_2*(n2_x*t14
-                    + n2_y*t17 + n2_z*t20)))
-                J[5 + column] = (c_place*(lam_1*(n1_x*t22 + n1_y*t24 + n1_z*t26) + lam_2*(n2_x*t22
-                    + n2_y*t24 + n2_z*t26)))
-                J[10 + column] = (c_place*(lam_1*(n1_x*t27 + n1_y*t28 + n1_z*t29) +
-                    lam_2*(n2_x*t27 + n2_y*t28 + n2_z*t29)))
-                J[15 + column] = c_constraint*(n1_x*t30 + n1_y*t31 + n1_z*t32)
-                J[20 + column] = c_constraint*(n2_x*t30 + n2_y*t31 + n2_z*t32)
-            t700 = -Ra_xy*e_z + Ra_xz*e_y
-            t701 = -Ra_yy*e_z + Ra_yz*e_y
-            t702 = -Ra_zy*e_z + Ra_zz*e_y
-            t703 = Ra_xx*e_z - Ra_xz*e_x
-            t704 = Ra_yx*e_z - Ra_yz*e_x
-            t705 = Ra_zx*e_z - Ra_zz*e_x
-            t706 = -Ra_xx*e_y + Ra_xy*e_x
-            t707 = -Ra_yx*e_y + Ra_yy*e_x
-            t708 = -Ra_zx*e_y + Ra_zy*e_x
-            J[3] = c_constraint*(n1_x*t700 + n1_y*t701 + n1_z*t702)
-            J[8] = c_constraint*(n1_x*t703 + n1_y*t704 + n1_z*t705)
-            J[13] = c_constraint*(n1_x*t706 + n1_y*t707 + n1_z*t708)
-            J[4] = c_constraint*(n2_x*t700 + n2_y*t701 + n2_z*t702)
-            J[9] = c_constraint*(n2_x*t703 + n2_y*t704 + n2_z*t705)
-            J[14] = c_constraint*(n2_x*t706 + n2_y*t707 + n2_z*t708)
+                t0 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t1 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t2 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t3 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t4 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t5 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t6 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t7 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t8 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                J[0 + column] = (c_place*(lam_1*(e_x*(n1_y*t0 - n1_z*t1) + e_y*(n1_y*t2 - n1_z*t3)
+                    + e_z*(n1_y*t4 - n1_z*t5)) + lam_2*(e_x*(n2_y*t0 - n2_z*t1) + e_y*(n2_y*t2 -
+                    n2_z*t3) + e_z*(n2_y*t4 - n2_z*t5))))
+                J[5 + column] = (c_place*(lam_1*(e_x*(-n1_x*t0 + n1_z*t6) + e_y*(-n1_x*t2 +
+                    n1_z*t7) + e_z*(-n1_x*t4 + n1_z*t8)) + lam_2*(e_x*(-n2_x*t0 + n2_z*t6) +
+                    e_y*(-n2_x*t2 + n2_z*t7) + e_z*(-n2_x*t4 + n2_z*t8))))
+                J[10 + column] = (c_place*(lam_1*(e_x*(n1_x*t1 - n1_y*t6) + e_y*(n1_x*t3 -
+                    n1_y*t7) + e_z*(n1_x*t5 - n1_y*t8)) + lam_2*(e_x*(n2_x*t1 - n2_y*t6) +
+                    e_y*(n2_x*t3 - n2_y*t7) + e_z*(n2_x*t5 - n2_y*t8))))
+                J[15 + column] = (c_constraint*(e_x*(n1_x*t6 + n1_y*t1 + n1_z*t0) + e_y*(n1_x*t7 +
+                    n1_y*t3 + n1_z*t2) + e_z*(n1_x*t8 + n1_y*t5 + n1_z*t4)))
+                J[20 + column] = (c_constraint*(e_x*(n2_x*t6 + n2_y*t1 + n2_z*t0) + e_y*(n2_x*t7 +
+                    n2_y*t3 + n2_z*t2) + e_z*(n2_x*t8 + n2_y*t5 + n2_z*t4)))
+            J[3] = (c_constraint*(e_x*(-Ra_xy*n1_z + Ra_xz*n1_y) + e_y*(-Ra_yy*n1_z + Ra_yz*n1_y)
+                + e_z*(-Ra_zy*n1_z + Ra_zz*n1_y)))
+            J[8] = (c_constraint*(e_x*(Ra_xx*n1_z - Ra_xz*n1_x) + e_y*(Ra_yx*n1_z - Ra_yz*n1_x) +
+                e_z*(Ra_zx*n1_z - Ra_zz*n1_x)))
+            J[13] = (c_constraint*(e_x*(-Ra_xx*n1_y + Ra_xy*n1_x) + e_y*(-Ra_yx*n1_y + Ra_yy*n1_x)
+                + e_z*(-Ra_zx*n1_y + Ra_zy*n1_x)))
+            J[4] = (c_constraint*(e_x*(-Ra_xy*n2_z + Ra_xz*n2_y) + e_y*(-Ra_yy*n2_z + Ra_yz*n2_y)
+                + e_z*(-Ra_zy*n2_z + Ra_zz*n2_y)))
+            J[9] = (c_constraint*(e_x*(Ra_xx*n2_z - Ra_xz*n2_x) + e_y*(Ra_yx*n2_z - Ra_yz*n2_x) +
+                e_z*(Ra_zx*n2_z - Ra_zz*n2_x)))
+            J[14] = (c_constraint*(e_x*(-Ra_xx*n2_y + Ra_xy*n2_x) + e_y*(-Ra_yx*n2_y + Ra_yy*n2_x)
+                + e_z*(-Ra_zx*n2_y + Ra_zy*n2_x)))
             J[18] = 0.0
             J[19] = 0.0
             J[23] = 0.0

@@ -52,7 +52,7 @@ class State(NamedTuple):
     correction: NDArray
     matrix: NDArray         # entries, dense (n x n) or CSC, in body axes, scaled
     scale: NDArray          # of the unknowns: the matrix has a unit diagonal
-    weight: NDArray         # its inverse, zero for multipliers: the norm of a correction
+    weight: NDArray         # its inverse: corrections are measured in it, multipliers included
     inverse: NDArray        # (n, n) of small systems
     work: NDArray
     energy: NDArray
@@ -211,7 +211,7 @@ def equilibrate(system, state):
             state.scale[i] = 1.0 / np.sqrt(sums[i]) if sums[i] > 0.0 else 1.0
     floor = 0.0
     for i in range(n):
-        state.weight[i] = (1.0 - system.is_multiplier[i]) / state.scale[i]
+        state.weight[i] = 1.0 / state.scale[i]
         size = system.magnitude[i] * state.weight[i]
         floor += size * size
     state.clock[FLOOR] = 8.0 * 2.2e-16 * np.sqrt(floor)     # what rounding of positions leaves
@@ -317,10 +317,9 @@ def apply_correction(system, state, scheme):
     norm = size = 0.0
     for i in range(n):
         d = state.correction[i]
-        if system.is_multiplier[i] == 0.0:
-            norm += d * d
-            x = state.dq[i] * state.weight[i]
-            size += x * x
+        norm += d * d
+        x = (state.q[i] if system.is_multiplier[i] > 0.0 else state.dq[i]) * state.weight[i]
+        size += x * x
         state.correction[i] = d * state.scale[i]
     norm, size = np.sqrt(norm), np.sqrt(size)
     if not np.isfinite(norm):

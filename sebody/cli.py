@@ -1,0 +1,299 @@
+"""Command line: ``sebody run``, ``list``, ``check`` and ``warm``."""
+
+import argparse
+import ast
+import inspect
+import sys
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .errors import InputError, SimulationError
+
+if TYPE_CHECKING:
+    from sebody.scenes.scene import Scene
+
+    from .results import Result
+
+BAR = 40                # characters of the progress bar
+PATIENCE = 1.0          # seconds before it appears
+PROCESSES = 2           # that compile at the same time
+
+
+class Kernel(NamedTuple):
+    """A generated kernel as its file describes it."""
+
+    name: str           # of the file and module
+    layout: str         # empty for joints and loads
+    frame: str
+    inertia: str
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Those of the process by default.
+
+    Returns
+    -------
+    int
+        0, 1 when a run or a check fails, 2 when the input cannot be used.
+    """
+    options = _parser().parse_args(arguments)
+    try:
+        return options.command(options)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="sebody", description="Flexible multibody dynamics with superelements.")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    run = commands.add_parser("run", help="run a scene")
+    run.set_defaults(command=_run)
+    run.add_argument("scene", metavar="SCENE", help="name of a scene, see 'sebody list'")
+    run.add_argument("--output", type=Path, metavar="FILE.npz", help="save the histories")
+    run.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the standard picture")
+    run.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
+    run.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
+    run.add_argument("--rho", type=float, default=0.9, metavar="R",
+                     help="spectral radius of generalized-alpha at infinity (default 0.9)")
+    run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
+                     help="change a parameter of the scene; may be repeated")
+    listing = commands.add_parser("list", help="list scenes and kernels")
+    listing.set_defaults(command=_list)
+    check = commands.add_parser("check", help="test the consistency of kernels")
+    check.set_defaults(command=_check)
+    check.add_argument("kernels", nargs="*", metavar="KERNEL", help="all of them by default")
+    warm = commands.add_parser("warm", help="compile everything that is shipped")
+    warm.set_defaults(command=_warm)
+    return parser
+
+
+# run
+
+
+def _run(options: argparse.Namespace) -> int:
+    scene = _build(options.scene, options.changes)
+    _check_outputs(options)
+    print(f"{scene.name}: {scene.summary}")
+    try:
+        result, failure = _simulated(scene, options), ""
+    except SimulationError as error:
+        result, failure = error.result, str(error)
+    print(result.summary())
+    if options.output:
+        print(f"histories            {result.save(options.output)}")
+    if options.plot:
+        from .plot import save_picture
+        print(f"picture              {save_picture(result, options.plot, scene.base, scene.tip)}")
+    if failure:
+        print(f"error: {failure}", file=sys.stderr)
+    return 1 if failure else 0
+
+
+def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
+    from .integrator import generalized_alpha, simulate
+
+    h = scene.h if options.step is None else options.step
+    t_end = scene.t_end if options.t_end is None else options.t_end
+    if not 0.0 <= t_end < float("inf"):
+        raise InputError(f"the end time is {t_end}: give a number >= 0")
+    progress = Progress()
+    try:
+        return simulate(scene.model, h, t_end, generalized_alpha(options.rho), progress=progress)
+    finally:
+        progress.close()
+
+
+def _check_outputs(options: argparse.Namespace) -> None:
+    """Refuse files that cannot be written before the run, not after it."""
+    if options.output and options.output.suffix != ".npz":
+        raise InputError(f"output file {options.output} must end in .npz")
+    if options.output and not options.output.parent.is_dir():
+        raise InputError(f"folder {options.output.parent} of the output file does not exist: "
+                         "make it")
+    if options.plot:
+        from .plot import check_picture
+        check_picture(options.plot)
+
+
+def _build(name: str, changes: Sequence[str]) -> "Scene":
+    known = scenes()
+    if name not in known:
+        raise InputError(f"scene {name!r} is unknown: there are {', '.join(known)}")
+    build = import_module(f"sebody.scenes.{name.replace('-', '_')}").build
+    return build(**_parameters(name, build, changes))
+
+
+def _parameters(scene: str, build: Callable, changes: Sequence[str]) -> dict[str, Any]:
+    """Keyword arguments of a scene from ``NAME=VALUE``, of the type of their defaults."""
+    known = inspect.signature(build).parameters
+    existing = ", ".join(f"{p.name}={p.default}" for p in known.values()) or "none"
+    values = {}
+    for change in changes:
+        name, equals, text = change.partition("=")
+        if not equals:
+            raise InputError(f"cannot read --set {change}: write --set NAME=VALUE")
+        if name not in known:
+            raise InputError(f"scene {scene!r} has no parameter {name!r}: there are {existing}")
+        values[name] = _value(name, text, known[name].default)
+    return values
+
+
+def _value(name: str, text: str, default: Any) -> Any:
+    if isinstance(default, str):
+        return text
+    try:
+        value = ast.literal_eval(text)
+    except (ValueError, SyntaxError):
+        value = text
+    if isinstance(default, float) and type(value) is int:
+        value = float(value)
+    if default is None or type(value) is type(default):
+        return value
+    raise InputError(f"parameter {name} is {text!r}: give a value of type "
+                     f"{type(default).__name__}, such as {default}")
+
+
+class Progress:
+    """A bar on standard error, shown on a terminal when a run takes longer than a second."""
+
+    def __init__(self) -> None:
+        self.began = time.perf_counter()
+        self.shown = False
+
+    def __call__(self, fraction: float) -> None:
+        """Draw the part of the run that is done, between 0 and 1."""
+        if time.perf_counter() - self.began < PATIENCE or not sys.stderr.isatty():
+            return
+        done = round(BAR * fraction)
+        bar = "#" * done + "." * (BAR - done)
+        print(f"\r[{bar}] {100 * fraction:3.0f} %", end="", file=sys.stderr, flush=True)
+        self.shown = True
+
+    def close(self) -> None:
+        """End the line of the bar."""
+        if self.shown:
+            print(file=sys.stderr)
+
+
+# list
+
+
+def _list(options: argparse.Namespace) -> int:
+    print("scenes")
+    for name, summary in scenes().items():
+        print(f"  {name:24} {summary}")
+    found = kernels()
+    print("\nsuperelement kernels\n  layout         frame            inertia")
+    for kernel in found:
+        if kernel.layout:
+            print(f"  {kernel.layout:14} {kernel.frame:16} {kernel.inertia}")
+    print("\njoints and loads")
+    print("  " + ", ".join(k.name.removeprefix("element_") for k in found if not k.layout))
+    return 0
+
+
+def scenes() -> dict[str, str]:
+    """Names of the shipped scenes and the first lines of their descriptions; runs none of them."""
+    found = {}
+    for path in _files("sebody.scenes"):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        if any(isinstance(node, ast.FunctionDef) and node.name == "build" for node in tree.body):
+            lines = (ast.get_docstring(tree) or "").splitlines()
+            found[path.stem.replace("_", "-")] = lines[0] if lines else ""
+    return found
+
+
+def kernels() -> list[Kernel]:
+    """Kernels in the package and in the user's directory, read without compiling them."""
+    from .kernels import user_directory
+
+    paths = {path.stem: path for folder in (sorted(user_directory().glob("*.py")),
+                                            _files("sebody.generated")) for path in folder}
+    return [_describe(paths[name]) for name in sorted(paths)
+            if name.startswith(("superelement_", "element_"))]
+
+
+def _describe(path: Path) -> Kernel:
+    constants = {}
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
+            constants[node.targets[0].id] = node.value.value
+    return Kernel(path.stem, *(constants.get(k, "") for k in ("LAYOUT", "FRAME", "INERTIA")))
+
+
+def _files(package: str) -> list[Path]:
+    """Modules of a package, without importing them."""
+    folders = find_spec(package).submodule_search_locations
+    return sorted(p for folder in folders for p in Path(folder).glob("*.py") if p.stem[0] != "_")
+
+
+# check and warm
+
+
+def _check(options: argparse.Namespace) -> int:
+    from .check import check_kernels, format_table
+
+    rows = check_kernels(options.kernels or None)
+    print(format_table(rows))
+    return 0 if all(row.passed for row in rows) else 1
+
+
+def _warm(options: argparse.Namespace) -> int:
+    began = time.perf_counter()
+    names = [kernel.name for kernel in kernels()]
+    with ProcessPoolExecutor(PROCESSES) as pool:
+        for name, seconds in zip(names, pool.map(_compile, names), strict=True):
+            print(f"  {name:44} {seconds:6.1f} s", flush=True)
+    seconds = _compile_loop()
+    print(f"  {'time loop':44} {seconds:6.1f} s")
+    print(f"{len(names)} kernels and the time loop are compiled: "
+          f"{time.perf_counter() - began:.1f} s")
+    return 0
+
+
+def _compile(name: str) -> float:
+    """Import a kernel, which compiles it or reads it from Numba's cache."""
+    from .kernels import load
+
+    began = time.perf_counter()
+    load(name)
+    return time.perf_counter() - began
+
+
+def _compile_loop() -> float:
+    """Run a short spatial and a short planar scene, energies included."""
+    from sebody.scenes.hinged_beam import build
+
+    from .integrator import simulate
+
+    began = time.perf_counter()
+    for model in (build(elements=4).model, _planar_model()):
+        simulate(model, 0.01, 0.02).energy_balance()
+    return time.perf_counter() - began
+
+
+def _planar_model():
+    from sebody.scenes.hinged_beam import SECTION
+
+    from .fem import planar_beam
+    from .model import Model
+    from .reduction import craig_bampton
+
+    body = craig_bampton(planar_beam((0, 0), (100, 0), SECTION, 4), [(0, "full"), (4, "full")], 0)
+    model = Model(planar=True)
+    model.superelement("beam", body, [model.node("base", (0, 0)), model.node("tip", (100, 0))])
+    model.revolute("base")
+    model.force("tip", (0, 1))
+    return model
