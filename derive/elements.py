@@ -12,7 +12,7 @@ import sympy as sp
 from .elastic import _of
 from .rotations import skew
 from .stages import Quantity, Space
-from .variation import along, check_same, differential, turning
+from .variation import along, check_same, coefficients, differential, turning
 
 
 class Element(NamedTuple):
@@ -23,6 +23,7 @@ class Element(NamedTuple):
     space: Space
     constants: tuple[Quantity, ...]     # in the order of the constants row
     rotations: tuple[Quantity, ...]     # rotation matrices it reads
+    places: tuple[Quantity, ...]        # positions it reads, from its coordinates
     rates: tuple[Quantity, ...]         # velocities of its coordinates, block by block
     accelerations: tuple[Quantity, ...]
     directions: tuple[Quantity, ...]    # variations of its coordinates, block by block
@@ -71,7 +72,7 @@ def _constraint(name, summary, space, constants, R, rates, accelerations, dth, p
     for k, p in enumerate(phi):
         check_same("constraint force is the gradient", sp.Matrix([differential(p, vary)]),
                    sp.Matrix([gradient[:, k].dot(sp.Matrix.vstack(*[d.symbols for d in dth]))]))
-    return Element(name, summary, space, tuple(constants), tuple(R), tuple(rates),
+    return Element(name, summary, space, tuple(constants), tuple(R), (), tuple(rates),
                    tuple(accelerations), tuple(dth), lam, (*force, *phi), tuple(second),
                    tuple(linear), gradient)
 
@@ -83,6 +84,37 @@ def _turning_all(R, dth) -> dict:
     return rules
 
 
+def spherical(grounded: bool, planar: bool) -> Element:
+    """Spherical joint as an explicit constraint: a position stays with another, or where it is.
+
+    Sharing or fixing the position does the same with fewer unknowns; this form is for comparison.
+    """
+    space = Space(planar)
+    points = [space.quantity(f"x{b}", "vector", "element") for b in ("a" if grounded else "ab")]
+    ground = space.quantity("c", "vector", "element")
+    gap = points[0].symbols - (ground if grounded else points[1]).symbols
+    lam = sp.symbols(f"lam_1:{3 if planar else 4}")
+    phi = space.components("vector", gap)
+    parts = [[space.quantity(f"{kind}{p.name[1:]}", "vector", "element") for p in points]
+             for kind in ("v", "a", "dx")]
+    vary = {}
+    for point, d in zip(points, parts[2], strict=True):
+        vary |= along(point.symbols, d.symbols)
+    in_time = [along(p.symbols, v.symbols) for p, v in zip(points, parts[0], strict=True)]
+    in_time += [along(v.symbols, a.symbols) for v, a in zip(*parts[:2], strict=True)]
+    rates = {s: e for rule in in_time for s, e in rule.items()}
+    work = sum(f * differential(p, vary) for f, p in zip(lam, phi, strict=True))
+    kept = [s for d in parts[2] for s in d.kept]
+    force_ = sp.Matrix(coefficients(work, kept))
+    name = "planar_" * planar + "spherical" + "_ground" * grounded
+    return Element(
+        name, "spherical joint as an explicit constraint" + " to the ground" * grounded, space,
+        (ground,) if grounded else (), (), tuple(points), *map(tuple, parts), lam,
+        (*force_, *phi), tuple(differential(differential(p, rates), rates) for p in phi),
+        (*(sp.S.Zero for _ in force_), *(differential(p, vary) for p in phi)),
+        force_.jacobian(sp.Matrix(lam)))
+
+
 def force(planar: bool) -> Element:
     """Dead force on a position: fixed direction in space, amplitude from the load's history."""
     space = Space(planar)
@@ -90,7 +122,7 @@ def force(planar: bool) -> Element:
     amplitude = sp.Symbol("amplitude")
     push = space.components("vector", -amplitude * d.symbols)
     return Element("planar_force" if planar else "force", "dead force on a position", space, (d,),
-                   (), (v,), (a,), (dx,), (), tuple(push), (), tuple(sp.S.Zero for _ in push),
+                   (), (), (v,), (a,), (dx,), (), tuple(push), (), tuple(sp.S.Zero for _ in push),
                    sp.zeros(len(push), 0), amplitude * d.symbols.dot(v.symbols))
 
 
@@ -108,7 +140,7 @@ def torque(planar: bool) -> Element:
                -amplitude * skew(R.symbols.T * d.symbols) * dth.symbols, [R.symbols])
     kept = space.components("axial", material)
     return Element("planar_torque" if planar else "torque", "dead torque on a rotation", space,
-                   (d,), () if planar else (R,), (Om,), (A,), (dth,), (), tuple(kept), (),
+                   (d,), () if planar else (R,), (), (Om,), (A,), (dth,), (), tuple(kept), (),
                    tuple(space.components("axial", linear)), sp.zeros(len(kept), 0),
                    amplitude * (R.symbols * Om.symbols).dot(d.symbols))
 
@@ -116,6 +148,10 @@ def torque(planar: bool) -> Element:
 ELEMENTS = {
     "revolute_ground": lambda: revolute(True),
     "revolute": lambda: revolute(False),
+    "spherical_ground": lambda: spherical(True, False),
+    "spherical": lambda: spherical(False, False),
+    "planar_spherical_ground": lambda: spherical(True, True),
+    "planar_spherical": lambda: spherical(False, True),
     "force": lambda: force(False),
     "torque": lambda: torque(False),
     "planar_force": lambda: force(True),

@@ -67,7 +67,7 @@ def _loads(element: Element, coordinates: int) -> list[str]:
         lines += [f"{s} = R[9*nodes[{j}] + {k}]" for k, s in enumerate(rotation.symbols)]
     used = set().union(*(sp.sympify(e).free_symbols for e in (
         *element.residual, *element.second, element.power or sp.S.Zero)))
-    for array, group in (("v", element.rates), ("a", element.accelerations)):
+    for array, group in (("q", element.places), ("v", element.rates), ("a", element.accelerations)):
         at = 0
         for quantity in group:
             lines += [f"{s} = {array}[unknowns[{at + k}]]" for k, s in enumerate(quantity.kept)

@@ -17,4 +17,6 @@ SUPERELEMENTS = (
     ("planar-f2", "positions", "b"),
     ("planar-f3", "converged_mean", "b"),
 )
-ELEMENTS = ("revolute_ground", "revolute", "force", "torque", "planar_force", "planar_torque")
+ELEMENTS = ("revolute_ground", "revolute", "spherical_ground", "spherical",
+            "planar_spherical_ground", "planar_spherical", "force", "torque", "planar_force",
+            "planar_torque")

@@ -76,7 +76,7 @@ def number(model: Model) -> Numbering:
 
     def place_joints() -> None:
         for k, joint in enumerate(model.joints):
-            if k not in multipliers and all(id(r) in seen for r in joint.rotations):
+            if k not in multipliers and all(id(t) in seen for t in joint.triplets):
                 multipliers[k] = len(names)
                 names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
 
@@ -202,12 +202,13 @@ def _joint_batches(model: Model, numbering: Numbering, constants: list) -> list[
     batches: dict[str, Batch] = {}
     at = sum(map(len, constants))
     for k, joint in enumerate(model.joints):
-        unknowns = [c for t in joint.rotations for c in _coordinates(numbering, t)]
+        unknowns = [c for t in joint.triplets for c in _coordinates(numbering, t)]
         first = numbering.multipliers[k]
         unknowns += range(first, first + joint.multipliers)
         batch = batches.setdefault(joint.kind, Batch(element_kernel(joint.kind), len(unknowns),
                                                      [], []))
-        nodes = [numbering.rotations[id(t)] for t in joint.rotations]
+        nodes = [numbering.rotations[id(t)] for t in joint.triplets
+                 if id(t) in numbering.rotations]
         batch.rows.append([at, 0, len(unknowns), *nodes, *unknowns])
         batch.unknowns.append(unknowns)
         constants.append(joint.constants)

@@ -194,8 +194,8 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         frames_old=frames.copy(), dq=zeros(total), T=np.tile(np.eye(3).ravel(), turns),
         loads=zeros(max(len(model.loads), 1)), coefficients=zeros(5),
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])), residual=zeros(total),
-        correction=zeros(total), matrix=zeros(system.rows.size + 1), scale=zeros(total), weight=zeros(total),
-        inverse=zeros((n, n) if dense else (1, 1)), work=zeros(work_size(model)),
+        correction=zeros(total), matrix=zeros(system.rows.size + 1), scale=zeros(total),
+        weight=zeros(total), inverse=zeros((n, n) if dense else (1, 1)), work=zeros(work_size(model)),
         energy=zeros(ENERGIES), clock=clock, control=control)
 
 

@@ -68,11 +68,11 @@ class Superelement:
 
 @dataclass(eq=False)
 class Joint:
-    """Constraint equations between rotation triplets, or to the ground."""
+    """Constraint equations between triplets of one kind, or to the ground."""
 
     name: str
     kind: str
-    rotations: tuple[Triplet, ...]
+    triplets: tuple[Triplet, ...]
     constants: NDArray
     multipliers: int
 
@@ -237,6 +237,28 @@ class Model:
         kind = "revolute_ground" if to is None else "revolute"
         constants = np.concatenate([e, first, np.cross(e, first)])
         self.joints.append(Joint(f"{kind} at {node.name}", kind, rotations, constants, 2))
+
+    def spherical(self, node: Node | str, to: Node | str | None = None) -> None:
+        """Spherical joint as an explicit constraint with a multiplier a direction.
+
+        For comparison: `fix(node, "position")`, or a second node made with ``at=``, is the same
+        joint with fewer unknowns.
+        """
+        node = self._known(node)
+        position = self._triplet(node, "position")
+        triplets, constants = (position,), node.point
+        if to is not None:
+            to = self._known(to)
+            if np.abs(to.point - node.point).max() > 1e-9 * max(1.0, np.abs(node.point).max()):
+                raise InputError(f"spherical joint: nodes {node.name!r} and {to.name!r} start "
+                                 "apart: give both the same point")
+            triplets, constants = (position, self._triplet(to, "position")), np.zeros(0)
+            if triplets[0] is triplets[1]:
+                raise InputError(f"spherical joint: nodes {node.name!r} and {to.name!r} share "
+                                 "their position already: leave the joint out")
+        kind = self._kind("spherical_ground" if to is None else "spherical")
+        self.joints.append(Joint(f"{kind} at {node.name}", kind, triplets, constants,
+                                 self.dimension))
 
     def force(self, node: Node | str, direction: ArrayLike,
               amplitude: ArrayLike | Callable[[float], float] | History | None = None) -> None:
