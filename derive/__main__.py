@@ -12,7 +12,6 @@ import sys
 from pathlib import Path
 
 import sebody.generated
-
 from sebody.kernels import user_directory
 
 from .elements import ELEMENTS
@@ -69,7 +68,7 @@ def write(directory: Path, files: dict[str, str]) -> list[str]:
     return changed
 
 
-def differences(directory: Path, files: dict[str, str]) -> list[str]:
+def differences(directory: Path, files: dict[str, str], orphans: bool = True) -> list[str]:
     """What `--check` prints: diffs of stale files, names of missing and orphaned ones."""
     out = []
     for name, text in files.items():
@@ -80,7 +79,7 @@ def differences(directory: Path, files: dict[str, str]) -> list[str]:
             out.append(f"stale: {name} (run python -m sebody.derive)")
             out += difflib.unified_diff(path.read_text().splitlines(), text.splitlines(),
                                         f"generated/{name}", f"derived/{name}", lineterm="", n=1)
-    for path in sorted(directory.glob("*.py")):
+    for path in sorted(directory.glob("*.py")) if orphans else ():
         if path.name.startswith(KERNEL_PREFIXES) and path.name not in files:
             out.append(f"orphaned: {path.name} is not in derive/manifest.py: add it or delete it")
     return out
@@ -107,7 +106,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"error: {error}", file=sys.stderr)
         return 2
     if options.check:
-        found = differences(directory, files)
+        found = differences(directory, files, orphans=not options.layouts)
         print("\n".join(found) if found else f"{len(files)} kernels are up to date")
         return 1 if found else 0
     changed = write(directory, files)

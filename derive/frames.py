@@ -217,12 +217,15 @@ def positions(q: Quantities) -> Frame:
             "best_fit(N_POSITIONS, fits, X, alphas, qe, frame)")
     lines = (f"status = {call}", "if status != 0:", "    return status")
     work = q.wp.symbols.dot(equation(q.dth0, q.dx, q.dx0))
-    psi_lines = ("relative_rotations(N_ROTATIONS, nodes, R, frame, y[ROTATIONS:])",)
+    relative = ("planar_relative_angles(N_ROTATIONS, qe[ROTATIONS:], frame, y[ROTATIONS:])"
+                if q.space.planar else
+                "relative_rotations(N_ROTATIONS, nodes, R, frame, y[ROTATIONS:])")
+    psi_lines = (f"status = {relative}", "if status != 0:", "    return status")
     return Frame(
         "positions", "rotation of best fit of the node positions",
         (Text("rotation of the frame: best fit of the positions", lines,
               (call.split("(")[0],), operations=300),
-         Text("elastic rotations, (11)", psi_lines, ("relative_rotations",), operations=60),
+         Text("elastic rotations, (11)", psi_lines, (relative.split("(")[0],), operations=60),
          *inverse_tangent_values(q, q.psi, ("e0", "e1"))),
         angular_rate,
         (_pull_back(q, fit * cross(r, cross(X, q.wp.symbols)), equation(q.wp, q.dx, q.dx0),

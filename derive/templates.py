@@ -148,6 +148,7 @@ from sebody.abi import {tasks}
 
 N_ROTATIONS = {rotations}
 N_CONSTANTS = {constants}
+MULTIPLIERS = {multipliers}
 WIDTH = {width}
 WORK_ROWS = 1
 OPERATIONS = {{"residual": ({residual_operations}, 0), "column": ({column_operations}, 0)}}

@@ -1,11 +1,11 @@
 """The paper's hinged beam (section 8.1): one superelement spun up by a torque at its hinge."""
 
 import numpy as np
-from sebody.scenes.scene import Scene
 
 from sebody import Model
 from sebody.fem import Section, straight_beam
 from sebody.reduction import craig_bampton
+from sebody.scenes.scene import Scene
 
 SECTION = Section(area=9.0, inertia_y=6.75, inertia_z=6.75, torsion=11.387,
                   youngs_modulus=2.1e6, poisson_ratio=0.3, density=7.8e-3)

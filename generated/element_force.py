@@ -12,6 +12,7 @@ from sebody.abi import ENERGY, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 0
 N_CONSTANTS = 3
+MULTIPLIERS = 0
 WIDTH = 3
 WORK_ROWS = 1
 OPERATIONS = {"residual": (6, 0), "column": (0, 0)}

@@ -12,6 +12,7 @@ from sebody.abi import ACCELERATION, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 0
 N_CONSTANTS = 0
+MULTIPLIERS = 2
 WIDTH = 6
 WORK_ROWS = 1
 OPERATIONS = {"residual": (4, 0), "column": (2, 0)}

@@ -12,6 +12,7 @@ from sebody.abi import ACCELERATION, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 0
 N_CONSTANTS = 2
+MULTIPLIERS = 2
 WIDTH = 4
 WORK_ROWS = 1
 OPERATIONS = {"residual": (2, 0), "column": (0, 0)}

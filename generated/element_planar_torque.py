@@ -12,6 +12,7 @@ from sebody.abi import ENERGY, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 0
 N_CONSTANTS = 1
+MULTIPLIERS = 0
 WIDTH = 1
 WORK_ROWS = 1
 OPERATIONS = {"residual": (2, 0), "column": (0, 0)}

@@ -12,6 +12,7 @@ from sebody.abi import ACCELERATION, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 2
 N_CONSTANTS = 9
+MULTIPLIERS = 2
 WIDTH = 8
 WORK_ROWS = 1
 OPERATIONS = {"residual": (214, 0), "column": (478, 0)}

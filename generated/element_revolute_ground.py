@@ -12,6 +12,7 @@ from sebody.abi import ACCELERATION, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 1
 N_CONSTANTS = 9
+MULTIPLIERS = 2
 WIDTH = 5
 WORK_ROWS = 1
 OPERATIONS = {"residual": (133, 0), "column": (160, 0)}

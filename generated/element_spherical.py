@@ -12,6 +12,7 @@ from sebody.abi import ACCELERATION, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 0
 N_CONSTANTS = 0
+MULTIPLIERS = 3
 WIDTH = 9
 WORK_ROWS = 1
 OPERATIONS = {"residual": (6, 0), "column": (3, 0)}

@@ -12,6 +12,7 @@ from sebody.abi import ACCELERATION, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 0
 N_CONSTANTS = 3
+MULTIPLIERS = 3
 WIDTH = 6
 WORK_ROWS = 1
 OPERATIONS = {"residual": (3, 0), "column": (0, 0)}

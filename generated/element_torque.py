@@ -12,6 +12,7 @@ from sebody.abi import ENERGY, HEADER, HUGE, SIGNATURE, TANGENT
 
 N_ROTATIONS = 1
 N_CONSTANTS = 3
+MULTIPLIERS = 0
 WIDTH = 3
 WORK_ROWS = 1
 OPERATIONS = {"residual": (21, 0), "column": (48, 0)}

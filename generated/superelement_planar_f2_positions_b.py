@@ -13,8 +13,7 @@ from numba import carray, cfunc
 
 from sebody.abi import ENERGY, HEADER, HUGE, SIGNATURE, TANGENT
 from sebody.dense import symmetric_product
-from sebody.locate import planar_fit
-from sebody.rotations import relative_rotations
+from sebody.locate import planar_fit, planar_relative_angles
 
 LAYOUT = "planar-f2"
 FRAME = "positions"
@@ -29,14 +28,10 @@ OPERATIONS = {"residual": (569, 3),
               "column": (226, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "exp_map": "833cbc6b09c9",
-    "log_map": "2d5d06a001d3",
+    "_wrapped": "9f134bd0b6fc",
     "planar_fit": "41e1b300b9fe",
-    "relative_log": "9c938be62c7a",
-    "relative_rotations": "d4201b2363c1",
-    "stumpff_23": "cb6d47703394",
+    "planar_relative_angles": "1884dea5c9b3",
     "symmetric_product": "780d88034cec",
-    "turn": "dadd9bd35a76",
 }
 
 
@@ -107,7 +102,9 @@ def kernel(task, count, stride, width, index_, constants_, q_, R_, v_, a_, refer
             return status
         R0_cos, R0_sin = frame[0], frame[3]
         # elastic rotations, (11)
-        relative_rotations(N_ROTATIONS, nodes, R, frame, y[ROTATIONS:])
+        status = planar_relative_angles(N_ROTATIONS, qe[ROTATIONS:], frame, y[ROTATIONS:])
+        if status != 0:
+            return status
         # displacement of the nodes in the frame, (11)
         for i in range(N_POSITIONS):
             i3 = 2*i

@@ -103,6 +103,8 @@ class Simulation:
         self.state.control[loop.RECORDED] = 0
         loop.write_record(self.state, first)
         self.records.append(first)
+        # nothing to do yet: compiles the loop, or reads it from the cache, before time is measured
+        loop.advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
 
     @property
     def time(self) -> float:
@@ -119,8 +121,8 @@ class Simulation:
             When a step does not converge however small; what was computed is kept, also in the
             error's `result`.
         """
-        last = int(round(t_end / self.h))
-        if not np.isfinite(t_end) or last < self.state.control[loop.GRID]:
+        last = int(round(t_end / self.h)) if np.isfinite(t_end) else -1
+        if last < self.state.control[loop.GRID]:
             raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
         steps = last // self.every - self.state.control[loop.GRID] // self.every
         record = _record(self.system, self.state, int(steps), self.every)
@@ -195,8 +197,8 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         loads=zeros(max(len(model.loads), 1)), coefficients=zeros(5),
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])), residual=zeros(total),
         correction=zeros(total), matrix=zeros(system.rows.size + 1), scale=zeros(total),
-        weight=zeros(total), inverse=zeros((n, n) if dense else (1, 1)), work=zeros(work_size(model)),
-        energy=zeros(ENERGIES), clock=clock, control=control)
+        weight=zeros(total), inverse=zeros((n, n) if dense else (1, 1)),
+        work=zeros(work_size(model)), energy=zeros(ENERGIES), clock=clock, control=control)
 
 
 def _start(system: System, numbering: Numbering, state: State) -> None:

@@ -26,12 +26,12 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
             x += alpha[j] * psi[3 * j]
             y += alpha[j] * psi[3 * j + 1]
             z += alpha[j] * psi[3 * j + 2]
-        if x * x + y * y + z * z < 1e-31:
+        if x * x + y * y + z * z < 1e-30:
             return 0
         x, y, z = _mean_step(count, alpha, psi, x, y, z)
         turn(frame, 0, x, y, z, frame, 0)
-        if x * x + y * y + z * z < 1e-31:
-            return 0
+        if x * x + y * y + z * z < 1e-16:       # Newton: what is left is of the square of that
+            return relative_rotations(count, nodes, R, frame, psi)
     return NO_FRAME
 
 
@@ -115,7 +115,7 @@ def best_fit(count, fit, X, alpha, x, frame):
         if not size < 4.0:
             return NO_FRAME
         turn(frame, 0, px, py, pz, frame, 0)
-        if size < 1e-30:
+        if size < 1e-16:        # Newton: what is left is of the square of that
             return 0
     return NO_FRAME
 
@@ -141,4 +141,19 @@ def planar_fit(count, fit, X, alpha, x, frame):
     return 0
 
 
-__all__ = ["HALF_TURN", "NO_FRAME", "NEAR_PI"]
+@njit(cache=True, error_model="numpy")
+def planar_relative_angles(count, angles, frame, psi):
+    """Angles of the nodes in a frame, between -pi and pi."""
+    mean = math.atan2(frame[3], frame[0])
+    for j in range(count):
+        psi[j] = _wrapped(angles[j] - mean)
+        if not math.cos(psi[j]) > NEAR_PI:
+            return HALF_TURN
+    return 0
+
+
+
+@njit(cache=True, error_model="numpy")
+def _wrapped(angle):
+    """The angle less full turns, between -pi and pi."""
+    return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)

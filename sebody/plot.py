@@ -68,9 +68,7 @@ def save_picture(result: "Result", path: str | Path, base: str, tip: str) -> Pat
     """
     check_picture(path)
     start, end = _spatial(result[f"{base}.position"]), _spatial(result[f"{tip}.position"])
-    turns = result.model.nodes[base].rotation is not None
-    rates = result[f"{base}.angular_velocity" if turns else f"{tip}.velocity"]
-    title = f"angular velocity of the {base}" if turns else f"velocity of the {tip}"
+    title, rates = _rates(result, base, tip)
 
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -83,6 +81,13 @@ def save_picture(result: "Result", path: str | Path, base: str, tip: str) -> Pat
         _draw_path(figure, start, end, base, tip)
         figure.savefig(path, dpi=150, bbox_inches="tight", pad_inches=0.1)
     return Path(path)
+
+
+def _rates(result: "Result", base: str, tip: str) -> tuple[str, NDArray]:
+    """What the left picture shows: its title and values."""
+    if result.model.nodes[base].rotation is None:
+        return f"velocity of the {tip}", result[f"{tip}.velocity"]
+    return f"angular velocity of the {base}", result[f"{base}.angular_velocity"]
 
 
 def _spatial(points: NDArray) -> NDArray:

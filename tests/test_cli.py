@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sebody.scenes import hinged_beam
 
 from sebody import cli, errors
+from sebody.scenes import hinged_beam
 
 ROOT = Path(__file__).parents[1]
 KEYS = {"t": (51,), "base.angular_velocity": (51, 3), "tip.position": (51, 3),

@@ -12,6 +12,7 @@ from sebody.reduction import craig_bampton
 EXACT = generalized_alpha(tolerance=1e-13)
 TURN = Rotation.from_rotvec([0.7, -0.4, 0.9]).as_matrix()
 SHIFT = np.array([30.0, -20.0, 50.0])
+IDENTITY, ZERO = np.eye(3), np.zeros(3)
 PULSE = [(0.0, 0.0), (0.2, 1.0), (0.5, 0.0)]
 FRAMES = ["converged_mean", "node", "positions"]
 
@@ -23,7 +24,7 @@ def section(length=1.0, mass=1.0, time=1.0):
                    2.1e6 * stress, 0.3, 7.8e-3 * mass / length**3)
 
 
-def scene(kind="converged_mean", place=np.eye(3), shift=np.zeros(3), axes=np.eye(3), order=(0, 1),
+def scene(kind="converged_mean", place=IDENTITY, shift=ZERO, axes=IDENTITY, order=(0, 1),
           units=(1.0, 1.0, 1.0)):
     """A free body thrown and twisted by dead loads; `place` turns the whole scene.
 

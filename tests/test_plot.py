@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from sebody.scenes import box, hinged_beam, spherical_beam_strong
 
 from sebody import InputError, plot, simulate
+from sebody.scenes import box, hinged_beam, spherical_beam_strong
 
 
 @pytest.fixture

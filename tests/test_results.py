@@ -4,11 +4,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from sebody.scenes.hinged_beam import SECTION, build
 
 from sebody import InputError, Model, SimulationError, simulate
 from sebody.fem import planar_beam, straight_beam
 from sebody.reduction import craig_bampton
+from sebody.scenes.hinged_beam import SECTION, build
 
 
 @cache
