@@ -186,6 +186,7 @@ class Model:
             raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
         placed = body if rotation is None else body.rotated(np.asarray(rotation, dtype=float))
         self._check_place(name, placed, nodes)
+        _check_frame(name, placed, frame)
         alpha, alpha_r = body_weights(placed)
         if frame == "node":
             alpha, alpha_r = _weights_of_node(name, placed, frame_node)
@@ -345,6 +346,22 @@ class Model:
             raise InputError(f"superelement {name!r}: the nodes do not lie where the body's "
                              f"boundary nodes are (off by {error:.3g} after the best shift): pass "
                              "rotation=, the matrix that turns FE axes into global axes")
+
+
+def _check_frame(name: str, body: ReducedBody, frame: str) -> None:
+    """Refuse a frame that the kept triplets cannot define."""
+    if frame != "positions":
+        if not body.rotation_nodes:
+            raise InputError(f"superelement {name!r} keeps no rotation, so its frame cannot be "
+                             f"{frame!r}: use frame='positions'")
+        return
+    points = body.coordinates[list(body.position_nodes)]
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if len(points) < body.coordinates.shape[1] or (
+            spread[body.coordinates.shape[1] - 2] < 1e-6 * max(spread[0], 1e-300)):
+        raise InputError(f"superelement {name!r}: the nodes that keep their position lie on a "
+                         "line, so the frame 'positions' cannot see rotations about it: use "
+                         "'converged_mean', or keep a node off the line")
 
 
 def layout_name(body: ReducedBody) -> str:

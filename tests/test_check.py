@@ -43,7 +43,7 @@ def test_check_notices_a_wrong_kernel(criterion, monkeypatch):
     def wrong(case, task, coefficients=(0, 0, 0, 1, 1)):
         g, J, energy = right(case, task, coefficients)
         g[2] *= 1.0 + 1e-5 * (1 + case.q[2] ** 2)
-        J[2, 3] *= 1.00002
+        J[2, 3] *= 1.001
         return g, J, energy
     assert criterion(case) <= check.LIMIT
     monkeypatch.setattr(check, "evaluate", wrong)
