@@ -199,6 +199,9 @@ def _list(options: argparse.Namespace) -> int:
     for kernel in found:
         if kernel.layout:
             print(f"  {kernel.layout:14} {kernel.frame:16} {kernel.inertia}")
+    print("  frame 'node' is the converged_mean kernel with all weight on one node\n"
+          "  inertia a: angular velocities in frame axes, b: material\n"
+          "  other layouts: python -m sebody.derive LAYOUT")
     print("\njoints and loads")
     print("  " + ", ".join(k.name.removeprefix("element_") for k in found if not k.layout))
     return 0

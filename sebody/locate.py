@@ -110,6 +110,8 @@ def best_fit(count, fit, X, alpha, x, frame):
             yz += 0.5 * w * (v * t + z * s)
         yx, zx, zy = -xy, -xz, -yz
         a, b, c, d, e, f, g, h, i = inverse_3(yy + zz, -xy, -xz, yx, xx + zz, -yz, zx, zy, xx + yy)
+        if not (abs(a) + abs(e) + abs(i)) * (xx + yy + zz) < 1e12:      # the nodes lie on a line
+            return NO_FRAME
         px, py, pz = a * mx + b * my + c * mz, d * mx + e * my + f * mz, g * mx + h * my + i * mz
         size = px * px + py * py + pz * pz
         if not size < 4.0:
