@@ -23,7 +23,7 @@ def test_converged_mean(count):
                                  frame, psi) == 0
     assert np.abs(weights @ psi.reshape(-1, 3)).max() < 1e-14
     root = fsolve(lambda r: weights @ ((base * Rotation.from_rotvec(r)).inv() * nodes).as_rotvec(),
-                  np.zeros(3), xtol=1e-14)
+                  np.zeros(3), xtol=1e-12)
     expected = (base * Rotation.from_rotvec(root)).as_matrix()
     assert np.abs(frame.reshape(3, 3) - expected).max() < 1e-10
 
