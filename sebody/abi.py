@@ -30,6 +30,7 @@ turns the variation of the step's increment into that of the rotation.
 
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 RESIDUAL, TANGENT, ENERGY, ACCELERATION = range(4)
@@ -59,3 +60,21 @@ def call_kernel(typingctx, address, task, count, stride, width, arrays):
                             scalars + pointers)
 
     return signature, codegen
+
+
+@intrinsic
+def borrowed(typingctx, arrays):
+    """The same tuple of arrays without ownership: no reference counting in the loop's inner parts.
+
+    The caller keeps the arrays alive; counting costs as much as a small element otherwise.
+    """
+    def codegen(context, builder, sig, args):
+        whole = args[0]
+        for k, kind in enumerate(sig.args[0]):
+            array = context.make_array(kind)(context, builder, builder.extract_value(whole, k))
+            array.meminfo = cgutils.get_null_value(array.meminfo.type)
+            array.parent = cgutils.get_null_value(array.parent.type)
+            whole = builder.insert_value(whole, array._getvalue(), k)
+        return whole
+
+    return arrays(arrays), codegen

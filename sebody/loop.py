@@ -15,7 +15,7 @@ from numba import njit, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from .abi import ENERGIES, ENERGY, RESIDUAL, TANGENT, call_kernel
+from .abi import ENERGIES, ENERGY, RESIDUAL, TANGENT, borrowed, call_kernel
 from .rotations import tangent_operator, turn
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
@@ -117,7 +117,7 @@ def run_kernels(task, first, last, system, state):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def set_loads(system, state, t):
     """Amplitudes of the loads at a time."""
     for k in range(system.load_function.size):
@@ -272,7 +272,7 @@ def begin_step(system, state, scheme):
     state.clock[LAST_NORM] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def set_coefficients(state, scheme, h):
     """Derivatives of acceleration and velocity by the increment."""
     state.coefficients[0] = (1 - scheme.alpha_m) / ((1 - scheme.alpha_f) * scheme.beta * h * h)
@@ -455,6 +455,7 @@ def cut_step(state, reason):
 @njit(cache=True, error_model="numpy")
 def advance(system, state, record, scheme, last_grid, chunk, dense):
     """Run until `last_grid`, for at most `chunk` steps, or until Python is asked for something."""
+    system, state, record = borrowed(system), borrowed(state), borrowed(record)
     control, clock = state.control, state.clock
     n = system.diagonal.size
     steps = 0
