@@ -28,9 +28,9 @@ def inverse_tangent(psi):
 
 
 class PaperMatrices:
-    """The matrices of (59)-(63) for two full nodes, from the state alone."""
+    """The matrices of (47)-(51) and (59)-(63) for two full nodes, from the state alone."""
 
-    def __init__(self, case):
+    def __init__(self, case, option="b"):
         n = case.n
         alpha = case.constants[4:6]
         self.M = case.constants[-n * n:].reshape(n, n)
@@ -45,16 +45,19 @@ class PaperMatrices:
         self.P, self.V, self.V1 = np.eye(n), np.zeros((n, 3)), np.zeros((n, 3))
         self.O0, self.OB, self.last = (np.zeros((n, n)) for _ in range(3))
         Om0 = self.U @ case.v
+        self.option = option
         for i in (0, 3):
             self.P[i:i + 3, i:i + 3] = R0.T
+        for j, R in zip((6, 9), nodes.as_matrix() if option == "a" else (), strict=False):
+            self.P[j:j + 3, j:j + 3] = R0.T @ R
         ydot = self.P @ case.v
         p = self.M @ ydot
-        for i in (0, 3):
+        for i in (0, 3, 6, 9) if option == "a" else (0, 3):
             self.V[i:i + 3] = skew(ydot[i:i + 3])
             self.V1[i:i + 3] = -skew(p[i:i + 3])
             self.O0[i:i + 3, i:i + 3] = skew(Om0)
         for j in (6, 9):
-            self.OB[j:j + 3, j:j + 3] = skew(case.v[j:j + 3])
+            self.OB[j:j + 3, j:j + 3] = skew(ydot[j:j + 3])
             self.last[j:j + 3, j:j + 3] = skew(p[j:j + 3])
 
     def pseudo_damping(self, sign_V1=1.0, last_transposed=False):
@@ -63,34 +66,45 @@ class PaperMatrices:
         C1 = P.T @ (self.O0 @ M + M @ self.O0.T) @ P
         C2 = (P.T @ (M @ V + V1) @ U
               - U.T @ (V1.T + V.T @ M) @ (P.T if last_transposed else P))
-        return C1 + C2 + self.OB @ M @ P - self.last
+        C3 = (self.OB @ M @ P - self.last if self.option == "b" else
+              P.T @ (self.last - self.OB @ M) @ P)
+        return C1 + C2 + C3
 
 
-@pytest.fixture(scope="module")
-def state():
-    case = check.superelement_case(load(KERNEL), 11)
+@pytest.fixture(scope="module", params=["a", "b"])
+def state(request):
+    case = check.superelement_case(load(KERNEL[:-1] + request.param), 11)
     differences = [(check.evaluate(case._replace(v=case.v + d), 0)[0]
                     - check.evaluate(case._replace(v=case.v - d), 0)[0]) / 2
                    for d in np.eye(case.n)]
-    return case, PaperMatrices(case), np.array(differences).T
+    return case, PaperMatrices(case, request.param), np.array(differences).T
 
 
 def test_erratum_4_velocity_tangent(state):
-    """(62), (63): the last factor of C2 is P, and V1 is minus the skew matrix of the momentum."""
+    """(50)-(51), (62)-(63): the last factor of C2 is P, V1 is minus the skew of the momentum."""
     _, paper, exact = state
     assert check.difference(paper.pseudo_damping(), exact) < 1e-7
     assert check.difference(paper.pseudo_damping(sign_V1=-1.0), exact) > 1e-2
     assert check.difference(paper.pseudo_damping(last_transposed=True), exact) > 1e-2
 
 
-def test_mass_60(state):
+def test_erratum_4_last_term_of_C3(state):
+    """(50): the last term is P^T diag(skew(p_psi)) P; printed without transpose and right P."""
+    _, paper, exact = state
+    if paper.option == "a":
+        printed = (paper.pseudo_damping() - paper.P.T @ paper.last @ paper.P
+                   + paper.P @ paper.last)
+        assert check.difference(printed, exact) > 1e-2
+
+
+def test_mass_48_60(state):
     case, paper, _ = state
     J = check.evaluate(case, 1, (1, 0, 0, 1, 1))[1]
     assert check.difference(J, paper.P.T @ paper.M @ paper.P) < 1e-12
 
 
 def test_erratum_1_power_balance(state):
-    """(57): with the frame term -U^T V^T Mbar ydot the force does the work that T gains."""
+    """(45), (57): with the frame term -U^T V^T Mbar ydot the force does the work T gains."""
     case, paper, _ = state
     case = check.without(case, "stiffness")
     power = check.evaluate(case, 0)[0] @ case.v
