@@ -92,7 +92,7 @@ def best_fit(count, fit, X, alpha, x, frame):
         cy += alpha[j] * x[3 * j + 1]
         cz += alpha[j] * x[3 * j + 2]
     for _ in range(50):
-        mx = my = mz = xx = xy = xz = yx = yy = yz = zx = zy = zz = 0.0
+        mx = my = mz = xx = xy = xz = yy = yz = zz = 0.0
         for j in range(count):
             a, b, c = x[3 * j] - cx, x[3 * j + 1] - cy, x[3 * j + 2] - cz
             r = frame[0] * a + frame[3] * b + frame[6] * c
@@ -108,18 +108,34 @@ def best_fit(count, fit, X, alpha, x, frame):
             xy += 0.5 * w * (u * s + v * r)
             xz += 0.5 * w * (u * t + z * r)
             yz += 0.5 * w * (v * t + z * s)
-        yx, zx, zy = -xy, -xz, -yz
-        a, b, c, d, e, f, g, h, i = inverse_3(yy + zz, -xy, -xz, yx, xx + zz, -yz, zx, zy, xx + yy)
-        if not (abs(a) + abs(e) + abs(i)) * (xx + yy + zz) < 1e12:      # the nodes lie on a line
-            return NO_FRAME
-        px, py, pz = a * mx + b * my + c * mz, d * mx + e * my + f * mz, g * mx + h * my + i * mz
+        px, py, pz, definite = _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz)
         size = px * px + py * py + pz * pz
-        if not size < 4.0:
+        if not size < 16.0:
             return NO_FRAME
         turn(frame, 0, px, py, pz, frame, 0)
-        if size < 1e-16:        # Newton: what is left is of the square of that
+        if definite and size < 1e-16:       # Newton: what is left is of the square of that
             return 0
     return NO_FRAME
+
+
+@njit(cache=True, error_model="numpy")
+def _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz):
+    """Turn towards the best fit, and whether it is a minimum that is being approached.
+
+    ``J = tr(S) I - S`` is positive definite near the best fit. Its Newton step of an isotropic
+    body is the tangent of the angle that is missing, hence the arc tangent; elsewhere (beyond a
+    saddle) one radian along the moment leads back.
+    """
+    a, b, c = yy + zz, xx + zz, xx + yy
+    det = a * (b * c - yz * yz) - xy * (xy * c + xz * yz) - xz * (xy * yz + b * xz)
+    if a > 0.0 and a * b > xy * xy and det > 1e-12 * (a + b + c) ** 3:
+        p, q, r, s, t, u, v, w, z = inverse_3(a, -xy, -xz, -xy, b, -yz, -xz, -yz, c)
+        x, y, z = p * mx + q * my + r * mz, s * mx + t * my + u * mz, v * mx + w * my + z * mz
+        angle = math.sqrt(x * x + y * y + z * z)
+        k = math.atan(angle) / angle if angle > 1e-4 else 1.0
+        return k * x, k * y, k * z, True
+    size = math.sqrt(mx * mx + my * my + mz * mz)
+    return mx / size, my / size, mz / size, False
 
 
 @njit(cache=True, error_model="numpy")

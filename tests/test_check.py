@@ -1,5 +1,9 @@
 """The consistency check: every kernel passes, and a wrong one does not."""
 
+import importlib.util
+import types
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -13,7 +17,9 @@ def test_kernel_is_consistent(name):
     assert len(rows) >= 4
     failed = [row for row in rows if not row.passed]
     assert not failed, check.format_table(failed)
-    assert all(row.error <= 1e-7 for row in rows if row.slope is None)
+    judged = [row for row in rows if row.slope is None and row.criterion != check.SIZE]
+    assert judged and all(row.error <= 1e-7 for row in judged)
+    assert {row.state for row in rows} == {0, 1}
 
 
 def test_small_increments_differ_to_second_order():
@@ -34,20 +40,112 @@ def test_spin_of_small_increments_differs_to_second_order():
     assert 1.8 < slope < 2.2
 
 
-@pytest.mark.parametrize("criterion", [*check.EXACT_FORCE.values(), *check.TANGENTS.values()])
-def test_check_notices_a_wrong_kernel(criterion, monkeypatch):
-    """One force component off by a millionth, or one matrix entry: the criterion must see it."""
-    case = check.superelement_case(load("superelement_planar_f2_converged_mean_b"), 0)
+def slightly_wrong(monkeypatch):
+    """Every force, matrix and energy of the check a little off in one place."""
     right = check.evaluate
 
     def wrong(case, task, coefficients=(0, 0, 0, 1, 1)):
         g, J, energy = right(case, task, coefficients)
         g[2] *= 1.0 + 1e-5 * (1 + case.q[2] ** 2)
-        J[2, 3] *= 1.001
+        J[2, 1] *= 1.001
+        energy[0] *= 1.001
+        energy[8] *= 1.001
+        if task == check.ACCELERATION:
+            g[-1] *= 1.001
         return g, J, energy
-    assert criterion(case) <= check.LIMIT
     monkeypatch.setattr(check, "evaluate", wrong)
+
+
+CRITERIA = {*check.EXACT_FORCE.values(), *check.TANGENTS.values(), *check.ENERGY_SUMS.values()}
+
+
+@pytest.mark.parametrize("name", ["planar_f2_converged_mean_b", "f2_mean_b", "f2t1_positions_b"])
+@pytest.mark.parametrize("criterion", sorted(CRITERIA, key=lambda c: c.__name__))
+def test_check_notices_a_wrong_superelement(criterion, name, monkeypatch):
+    case = check.superelement_case(load("superelement_" + name), 0)
+    assert criterion(case) <= check.LIMIT
+    slightly_wrong(monkeypatch)
     assert criterion(case) > check.LIMIT
+
+
+@pytest.mark.parametrize("name, criterion", [
+    ("revolute_ground", check.joint_force), ("revolute_ground", check.joint_acceleration),
+    ("revolute_ground", check.element_tangent), ("spherical", check.joint_force),
+    ("spherical", check.joint_acceleration), ("torque", check.load_power),
+    ("torque", check.element_tangent)])
+def test_check_notices_a_wrong_element(name, criterion, monkeypatch):
+    case = check.element_case(load("element_" + name), 0)
+    assert criterion(case) <= check.LIMIT
+    slightly_wrong(monkeypatch)
+    assert criterion(case) > check.LIMIT
+
+
+def mutant(name, old, new, folder):
+    """A kernel with one line of its file changed."""
+    text = Path(load(name).__file__).read_text()
+    assert text.count(old) == 1, f"{old!r} is not once in {name}: choose another line"
+    path = folder / f"{name}.py"
+    path.write_text(text.replace(old, new))
+    spec = importlib.util.spec_from_file_location(f"mutant_{name}", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("old, new, failing", [
+    # sign of the frame's moment on the nodes
+    ("g[j3] = alpha_r*wp_z + m_z + pwd_z", "g[j3] = m_z + pwd_z - alpha_r*wp_z",
+     {"force = dV/dq (30)", "Hamilton's force (45), (57)", "tangent, configuration"}),
+    # a term of the matrix
+    ("dg[j3] = alpha_r*dwp_z + dm_z + dpwd_z", "dg[j3] = alpha_r*dwp_z + dm_z",
+     {"tangent, velocity (61)", "tangent, mass (60)"})])
+def test_check_notices_a_changed_line(old, new, failing, tmp_path):
+    name = "superelement_planar_f2_converged_mean_b"
+    rows = check.check_superelement(name, mutant(name, old, new, tmp_path))
+    assert failing <= {row.criterion for row in rows if not row.passed}
+
+
+@pytest.mark.parametrize("name, claim", [
+    ("f2_converged_mean_b", {"INERTIA": "a"}), ("f2_converged_mean_a", {"INERTIA": "b"}),
+    ("f2_converged_mean_b", {"FRAME": "mean"}), ("f2t1_positions_b", {"FRAME": "converged_mean"})])
+def test_check_notices_a_kernel_that_is_not_what_it_says(name, claim):
+    """Forces and tangents fit the energies of the other frame or option just as well."""
+    module = types.SimpleNamespace(**vars(load("superelement_" + name)) | claim)
+    case = check.superelement_case(module, 0)
+    assert check.elastic_force(case) <= check.LIMIT and check.inertia_force(case) <= check.LIMIT
+    assert check.energies(case) > 1e-6
+
+
+def test_asymmetric_stiffness_has_no_potential():
+    case = check.superelement_case(load("superelement_f2_converged_mean_b"), 0)
+    first = len(case.constants) - 2 * case.n**2
+    case.constants[first + 1] *= 1.01
+    assert check.elastic_force(case) > check.LIMIT
+    assert check.asymmetry(case) > check.LIMIT
+
+
+@pytest.mark.parametrize("name", ["superelement_f2_mean_b", "superelement_planar_f2_positions_b"])
+def test_matrix_is_linear_in_its_coefficients(name):
+    case = check.superelement_case(load(name), 1)
+    parts = [check.evaluate(case, 1, c)[1] for c in ((1, 0, 0, 1, 1), (0, 1, 0, 1, 1),
+                                                     (0, 0, 1, 1, 1))]
+    J = check.evaluate(case, 1, (2.0, -0.3, 1.7, 1, 1))[1]
+    assert check.difference(J, 2.0 * parts[0] - 0.3 * parts[1] + 1.7 * parts[2]) <= 1e-14
+
+
+@pytest.mark.parametrize("name", [n for n in check.kernel_names() if n.startswith("superelement_")])
+def test_paper_tangent_lacks_a_term_that_falls_with_the_deformation(name):
+    """The paper's (31) is symmetric; the consistent matrix has a term of the size of y more."""
+    module, sizes = load(name), (0.3, 0.03)
+    terms = []
+    for psi in sizes:
+        case = check.superelement_case(module, 2, psi)
+        case = case._replace(v=0 * case.v, a=0 * case.a, q=np.r_[case.q[:module.MODES], [0] * 3])
+        terms.append(check.geometric_term(case))
+        K = check.evaluate(case, 1, (0, 0, 1, 0, 1))[1]
+        symmetric = not module.FRAME.endswith("_small")
+        assert not symmetric or check.difference(K, K.T) <= 1e-13
+    assert 1e-3 < terms[0] < 1 and terms[1] < terms[0] / 3
 
 
 def test_planar_kernel_equals_the_spatial_one_on_planar_states():

@@ -52,12 +52,12 @@ def skew(a):
     return mpmath.matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
-def series(psi, first: int, second: int, zeroth: int = 1):
+def series(psi, first: int, second: int):
     """``I + c_first skew + c_second skew^2`` in 50 digits; the sign of first is that of skew."""
     S = skew([mpmath.mpf(float(x)) for x in psi])
     s = sum(mpmath.mpf(float(x))**2 for x in psi)
     sign = 1 if first > 0 else -1
-    return zeroth * mpmath.eye(3) + sign * c(abs(first), s) * S + c(second, s) * S * S
+    return mpmath.eye(3) + sign * c(abs(first), s) * S + c(second, s) * S * S
 
 
 def array(matrix) -> np.ndarray:
@@ -117,7 +117,7 @@ def test_exp_and_tangent_operator(angle, axis):
 def test_inverse_tangent_operator(angle, axis):
     """``I + skew/2 + e skew^2`` undoes T."""
     psi = angle * axis
-    S = np.array(array(skew([mpmath.mpf(float(x)) for x in psi])))
+    S = array(skew(psi))
     inverse = np.eye(3) + S / 2 + rotations.inverse_tangent_coefficients(psi @ psi)[0] * S @ S
     operator = np.reshape(rotations.tangent_operator(*psi), (3, 3))
     assert np.abs(inverse @ operator - np.eye(3)).max() <= 1e-14
@@ -186,7 +186,7 @@ def test_turn_and_relative_log():
 
 
 @pytest.mark.parametrize("angle, status", [(0.0, 0), (2.9, 0), (2.941, 0), (2.942, 1), (3.1, 1),
-                                           (np.pi, 1), (3.4, 1), (2 * np.pi - 2.9, 0)])
+                                           (np.pi, 1), (3.3, 1), (3.4, 0)])
 def test_relative_rotations_refuses_half_turns(angle, status):
     """Up to an angle whose cosine is NEAR_PI; the order of the nodes is that of the list."""
     assert np.cos(2.941) > rotations.NEAR_PI > np.cos(2.942)
