@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sebody import Model, generalized_alpha, simulate
+from sebody import Model, assembly, generalized_alpha, integrator, simulate
 from sebody.fem import planar_beam, straight_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes import box, right_angle_frame, shaft
@@ -101,3 +101,13 @@ def test_more_superelements_stiffen_centrifugally(parts, h, limit):
     result = simulate(divided_beam(parts), h, 30.0)
     tip = result["tip.position"][::round(0.01 / h)]
     assert np.linalg.norm(tip - reference) / np.linalg.norm(reference) <= limit
+
+
+def test_sparse_solver_gives_the_motion_of_the_dense_one(monkeypatch):
+    """Twenty superelements: above the limit the sparse factorization takes over."""
+    sparse = simulate(divided_beam(20), 0.005, 0.5)
+    assert sparse.numbering.free > assembly.DENSE_LIMIT
+    for module in (assembly, integrator):
+        monkeypatch.setattr(module, "DENSE_LIMIT", 1000)
+    dense = simulate(divided_beam(20), 0.005, 0.5)
+    assert np.abs(sparse["tip.position"] - dense["tip.position"]).max() < 1e-10
