@@ -1,0 +1,127 @@
+"""Load histories: tables and compiled functions, and what is said about those that fail."""
+
+import functools
+
+import numpy as np
+import pytest
+
+from sebody import InputError, Model, Simulation, loop, simulate
+from sebody.loads import History, history
+from sebody.scenes.hinged_beam import build
+
+TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]
+
+
+def ramps(t):
+    """The table as a function."""
+    if t < 0.05:
+        return 2.0e5 * t
+    return max(1.0e4 - 1.2e5 * (t - 0.05), -2.0e3)
+
+
+def two_nodes():
+    model = Model()
+    model.node("base", (0, 0, 0))
+    model.node("tip", (60, 0, 0))
+    return model
+
+
+@pytest.mark.parametrize("table, message", [
+    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must increase: sort the rows "
+                                           "and merge equal times"),
+    ([(0.0, 1.0), (0.0, 2.0)], "times of a load history must increase"),
+    ([1.0, 2.0], r"load history has shape \(2,\): give rows \(t, value\)"),
+    ([(0.0, 1.0, 2.0)], r"load history has shape \(1, 3\): give rows"),
+    ([], "load history has shape .*: give rows"), (3.0, r"load history has shape \(\): give rows"),
+    ([(0.0, np.nan)], "load history contains NaN or infinite entries: give finite numbers"),
+    ([(np.inf, 1.0)], "NaN or infinite entries"),
+])
+def test_wrong_tables(table, message):
+    with pytest.raises(InputError, match=message):
+        history(table)
+
+
+def opens_a_file(t):
+    return open(t)
+
+
+def returns_nothing(t):
+    return None
+
+
+@pytest.mark.parametrize("function", [opens_a_file, returns_nothing, lambda t: 1j * t, np.sin])
+def test_function_that_cannot_be_compiled(function):
+    with pytest.raises(InputError, match=f"load history '{function.__name__}' cannot be compiled: "
+                                         "use only arithmetic, math and numpy in it"):
+        history(function)
+
+
+@pytest.mark.parametrize("source", [
+    pytest.param(lambda a, b: a, id="two arguments"),
+    pytest.param(functools.partial(max, 1.0), id="partial"),
+    pytest.param("abc", id="text"), pytest.param([(0, 1), (1,)], id="ragged rows")])
+@pytest.mark.xfail(strict=True, reason="TypeError, AttributeError or ValueError of the libraries")
+def test_histories_to_be_refused(source):
+    with pytest.raises(InputError, match="load history"):
+        history(source)
+
+
+@pytest.mark.parametrize("action, message", [
+    (lambda m: m.force("base", (0, 1)), "force on base.position is .0, 1.: give 3 finite numbers"),
+    (lambda m: m.force("base", (0, 0, np.inf)), "force on base.position is .*finite numbers"),
+    (lambda m: m.torque("base", (0, 0)), "torque on base.rotation is .*give 3 finite"),
+    (lambda m: m.torque("base", (0, np.nan, 0)), "torque on base.rotation is .*give 3 finite"),
+    (lambda m: m.force("far", (0, 0, 1)), "node 'far' is unknown: the model has base, tip"),
+    (lambda m: m.force("tip", (0, 0, 1), [(0.0, 1.0), (0.0, 2.0)]), "must increase: sort the rows"),
+])
+def test_wrong_loads(action, message):
+    model = two_nodes()
+    with pytest.raises(InputError, match=message):
+        action(model)
+    assert not model.loads
+
+
+def test_planar_torque_is_one_number():
+    model = Model(planar=True)
+    model.node("base", (0, 0))
+    with pytest.raises(InputError, match="torque on base.rotation is .*: give 1 finite number"):
+        model.torque("base", (0, 0, 1))
+    model.torque("base", 2.0)
+    assert model.loads[0].direction == [2.0]
+
+
+def test_histories():
+    assert history(None) == History((0.0,), (1.0,))
+    table = history(np.array(TABLE))
+    assert (table.times, table.values) == tuple(zip(*TABLE, strict=True))
+    assert table.address == 0 and history(table) is table
+    assert history(ramps).address != 0
+
+
+def test_amplitudes_in_the_loop():
+    """Linear between the rows, end values outside, functions as they are."""
+    model = build().model
+    for source in (TABLE, ramps, None, [(0.1, 7.0)]):
+        model.force("tip", (0, 0, 1), source)
+    run = Simulation(model, 0.01)
+    for t in (-1.0, 0.0, 0.02, 0.05, 0.0999, 0.15, 9.0):
+        loop.set_loads(run.system, run.state, t)
+        expected = np.interp(t, *zip(*TABLE, strict=True))
+        of_table, of_function, constant, single = run.state.loads[1:]
+        assert of_table == pytest.approx(expected, abs=1e-9)
+        assert of_function == pytest.approx(ramps(t))
+        assert (constant, single) == (1.0, 7.0)
+
+
+def test_compiled_history_gives_the_run_of_the_table():
+    results = []
+    for source in (TABLE, ramps):
+        scene = build()
+        scene.model.loads.clear()
+        scene.model.torque("base", (0, 0, 1), source)
+        results.append(simulate(scene.model, 0.01, 0.2))
+    tips = [r["tip.position"] for r in results]
+    assert np.abs(tips[0] - tips[0][0]).max() > 1e-2
+    assert np.abs(tips[0] - tips[1]).max() < 1e-10
+    assert results[0]["energy.external_work"] == pytest.approx(
+        results[1]["energy.external_work"], rel=1e-9, abs=1e-9)
