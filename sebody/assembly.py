@@ -80,6 +80,10 @@ def number(model: Model) -> Numbering:
                 multipliers[k] = len(names)
                 names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
 
+    for node in model.nodes.values():       # fixed nodes without a body stand for the ground
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and triplet.fixed:
+                place(triplet)
     for body in model.bodies.values():
         for triplet in (*body.positions, *body.rotations):
             place(triplet)
@@ -219,8 +223,9 @@ def _joint_batches(model: Model, numbering: Numbering, constants: list) -> list[
 def _load_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:
     batches: dict[str, Batch] = {}
     at = sum(map(len, constants))
+    held = {id(t) for body in model.bodies.values() for t in (*body.positions, *body.rotations)}
     for k, load in enumerate(model.loads):
-        if id(load.triplet) not in numbering.triplets:
+        if id(load.triplet) not in held:
             raise InputError(f"{load.name}: nothing holds this triplet: attach a body to it")
         unknowns = _coordinates(numbering, load.triplet)
         batch = batches.setdefault(load.kind, Batch(element_kernel(load.kind), len(unknowns),

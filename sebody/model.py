@@ -217,7 +217,6 @@ class Model:
         rotation = self._triplet(node, "rotation")
         position = self._triplet(node, "position")
         if to is None:
-            position.fixed = True
             rotations = (rotation,)
         else:
             to = self._known(to)
@@ -226,6 +225,7 @@ class Model:
                                  "share a position: make the second one with at=")
             rotations = (rotation, self._triplet(to, "rotation"))
         if self.planar:
+            position.fixed = position.fixed or to is None
             return
         axis = self._vector(axis, f"axis of the revolute joint at {node.name!r}")
         length = np.linalg.norm(axis)
@@ -235,6 +235,7 @@ class Model:
         e = axis / length
         first = np.cross(e, np.eye(3)[np.argmin(np.abs(e))])
         first /= np.linalg.norm(first)
+        position.fixed = position.fixed or to is None
         kind = "revolute_ground" if to is None else "revolute"
         constants = np.concatenate([e, first, np.cross(e, first)])
         self.joints.append(Joint(f"{kind} at {node.name}", kind, rotations, constants, 2))
