@@ -10,8 +10,6 @@ from types import ModuleType
 
 from .errors import InputError
 
-MEANING = ("residual, matrix, energies or constraint accelerations of a batch; see sebody.abi")
-
 
 def user_directory() -> Path:
     """Where kernels of other layouts go when the package's own folder cannot be written.
