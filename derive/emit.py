@@ -24,15 +24,18 @@ def leaf_table(names: set[str]) -> dict[str, str]:
     """
     from sebody import dense, locate, rotations
     modules = (rotations, locate, dense)
-    functions = {name: (module, value) for module in modules
-                 for name, value in vars(module).items() if hasattr(value, "py_func")
-                 and value.py_func.__module__ == module.__name__}
+    functions = {}
+    for module in modules:
+        for name, value in vars(module).items():
+            python = getattr(value, "py_func", getattr(value, "_defn", value))
+            if inspect.isfunction(python) and python.__module__ == module.__name__:
+                functions[name] = module, python
     reached, queue = {}, sorted(names)
     while queue:
         name = queue.pop(0)
         if name not in reached and name in functions:
             module, function = functions[name]
-            source = inspect.getsource(function.py_func)
+            source = inspect.getsource(function)
             reached[name] = (module.__name__, hashlib.sha256(source.encode()).hexdigest()[:12])
             queue += sorted(set(re.findall(r"\w+", source)) & set(functions))
     return {name: reached[name] for name in sorted(reached)}
@@ -63,13 +66,13 @@ def superelement_text(kernel: Superelement) -> str:
     seeds = (templates.SEEDS_PLANAR if planar else templates.SEEDS_SPATIAL).strip("\n").split("\n")
     text = "\n".join([*before, *residual, *energy, *tangent, *seeds])
     rows = [row for row in ROWS if re.search(rf"\b{row}\b", text) or row in ("qe", "ve", "ae")]
-    calls = {name for name in ("symmetric_product", "inverse_3") if name in text}
+    calls = {name for name in ("columns_times", "inverse_3") if name in text}
     for step in (*kernel.residual, *kernel.tangent):
         calls |= set(getattr(step, "calls", ()))
     calls = {name for name in calls if re.search(rf"\b{name}\(", text)}
     imports, leaves = imports_and_leaves(calls)
-    height = "max(n, 9*N_ROTATIONS)"
-    row_lines = [f"row = {height}"] + [f"{name} = work[{k}*row:{k + 1}*row]"
+    height = "padded(max(n, 9*N_ROTATIONS))"
+    row_lines = [f"row = {height}"] + [f"{name} = at(work, {k}*row)"
                                        for k, name in enumerate(rows)]
     return templates.SUPERELEMENT.format(
         layout=layout.name, frame=kernel.frame.name, inertia=kernel.inertia.name,

@@ -16,7 +16,7 @@ def element_text(element: Element) -> str:
     tangent, column_count = _assign(element.linear, [
         f"J[{i * width} + column]" for i in range(width)],
         ["c_place*"] * coordinates + ["c_constraint*"] * len(element.multipliers), count)
-    extra, tasks = [], {"HEADER", "HUGE", "SIGNATURE", "TANGENT"}
+    extra, tasks = [], {"HEADER", "SIGNATURE", "TANGENT", "at"}
     if element.second:
         lines, _ = _assign(element.second, [f"g[{coordinates + i}]" for i in
                                             range(len(element.second))], start=900)

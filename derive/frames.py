@@ -86,9 +86,9 @@ def converged_mean(q: Quantities) -> Frame:
         return (Solve("B rate = sum alpha_j T^-1(psi_j) rate_j", rate, "rotation",
                       equation(rate, of), sp.zeros(3, 1), "B", invert=first),)
 
-    call = ("planar_mean(N_ROTATIONS, alpha_rs, qe[ROTATIONS:], frame, y[ROTATIONS:])"
+    call = ("planar_mean(N_ROTATIONS, alpha_rs, at(qe, ROTATIONS), frame, at(y, ROTATIONS))"
             if q.space.planar else
-            "converged_mean(N_ROTATIONS, nodes, alpha_rs, R, frame, y[ROTATIONS:])")
+            "converged_mean(N_ROTATIONS, nodes, alpha_rs, R, frame, at(y, ROTATIONS))")
     lines = (f"status = {call}", "if status != 0:", "    return status")
     wp, wp_rate = q.wp.symbols, q.wp
     back = alpha * inverse_tangent_transposed_times(psi, wp)
@@ -129,9 +129,9 @@ def mean(q: Quantities) -> Frame:
                 Stage("rate of the frame, (19)", "element", sets=((rate, T0 * part.symbols),)))
 
     reference = "" if q.space.planar else ", reference"
-    call = ("planar_mean(N_ROTATIONS, alpha_rs, qe[ROTATIONS:], frame, y[ROTATIONS:])"
+    call = ("planar_mean(N_ROTATIONS, alpha_rs, at(qe, ROTATIONS), frame, at(y, ROTATIONS))"
             if q.space.planar else "weighted_mean(N_ROTATIONS, nodes, alpha_rs, R"
-            f"{reference}, frame, beta[ROTATIONS:], y[ROTATIONS:])")
+            f"{reference}, frame, at(beta, ROTATIONS), at(y, ROTATIONS))")
     lines = (f"status = {call}", "if status != 0:", "    return status")
     values = () if q.space.planar else (
         Text("coefficients of T(beta_0)", (
@@ -217,9 +217,9 @@ def positions(q: Quantities) -> Frame:
             "best_fit(N_POSITIONS, fits, X, alphas, qe, frame)")
     lines = (f"status = {call}", "if status != 0:", "    return status")
     work = q.wp.symbols.dot(equation(q.dth0, q.dx, q.dx0))
-    relative = ("planar_relative_angles(N_ROTATIONS, qe[ROTATIONS:], frame, y[ROTATIONS:])"
+    relative = ("planar_relative_angles(N_ROTATIONS, at(qe, ROTATIONS), frame, at(y, ROTATIONS))"
                 if q.space.planar else
-                "relative_rotations(N_ROTATIONS, nodes, R, frame, y[ROTATIONS:])")
+                "relative_rotations(N_ROTATIONS, nodes, R, frame, at(y, ROTATIONS))")
     psi_lines = (f"status = {relative}", "if status != 0:", "    return status")
     return Frame(
         "positions", "rotation of best fit of the node positions",

@@ -119,7 +119,7 @@ class StepPrinter:
 
     def _product(self, step: Product) -> list[str]:
         self.products += 1
-        return [f"symmetric_product({step.matrix}, {step.vector}, {step.out}, n)"]
+        return [f"columns_times({step.matrix}, {step.vector}, {step.out}, n)"]
 
     def _solve(self, step: Solve) -> list[str]:
         unknown = step.unknown

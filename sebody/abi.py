@@ -11,7 +11,7 @@ count            number of elements in the batch
 stride           length of an index row
 width            number n of unknowns of an element (coordinates, then multipliers)
 index            rows: offset into constants, frame or load, n, ids of rotations, ids of unknowns
-constants        one flat row per body type
+constants        one flat row per body type; matrices by padded columns, see `padded`
 q, R             coordinates (positions, modes, multipliers; rotations' step increments), rotations
 v, a             velocities and accelerations of the coordinates
 reference        frames of the last converged step, (frames, 9)
@@ -20,7 +20,7 @@ T                tangent operators of the step increments of rotations, (rotatio
 loads            load amplitudes at the current time
 coefficients     c_mass, c_rate, c_place, c_geo, c_constraint of the matrix
 g, J             element blocks: forces (count, n), matrices (count, n, n)
-work             scratch memory, WORK_ROWS rows
+work             scratch memory, WORK_ROWS padded rows
 energy           sums: kinetic, strain, momentum (3), moment of momentum (3), power of the loads
 ===============  =================================================================================
 
@@ -29,14 +29,39 @@ turns the variation of the step's increment into that of the rotation.
 """
 
 from llvmlite import ir
-from numba import types
+from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
 RESIDUAL, TANGENT, ENERGY, ACCELERATION = range(4)
 HEADER = 3          # integers of an index row before the ids
-HUGE = 1 << 40      # nominal length of the arrays behind the pointers
+LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
 ENERGIES = 9
+
+
+@njit(cache=True)
+def padded(n):
+    """Length of a column of n numbers in a kernel's matrices: whole vectors."""
+    return (n + LANES - 1) // LANES * LANES
+
+
+@intrinsic
+def at(typingctx, pointer, first):
+    """The pointer to an element: an array from `first` on, without bounds or negative indices."""
+    def codegen(context, builder, sig, args):
+        return builder.gep(args[0], [args[1]])
+
+    return pointer(pointer, types.int64), codegen
+
+
+@intrinsic
+def pointer_to(typingctx, array):
+    """The pointer to the data of an array."""
+    def codegen(context, builder, sig, args):
+        return context.make_array(sig.args[0])(context, builder, args[0]).data
+
+    return types.CPointer(array.dtype)(array), codegen
+
 
 _floats = types.CPointer(types.float64)
 _ints = types.CPointer(types.int64)
@@ -46,15 +71,16 @@ SIGNATURE = types.int64(types.int64, types.int64, types.int64, types.int64, _int
 
 @intrinsic
 def call_kernel(typingctx, address, task, count, stride, width, arrays):
-    """Call the kernel at an address with the data pointers of a tuple of arrays."""
+    """Call the kernel at an address with a tuple of arrays or pointers."""
     signature = types.int64(address, task, count, stride, width, arrays)
 
     def codegen(context, builder, sig, args):
         word = ir.IntType(64)
         scalars = list(args[1:5])
-        pointers = [context.make_array(kind)(context, builder, builder.extract_value(args[5], k)
-                                             ).data
-                    for k, kind in enumerate(sig.args[5])]
+        values = [builder.extract_value(args[5], k) for k in range(len(sig.args[5]))]
+        pointers = [context.make_array(kind)(context, builder, value).data
+                    if isinstance(kind, types.Array) else value
+                    for kind, value in zip(sig.args[5], values, strict=True)]
         function = ir.FunctionType(word, [word] * 4 + [p.type for p in pointers])
         return builder.call(builder.inttoptr(args[0], function.as_pointer()),
                             scalars + pointers)

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .abi import padded
+from .dense import padded_columns
 from .errors import InputError
 from .kernels import element_kernel
 from .model import Model, Superelement, Triplet
@@ -199,7 +201,7 @@ def _body_constants(body: Superelement) -> NDArray:
     local = points - body.alpha @ points
     fit = np.full(len(points), 1.0 / len(points))
     return np.concatenate([body.alpha, fit, body.alpha_r, local.ravel(),
-                           reduced.stiffness.ravel(), reduced.mass.ravel()])
+                           padded_columns(reduced.stiffness), padded_columns(reduced.mass)])
 
 
 def _joint_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:
@@ -309,7 +311,7 @@ def _load_tables(model: Model) -> dict[str, NDArray]:
 
 def work_size(model: Model) -> int:
     """Scratch memory the kernels of a model need."""
-    rows = [b.kernel.WORK_ROWS * max(_width(b), 9 * b.kernel.N_ROTATIONS)
+    rows = [b.kernel.WORK_ROWS * padded(max(_width(b), 9 * b.kernel.N_ROTATIONS))
             for b in model.bodies.values()]
     return max([*rows, 64])
 

@@ -17,7 +17,8 @@ from scipy.spatial.transform import Rotation
 
 import sebody.generated
 
-from .abi import ACCELERATION, ENERGIES, ENERGY, RESIDUAL, TANGENT, call_kernel
+from .abi import ACCELERATION, ENERGIES, ENERGY, RESIDUAL, TANGENT, call_kernel, padded
+from .dense import padded_columns
 from .errors import InputError
 from .kernels import load, user_directory
 
@@ -79,7 +80,7 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
     """Forces, matrix and energies of a kernel in the state of a case."""
     n, module = case.n, case.module
     g, J, energy = np.zeros(n), np.zeros(n * n), np.zeros(ENERGIES)
-    work = np.zeros(module.WORK_ROWS * max(n, 9 * max(module.N_ROTATIONS, 1)))
+    work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
     T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
     status = _call(module.kernel.address, task, len(case.index), n, case.index, case.constants,
                    case.q, case.R, case.v, case.a, case.reference, case.frames.copy(), T,
@@ -140,8 +141,8 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     about = np.array([0.0, 0.0, beta]) if planar else beta * random.normal(size=3) / 1.8
     frame = (base * Rotation.from_rotvec(about)).as_matrix().ravel()
     index = np.array([0, 0, n, *range(nrot), *range(n)])
-    constants = np.concatenate([alpha, np.full(npos, 1 / npos), alpha_r, X.ravel(), S.ravel(),
-                                M.ravel()])
+    constants = np.concatenate([alpha, np.full(npos, 1 / npos), alpha_r, X.ravel(),
+                                padded_columns(S), padded_columns(M)])
     return Case(module, n, index, constants, q, R, random.normal(size=n), random.normal(size=n),
                 frame, frame.copy())
 

@@ -9,7 +9,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from . import loop
-from .abi import ACCELERATION, ENERGIES, TANGENT
+from .abi import ACCELERATION, ENERGIES, TANGENT, padded
 from .assembly import DENSE_LIMIT, Numbering, System, build, work_size
 from .errors import InputError, SimulationError
 from .loop import Record, Scheme, State
@@ -136,7 +136,9 @@ class Simulation:
                 self._factorize()
             elif code == loop.SOLVE:
                 n = self.numbering.free
-                self.state.correction[:n] = self._factors.solve(self.state.residual[:n])
+                scale = self.state.scale[:n]
+                self.state.correction[:n] = scale * self._factors.solve(
+                    scale * self.state.residual[:n])
             self.seconds += time.perf_counter() - began
             if progress and code in (loop.CHUNK, loop.DONE):
                 progress(self.time / t_end if t_end else 1.0)
@@ -196,8 +198,8 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         frames_old=frames.copy(), dq=zeros(total), T=np.tile(np.eye(3).ravel(), turns),
         loads=zeros(max(len(model.loads), 1)), coefficients=zeros(5),
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])), residual=zeros(total),
-        correction=zeros(total), matrix=zeros(system.rows.size + 1), scale=zeros(total),
-        weight=zeros(total), inverse=zeros((n, n) if dense else (1, 1)),
+        correction=zeros(padded(total)), matrix=zeros(system.rows.size + 1), scale=zeros(total),
+        weight=zeros(total), inverse=zeros((n, padded(n)) if dense else (1, 1)),
         work=zeros(work_size(model)), energy=zeros(ENERGIES), clock=clock, control=control)
 
 

@@ -9,7 +9,14 @@ import math
 from numba import njit
 
 from .dense import inverse_3
-from .rotations import NEAR_PI, inverse_tangent_coefficients, relative_rotations, turn
+from .rotations import (
+    NEAR_PI,
+    inverse_tangent_coefficients,
+    relative_log,
+    relative_rotations,
+    turn,
+    turned,
+)
 
 HALF_TURN = 1
 NO_FRAME = 2
@@ -18,6 +25,8 @@ NO_FRAME = 2
 @njit(cache=True, error_model="numpy")
 def converged_mean(count, nodes, alpha, R, frame, psi):
     """The rotation with ``sum alpha_j psi_j = 0``, by Newton from the frame of the last iterate."""
+    if count == 2 and _mean_of_two(nodes, alpha, R, frame, psi):
+        return 0
     for _ in range(30):
         if relative_rotations(count, nodes, R, frame, psi) != 0:
             return HALF_TURN
@@ -33,6 +42,29 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
         if x * x + y * y + z * z < 1e-16:       # Newton: what is left is of the square of that
             return relative_rotations(count, nodes, R, frame, psi)
     return NO_FRAME
+
+
+@njit(cache=True, error_model="numpy")
+def _mean_of_two(nodes, alpha, R, frame, psi):
+    """Mean of two rotations: a point of the shortest way between them, in closed form.
+
+    False, and nothing done, where that is not the mean close to the last frame: two nodes may be
+    turned against each other by more than half a turn.
+    """
+    x, y, z, cosine = relative_log(R, 9 * nodes[0], R, 9 * nodes[1])
+    if not cosine > NEAR_PI:
+        return False
+    p, q, r = alpha[1] * x, alpha[1] * y, alpha[1] * z
+    a, b, c, d, e, f, g, h, i = turned(R, 9 * nodes[0], p, q, r)
+    if (a * frame[0] + b * frame[1] + c * frame[2] + d * frame[3] + e * frame[4] + f * frame[5]
+            + g * frame[6] + h * frame[7] + i * frame[8] < 1.0):     # a quarter turn away
+        return False
+    frame[0], frame[1], frame[2] = a, b, c
+    frame[3], frame[4], frame[5] = d, e, f
+    frame[6], frame[7], frame[8] = g, h, i
+    psi[0], psi[1], psi[2] = -p, -q, -r
+    psi[3], psi[4], psi[5] = alpha[0] * x, alpha[0] * y, alpha[0] * z
+    return True
 
 
 @njit(cache=True, error_model="numpy")

@@ -15,7 +15,8 @@ from numba import njit, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from .abi import ENERGIES, ENERGY, RESIDUAL, TANGENT, borrowed, call_kernel
+from .abi import ENERGIES, ENERGY, RESIDUAL, TANGENT, at, borrowed, call_kernel, pointer_to
+from .dense import columns_times
 from .rotations import tangent_operator, turn
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
@@ -24,6 +25,7 @@ BEGIN, ITERATE, FACTORED, SOLVED = range(4)             # where it goes on
 NO_REASON, HALF_TURN, NO_FRAME, NOT_FINITE, SLOW = range(5)
 FINEST = 4096           # a grid step is cut into at most this many parts
 MAX_ITERATIONS = 12
+ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
 REFRESH = 0.3           # contraction slower than this asks for a new matrix
 
 
@@ -48,12 +50,12 @@ class State(NamedTuple):
     coefficients: NDArray   # (5,) of the matrix, see sebody.abi
     g: NDArray              # element forces
     J: NDArray              # element matrices
-    residual: NDArray       # in body axes, scaled
+    residual: NDArray       # in body axes
     correction: NDArray
     matrix: NDArray         # entries, dense (n x n) or CSC, in body axes, scaled
     scale: NDArray          # of the unknowns: the matrix has a unit diagonal
     weight: NDArray         # its inverse: corrections are measured in it, multipliers included
-    inverse: NDArray        # (n, n) of small systems
+    inverse: NDArray        # of small systems, by padded columns, scales included
     work: NDArray
     energy: NDArray
     clock: NDArray          # see the CLOCK indices
@@ -106,12 +108,13 @@ def _call_function(typingctx, address, t):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def run_kernels(task, first, last, system, state):
     """Evaluate batches; returns the status of the first element that fails."""
+    index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
     for b in range(first, last):
         status = call_kernel(
             system.address[b], task, system.count[b], system.stride[b], system.width[b],
-            (system.index[system.at_index[b]:], system.constants, state.q, state.R, state.v,
+            (at(index, system.at_index[b]), system.constants, state.q, state.R, state.v,
              state.a, state.frames_old, state.frames, state.T, state.loads, state.coefficients,
-             state.g[system.at_g[b]:], state.J[system.at_J[b]:], state.work, state.energy))
+             at(g, system.at_g[b]), at(J, system.at_J[b]), state.work, state.energy))
         if status != 0:
             return status
     return 0
@@ -145,14 +148,16 @@ def assemble(task, system, state, residual):
         return status
     for i in range(residual.size):
         residual[i] = 0.0
+    sums, unknowns = pointer_to(residual), pointer_to(system.g_unknown)
     for k in range(system.g_unknown.size):
-        residual[system.g_unknown[k]] += state.g[k]
+        sums[unknowns[k]] += state.g[k]
     if task == TANGENT:
         for k in range(system.turned_blocks.shape[0]):
             _turn_block(system.turned_blocks[k], system.dimension[0], state.J, state.frames)
         state.matrix[:] = 0.0
+        matrix, entries = pointer_to(state.matrix), pointer_to(system.J_entry)
         for k in range(system.J_entry.size):
-            state.matrix[system.J_entry[k]] += state.J[k]
+            matrix[entries[k]] += state.J[k]
     return 0
 
 
@@ -175,21 +180,24 @@ def _turn_block(block, dimension, J, frames):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def to_body_axes(system, frames, vector, back):
     """Turn the free positions of a vector into body axes, or back."""
+    turned, spatial = pointer_to(system.turned), system.dimension[0] == 3
     for k in range(system.turned.shape[0]):
-        at, f = system.turned[k, 0], 9 * system.turned[k, 1]
-        x, y = vector[at], vector[at + 1]
-        if system.dimension[0] == 2:
-            c, s = frames[f], frames[f + 3]
-            if back:
-                s = -s
-            vector[at] = c * x + s * y
-            vector[at + 1] = c * y - s * x
-            continue
-        z = vector[at + 2]
-        across, down = (1, 3) if not back else (3, 1)
-        for r in range(3):
-            vector[at + r] = (frames[f + across * r] * x + frames[f + across * r + down] * y
-                              + frames[f + across * r + 2 * down] * z)
+        p = at(pointer_to(vector), turned[2 * k])
+        R = at(pointer_to(frames), 9 * turned[2 * k + 1])
+        x, y = p[0], p[1]
+        if not spatial:
+            c, s = R[0], -R[3] if back else R[3]
+            p[0], p[1] = c * x + s * y, c * y - s * x
+        elif back:
+            z = p[2]
+            p[0] = R[0] * x + R[1] * y + R[2] * z
+            p[1] = R[3] * x + R[4] * y + R[5] * z
+            p[2] = R[6] * x + R[7] * y + R[8] * z
+        else:
+            z = p[2]
+            p[0] = R[0] * x + R[3] * y + R[6] * z
+            p[1] = R[1] * x + R[4] * y + R[7] * z
+            p[2] = R[2] * x + R[5] * y + R[8] * z
 
 
 @njit(cache=True, error_model="numpy")
@@ -221,7 +229,7 @@ def equilibrate(system, state):
 
 @njit(cache=True, error_model="numpy")
 def invert_dense(state, n):
-    """Inverse of the scaled matrix of a small system; False if it is singular."""
+    """Inverse of a small system, by columns, scales included; False if it is singular."""
     dense = state.matrix[:n * n].reshape((n, n))
     size = inverse_size = 0.0
     for i in range(n * n):
@@ -234,20 +242,9 @@ def invert_dense(state, n):
         return False
     for i in range(n):
         for j in range(n):
-            state.inverse[i, j] = inverse[j, i]
             inverse_size += abs(inverse[j, i])
+            state.inverse[i, j] = state.scale[j] * inverse[j, i] * state.scale[i]
     return size * inverse_size < 1e16 * n
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def solve_dense(state, n):
-    """Correction from the residual with the inverse: columns added up, which vectorizes."""
-    for i in range(n):
-        state.correction[i] = 0.0
-    for j in range(n):
-        r = state.residual[j]
-        for i in range(n):
-            state.correction[i] += state.inverse[j, i] * r
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -258,16 +255,17 @@ def begin_step(system, state, scheme):
         state.R_old[i] = state.R[i]
     for i in range(state.frames.size):
         state.frames_old[i] = state.frames[i]
-    for i in range(state.dq.size):
-        state.q_old[i] = state.q[i]
-        state.v_old[i] = state.v[i]
-        state.a_old[i] = state.a[i]
-        state.aux_old[i] = state.aux[i]
-        state.dq[i] = 0.0 if system.is_multiplier[i] > 0.0 else (
-            h * state.v[i] + 0.5 * h * h * state.aux[i])
+    to_a = 1.0 / (1.0 - scheme.alpha_f)
+    for i in range(state.dq.size):      # the auxiliary acceleration is taken to stay
+        q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
+        state.q_old[i], state.v_old[i], state.a_old[i], state.aux_old[i] = q, v, a, aux
+        state.dq[i] = h * v + 0.5 * h * h * aux
+        state.q[i] = q + state.dq[i]
+        state.v[i] = v + h * aux
+        state.a[i] = to_a * (aux - scheme.alpha_f * a)
     set_loads(system, state, state.clock[TIME] + h)
     set_coefficients(state, scheme, h)
-    update(system, state, scheme)
+    turn_rotations(system, state)
     state.control[ITERATION] = 0
     state.clock[LAST_NORM] = 0.0
 
@@ -283,28 +281,14 @@ def set_coefficients(state, scheme, h):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def update(system, state, scheme):
-    """Configuration, velocities and accelerations from the increment of the step."""
-    h = state.clock[CURRENT_STEP]
-    to_aux = 1.0 / (scheme.beta * h * h)
-    half = h * h * (0.5 - scheme.beta)
-    to_a = 1.0 / (1.0 - scheme.alpha_f)
-    for i in range(state.dq.size):
-        if system.is_multiplier[i] > 0.0:
-            continue
-        d = state.dq[i]
-        aux = (d - h * state.v_old[i] - half * state.aux_old[i]) * to_aux
-        state.aux[i] = aux
-        state.v[i] = state.v_old[i] + h * ((1 - scheme.gamma) * state.aux_old[i]
-                                           + scheme.gamma * aux)
-        state.a[i] = to_a * ((1 - scheme.alpha_m) * aux + scheme.alpha_m * state.aux_old[i]
-                             - scheme.alpha_f * state.a_old[i])
-        state.q[i] = state.q_old[i] + d
+def turn_rotations(system, state):
+    """Rotations from their increments of the step."""
+    places, dq, q = pointer_to(system.rotation_at), pointer_to(state.dq), pointer_to(state.q)
     for r in range(system.rotation_at.size):
-        at = system.rotation_at[r]
-        x, y, z = state.dq[at], state.dq[at + 1], state.dq[at + 2]
-        state.q[at], state.q[at + 1], state.q[at + 2] = x, y, z
-        turn(state.R_old, 9 * r, x, y, z, state.R, 9 * r)
+        first = places[r]
+        x, y, z = dq[first], dq[first + 1], dq[first + 2]
+        q[first], q[first + 1], q[first + 2] = x, y, z
+        turn(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
 
 
 @njit(cache=True, error_model="numpy")
@@ -321,25 +305,28 @@ def set_tangent_operators(system, state):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def apply_correction(system, state, scheme):
     """Add the solved correction; returns 1 converged, 0 go on, -1 new matrix, -2 give up."""
-    n = system.diagonal.size
+    n, h = system.diagonal.size, state.clock[CURRENT_STEP]
     norm = size = 0.0
     for i in range(n):
-        d = state.correction[i]
+        d = state.correction[i] * state.weight[i]
+        x = state.dq[i] + system.is_multiplier[i] * state.q_old[i]      # a multiplier itself
         norm += d * d
-        x = (state.q[i] if system.is_multiplier[i] > 0.0 else state.dq[i]) * state.weight[i]
-        size += x * x
-        state.correction[i] = d * state.scale[i]
+        size += x * x * state.weight[i] * state.weight[i]
     norm, size = np.sqrt(norm), np.sqrt(size)
     if not np.isfinite(norm):
         state.clock[LAST_NORM] = norm
         return -2
     to_body_axes(system, state.frames, state.correction, True)
+    to_a, to_v, to_aux = state.coefficients[0], state.coefficients[1], 1 / (scheme.beta * h * h)
     for i in range(n):
-        if system.is_multiplier[i] > 0.0:
-            state.q[i] -= state.correction[i]
-        else:
-            state.dq[i] -= state.correction[i]
-    update(system, state, scheme)
+        d = state.correction[i]
+        moving = d * (1.0 - system.is_multiplier[i])
+        state.dq[i] -= d
+        state.q[i] -= d
+        state.v[i] -= to_v * moving
+        state.a[i] -= to_a * moving
+        state.aux[i] -= to_aux * moving
+    turn_rotations(system, state)
     iteration, last = state.control[ITERATION], state.clock[LAST_NORM]
     rate = state.clock[CONTRACTION]
     target = scheme.tolerance * size + state.clock[FLOOR]
@@ -363,8 +350,9 @@ def accept(system, state, record):
     """End a converged step: rotations stay orthogonal, work of the loads, output."""
     clock, control = state.clock, state.control
     h = clock[CURRENT_STEP]
-    for r in range(system.rotation_at.size):
-        _orthogonalize(state.R, 9 * r)
+    if control[STEPS] % ORTHOGONAL == 0:
+        for r in range(system.rotation_at.size):
+            _orthogonalize(at(pointer_to(state.R), 9 * r))
     clock[WORK] += 0.5 * h * clock[POWER]
     clock[POWER] = load_power(system, state)
     clock[WORK] += 0.5 * h * clock[POWER]
@@ -394,21 +382,21 @@ def load_power(system, state):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _orthogonalize(R, at):
+def _orthogonalize(R):
     """One Newton step ``R (3 I - R^T R) / 2`` towards the nearest rotation."""
     for i in range(3):
-        a, b, c = R[at + 3 * i], R[at + 3 * i + 1], R[at + 3 * i + 2]
+        a, b, c = R[3 * i], R[3 * i + 1], R[3 * i + 2]
         s = 1.5 - 0.5 * (a * a + b * b + c * c)
-        R[at + 3 * i], R[at + 3 * i + 1], R[at + 3 * i + 2] = s * a, s * b, s * c
+        R[3 * i], R[3 * i + 1], R[3 * i + 2] = s * a, s * b, s * c
     for i in range(2):
         for j in range(i + 1, 3):
             dot = 0.0
             for k in range(3):
-                dot += R[at + 3 * i + k] * R[at + 3 * j + k]
+                dot += R[3 * i + k] * R[3 * j + k]
             for k in range(3):
-                x = R[at + 3 * i + k]
-                R[at + 3 * i + k] -= 0.5 * dot * R[at + 3 * j + k]
-                R[at + 3 * j + k] -= 0.5 * dot * x
+                x = R[3 * i + k]
+                R[3 * i + k] -= 0.5 * dot * R[3 * j + k]
+                R[3 * j + k] -= 0.5 * dot * x
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -498,12 +486,11 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                     reason = np.int64(NOT_FINITE)
                     continue
         if control[PHASE] == FACTORED:
-            for i in range(n):
-                state.residual[i] *= state.scale[i]
             control[PHASE] = SOLVED
             if not dense:
                 return SOLVE
-            solve_dense(state, n)
+            columns_times(pointer_to(state.inverse), pointer_to(state.residual),
+                          pointer_to(state.correction), n)
         verdict = apply_correction(system, state, scheme)
         control[PHASE] = ITERATE
         if verdict == 1:

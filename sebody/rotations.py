@@ -103,14 +103,22 @@ def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
 
 
 @njit(cache=True, error_model="numpy")
+def turned(R, first, x, y, z):
+    """``R exp(psi)`` of the rotation at `first` of R, row by row."""
+    a, b, c, d, e, f, g, h, i = exp_map(x, y, z)
+    k, m, n = R[first], R[first + 1], R[first + 2]
+    p, q, r = R[first + 3], R[first + 4], R[first + 5]
+    s, t, u = R[first + 6], R[first + 7], R[first + 8]
+    return (k * a + m * d + n * g, k * b + m * e + n * h, k * c + m * f + n * i,
+            p * a + q * d + r * g, p * b + q * e + r * h, p * c + q * f + r * i,
+            s * a + t * d + u * g, s * b + t * e + u * h, s * c + t * f + u * i)
+
+
+@njit(cache=True, error_model="numpy")
 def turn(R, first, x, y, z, out, to):
     """``out = R exp(psi)``: the rotation at `first` of R, turned, to `to` of out."""
-    a, b, c, d, e, f, g, h, i = exp_map(x, y, z)
-    for k in range(3):
-        p, q, r = R[first + 3 * k], R[first + 3 * k + 1], R[first + 3 * k + 2]
-        out[to + 3 * k] = p * a + q * d + r * g
-        out[to + 3 * k + 1] = p * b + q * e + r * h
-        out[to + 3 * k + 2] = p * c + q * f + r * i
+    (out[to], out[to + 1], out[to + 2], out[to + 3], out[to + 4], out[to + 5], out[to + 6],
+     out[to + 7], out[to + 8]) = turned(R, first, x, y, z)
 
 
 @njit(cache=True, error_model="numpy")

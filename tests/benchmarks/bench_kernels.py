@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from sebody import Model, Simulation, check, simulate
-from sebody.abi import RESIDUAL, TANGENT, call_kernel
+from sebody.abi import RESIDUAL, TANGENT, call_kernel, padded
 from sebody.fem import planar_beam
 from sebody.kernels import load
 from sebody.reduction import craig_bampton
@@ -38,7 +38,7 @@ def repeat(times, address, task, stride, width, index, constants, q, R, v, a, re
 def nanoseconds(module, case, task, times=20000):
     """Time of one evaluation, median of seven."""
     n, counts = case.n, [module.N_POSITIONS, module.N_ROTATIONS, module.ROTATIONS, module.MODES]
-    work = np.zeros(module.WORK_ROWS * max(n, 9 * max(module.N_ROTATIONS, 1)))
+    work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
     T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
     samples = []
     for _ in range(7):
