@@ -150,8 +150,9 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
 def without(case: Case, what: str) -> Case:
     """The case with no stiffness or no inertia."""
     constants = case.constants.copy()
-    end = len(constants) - case.n**2
-    constants[slice(end - case.n**2, end) if what == "stiffness" else slice(end, None)] = 0.0
+    size = case.n * padded(case.n)
+    end = len(constants) - size
+    constants[slice(end - size, end) if what == "stiffness" else slice(end, None)] = 0.0
     return case._replace(constants=constants)
 
 
@@ -259,9 +260,11 @@ class _Weights:
 
     def __init__(self, case: Case):
         npos, nrot, n = case.module.N_POSITIONS, case.module.N_ROTATIONS, case.n
-        ends = np.cumsum([npos, npos, nrot, case.module.ROTATIONS, n * n, n * n])
+        column = padded(n)
+        ends = np.cumsum([npos, npos, nrot, case.module.ROTATIONS, n * column, n * column])
         self.alpha, self.fit, self.alpha_r, X, S, M = np.split(case.constants, ends[:-1])
-        self.X, self.S, self.M = X.reshape(npos, -1), S.reshape(n, n), M.reshape(n, n)
+        self.X = X.reshape(npos, -1)
+        self.S, self.M = (A.reshape(n, column)[:, :n].T for A in (S, M))
 
 
 def frame_rotation(case: Case) -> Rotation:

@@ -99,7 +99,7 @@ class Simulation:
         self.failure = ""
         self._factors = None
         _start(self.system, self.numbering, self.state)
-        first = _record(self.system, self.state, 1, self.every)
+        first = _record(self.state, 1, self.every)
         self.state.control[loop.RECORDED] = 0
         loop.write_record(self.state, first)
         self.records.append(first)
@@ -125,7 +125,7 @@ class Simulation:
         if last < self.state.control[loop.GRID]:
             raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
         steps = last // self.every - self.state.control[loop.GRID] // self.every
-        record = _record(self.system, self.state, int(steps), self.every)
+        record = _record(self.state, int(steps), self.every)
         self.state.control[loop.RECORDED] = 0
         code = loop.CHUNK
         while code not in (loop.DONE, loop.FAILED):
@@ -142,7 +142,8 @@ class Simulation:
             self.seconds += time.perf_counter() - began
             if progress and code in (loop.CHUNK, loop.DONE):
                 progress(self.time / t_end if t_end else 1.0)
-        self.records.append(_trimmed(record, int(self.state.control[loop.RECORDED])))
+        self.records.append(
+            record._replace(rows=record.rows[:self.state.control[loop.RECORDED]]))
         if code == loop.FAILED:
             self.failure = self._explain()
             raise SimulationError(self.failure, self.result())
@@ -187,15 +188,20 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
     for body in model.bodies.values():
         first = numbering.modes[body.name]
         v[first:first + body.body.modes] = body.mode_rates
-    R, frames = np.tile(np.eye(3).ravel(), turns), np.tile(np.eye(3).ravel(), bodies)
+    identities = np.tile(np.eye(3).ravel(), max(turns, bodies))
+    R, frames = identities[:9 * turns], identities[:9 * bodies]
+    parts = loop.recorded_parts(total, turns, bodies)
+    now = zeros(parts["frames_old"].stop)
+    for name, value in {"q": q, "v": v, "R": R, "frames": frames, "frames_old": frames}.items():
+        now[parts[name]] = value
     clock, control = zeros(loop.CLOCKS), np.zeros(loop.CONTROLS, dtype=np.int64)
     clock[loop.STEP] = clock[loop.CURRENT_STEP] = h
     clock[loop.CONTRACTION] = 0.95
     control[loop.WANTED] = 1
     return State(
-        q=q, R=R, v=v, a=zeros(total), aux=zeros(total), frames=frames, q_old=q.copy(),
-        R_old=R.copy(), v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total),
-        frames_old=frames.copy(), dq=zeros(total), T=np.tile(np.eye(3).ravel(), turns),
+        now, *[now[parts[name]] for name in ("q", "R", "v", "a", "frames", "frames_old")],
+        aux=zeros(total), q_old=q.copy(), R_old=R.copy(), v_old=v.copy(), a_old=zeros(total),
+        aux_old=zeros(total), dq=zeros(total), T=R.copy(),
         loads=zeros(max(len(model.loads), 1)), coefficients=zeros(5),
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])), residual=zeros(total),
         correction=zeros(padded(total)), matrix=zeros(system.rows.size + 1), scale=zeros(total),
@@ -280,17 +286,5 @@ def _check_start(system: System, numbering: Numbering, state: State) -> None:
                              f"by {abs(values[worst]):.3g}: start from a state the joints allow")
 
 
-def _record(system: System, state: State, steps: int, every: int) -> Record:
-    def block(width):
-        return np.zeros((steps, width))
-    return Record(t=np.zeros(steps), q=block(state.q.size), R=block(state.R.size),
-                  v=block(state.v.size), a=block(state.a.size), frames=block(state.frames.size),
-                  reference=block(state.frames.size), work=np.zeros(steps),
-                  iterations=np.zeros(steps, dtype=np.int64), every=np.array([every]))
-
-
-def _trimmed(record: Record, length: int) -> Record:
-    return Record(*[a if name == "every" else a[:length]
-                    for name, a in record._asdict().items()])
-
-
+def _record(state: State, steps: int, every: int) -> Record:
+    return Record(np.zeros((steps, state.now.size)), np.array([every]))

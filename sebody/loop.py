@@ -25,6 +25,8 @@ BEGIN, ITERATE, FACTORED, SOLVED = range(4)             # where it goes on
 NO_REASON, HALF_TURN, NO_FRAME, NOT_FINITE, SLOW = range(5)
 FINEST = 4096           # a grid step is cut into at most this many parts
 MAX_ITERATIONS = 12
+YOUNG = 8               # steps with a new matrix that tell how many iterations are usual
+WORTH = 20.0            # a matrix costs about so many iterations
 ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
 REFRESH = 0.3           # contraction slower than this asks for a new matrix
 
@@ -32,18 +34,19 @@ REFRESH = 0.3           # contraction slower than this asks for a new matrix
 class State(NamedTuple):
     """Everything a restart needs, and scratch memory."""
 
+    now: NDArray            # one block of what is recorded: the next six are parts of it
     q: NDArray              # positions, modes, angles, multipliers; rotations: step increments
     R: NDArray              # rotation matrices, nine numbers each
     v: NDArray
     a: NDArray              # true accelerations
-    aux: NDArray            # auxiliary accelerations of the integrator
     frames: NDArray         # of superelements, nine numbers each
+    frames_old: NDArray     # of the last accepted step
+    aux: NDArray            # auxiliary accelerations of the integrator
     q_old: NDArray          # the last accepted step
     R_old: NDArray
     v_old: NDArray
     a_old: NDArray
     aux_old: NDArray
-    frames_old: NDArray
     dq: NDArray             # increment of the step
     T: NDArray              # tangent operators of the rotation increments
     loads: NDArray          # load amplitudes now
@@ -63,27 +66,31 @@ class State(NamedTuple):
 
 
 # State.clock
-(TIME, STEP, CURRENT_STEP, WORK, POWER, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR) = range(9)
-CLOCKS = 9
+(TIME, STEP, CURRENT_STEP, WORK, POWER, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, USUAL,
+ EXCESS) = range(11)
+CLOCKS = 11
 # State.control
 (PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
- RECORDED) = range(13)
-CONTROLS = 13
+ RECORDED, AGE) = range(14)
+CONTROLS = 14
 
 
 class Record(NamedTuple):
     """What is kept of the output steps."""
 
-    t: NDArray
-    q: NDArray
-    R: NDArray
-    v: NDArray
-    a: NDArray
-    frames: NDArray         # and the frames they started from
-    reference: NDArray
-    work: NDArray           # work of the loads so far
-    iterations: NDArray     # so far
+    rows: NDArray           # a copy of State.now each
     every: NDArray          # (1,) grid steps between records
+
+
+def recorded_parts(coordinates: int, rotations: int, bodies: int) -> dict[str, slice]:
+    """Where things are in State.now and so in the rows of a record."""
+    sizes = {"t": 1, "work": 1, "iterations": 1, "q": coordinates, "R": 9 * rotations,
+             "v": coordinates, "a": coordinates, "frames": 9 * bodies, "frames_old": 9 * bodies}
+    parts, first = {}, 0
+    for name, size in sizes.items():
+        parts[name] = slice(first, first + size)
+        first += size
+    return parts
 
 
 class Scheme(NamedTuple):
@@ -356,6 +363,7 @@ def accept(system, state, record):
     clock[WORK] += 0.5 * h * clock[POWER]
     clock[POWER] = load_power(system, state)
     clock[WORK] += 0.5 * h * clock[POWER]
+    watch_age(state)
     control[STEPS] += 1
     control[UNIT] += FINEST >> control[LEVEL]
     if control[UNIT] >= FINEST:             # back on the output grid
@@ -369,6 +377,20 @@ def accept(system, state, record):
     while control[LEVEL] > 0 and control[UNIT] % (FINEST >> (control[LEVEL] - 1)) == 0:
         control[LEVEL] -= 1                 # try the longer step again
     clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def watch_age(state):
+    """Ask for a new matrix once the old one has cost as many extra iterations as a new one does."""
+    clock, control = state.clock, state.control
+    iterations = float(control[ITERATION])
+    control[AGE] += 1
+    if control[AGE] <= YOUNG:
+        clock[USUAL] += iterations / YOUNG
+    else:
+        clock[EXCESS] = max(clock[EXCESS] + iterations - clock[USUAL], 0.0)
+        if clock[EXCESS] > WORTH:
+            control[WANTED] = 1
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -403,18 +425,10 @@ def _orthogonalize(R):
 def write_record(state, record):
     """Store the accepted state."""
     k = state.control[RECORDED]
-    record.t[k] = state.clock[TIME]
-    for i in range(state.q.size):       # loops: assigning slices costs more than the copy
-        record.q[k, i] = state.q[i]
-        record.v[k, i] = state.v[i]
-        record.a[k, i] = state.a[i]
-    for i in range(state.R.size):
-        record.R[k, i] = state.R[i]
-    for i in range(state.frames.size):
-        record.frames[k, i] = state.frames[i]
-        record.reference[k, i] = state.frames_old[i]
-    record.work[k] = state.clock[WORK]
-    record.iterations[k] = state.control[ITERATIONS]
+    state.now[0], state.now[1] = state.clock[TIME], state.clock[WORK]
+    state.now[2] = state.control[ITERATIONS]
+    for i in range(state.now.size):     # one block: nine separate ones cost as much as a step
+        record.rows[k, i] = state.now[i]
     state.control[RECORDED] = k + 1
 
 
@@ -479,6 +493,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                 equilibrate(system, state)
                 control[WANTED], control[FRESH] = 0, 1
                 control[MATRICES] += 1
+                control[AGE], clock[USUAL], clock[EXCESS] = 0, 0.0, 0.0
                 clock[FACTOR_STEP] = clock[CURRENT_STEP]
                 if not dense:
                     return FACTOR

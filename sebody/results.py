@@ -12,7 +12,7 @@ from . import loop
 from .abi import ENERGIES, ENERGY
 from .assembly import Numbering, System
 from .errors import InputError
-from .loop import Record, State
+from .loop import State
 from .model import Model
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Result:
     numbering: Numbering
     system: System
     state: State
-    record: Record
+    rows: NDArray           # recorded states, see `recorded`
     seconds: float
     failure: str = ""
     _energies: NDArray | None = field(default=None, repr=False)
@@ -45,15 +45,19 @@ class Result:
     @classmethod
     def of(cls, run: "Simulation") -> "Result":
         """Everything a simulation has recorded so far."""
-        joined = Record(*[np.concatenate([getattr(r, name) for r in run.records])
-                          for name in Record._fields])
-        return cls(run.model, run.numbering, run.system, run.state, joined, run.seconds,
-                   run.failure)
+        rows = np.concatenate([record.rows for record in run.records])
+        return cls(run.model, run.numbering, run.system, run.state, rows, run.seconds, run.failure)
+
+    def recorded(self, name: str) -> NDArray:
+        """History of one of `loop.recorded_parts`, (n, size)."""
+        parts = loop.recorded_parts(self.numbering.total, len(self.numbering.rotations),
+                                    len(self.model.bodies))
+        return self.rows[:, parts[name]]
 
     @property
     def t(self) -> NDArray:
         """Output times [time]."""
-        return self.record.t
+        return self.recorded("t")[:, 0]
 
     @property
     def steps(self) -> int:
@@ -85,13 +89,13 @@ class Result:
         if name == "t":
             return self.t
         if name == "energy.external_work":
-            return self.record.work
+            return self.recorded("work")[:, 0]
         if name in SYSTEM_QUANTITIES:
             return self._energy_table()[:, SYSTEM_QUANTITIES[name]]
         owner, _, quantity = name.rpartition(".")
         if owner in self.model.bodies and quantity == "modes":
             first = self.numbering.modes[owner]
-            return self.record.q[:, first:first + self.model.bodies[owner].body.modes]
+            return self.recorded("q")[:, first:first + self.model.bodies[owner].body.modes]
         if owner not in self.model.nodes:
             raise InputError(f"{name!r} is unknown: nodes are {', '.join(self.model.nodes)}; of "
                              f"the model there are t, energy.external_work, "
@@ -109,20 +113,21 @@ class Result:
         first = self.numbering.triplets[id(triplet)]
         part = slice(first, first + triplet.start.size)
         if not turning:
-            source = {"position": self.record.q, "velocity": self.record.v,
-                      "acceleration": self.record.a}[quantity]
-            return source[:, part]
+            source = {"position": "q", "velocity": "v", "acceleration": "a"}[quantity]
+            return self.recorded(source)[:, part]
+        v = self.recorded("v")
         if self.model.planar:
-            return (self.record.q if quantity == "rotation" else self.record.v)[:, first]
+            return (self.recorded("q") if quantity == "rotation" else v)[:, first]
         k = self.numbering.rotations[id(triplet)]
-        R = self.record.R[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
-        return R if quantity == "rotation" else np.einsum("nij,nj->ni", R, self.record.v[:, part])
+        R = self.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
+        return R if quantity == "rotation" else np.einsum("nij,nj->ni", R, v[:, part])
 
     def _energy_table(self) -> NDArray:
         if self._energies is None:
             self._energies = np.zeros((len(self.t), ENERGIES))
-            scratch = State(*[a.copy() for a in self.state])
-            status = _evaluate_energies(self.system, scratch, self.record, self._energies)
+            now = self.state.now.copy()
+            status = _evaluate_energies(self.system, self.state, self.rows, self._energies)
+            self.state.now[:] = now
             if status:
                 raise InputError("the energies of a recorded state cannot be evaluated")
         return self._energies
@@ -171,14 +176,10 @@ class Result:
 
 
 @njit(cache=True, error_model="numpy")
-def _evaluate_energies(system, state, record, out):
+def _evaluate_energies(system, state, rows, out):
     """Energies and momentum of the superelements in every recorded state."""
-    for k in range(record.t.size):
-        state.q[:] = record.q[k]
-        state.R[:] = record.R[k]
-        state.v[:] = record.v[k]
-        state.frames[:] = record.frames[k]
-        state.frames_old[:] = record.reference[k]
+    for k in range(len(rows)):
+        state.now[:] = rows[k]
         state.energy[:] = 0.0
         status = loop.run_kernels(ENERGY, 0, system.first_load[0], system, state)
         if status != 0:
