@@ -80,6 +80,8 @@ def superelement_text(kernel: Superelement) -> str:
         space="motion in a plane" if planar else "motion in space",
         frame_summary=kernel.frame.summary, inertia_summary=kernel.inertia.summary,
         version=VERSION, sympy=sympy.__version__, imports=imports,
+        modes="any number of" if layout.modes is None else layout.modes, n_modes=layout.modes,
+        width="width" if layout.modes is None else layout.first_mode + layout.modes,
         first_rotation=layout.first_rotation, first_mode=layout.first_mode, work_rows=len(rows),
         residual_operations=counted[0], residual_products=counted[1],
         column_operations=printer.operations, column_products=printer.products, leaves=leaves,

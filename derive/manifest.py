@@ -6,8 +6,10 @@ sources add, and files multiply no further than this table; any other combinatio
 """
 
 SUPERELEMENTS = (
-    # layout, frame, inertia option
+    # layout, frame, inertia option; pinned numbers of modes where beams mostly need no others
     ("f2", "converged_mean", "b"),
+    ("f2m4", "converged_mean", "b"),
+    ("f2m8", "converged_mean", "b"),
     ("f2", "mean", "b"),
     ("f2", "mean_small", "b"),
     ("f2", "converged_mean", "a"),
@@ -18,6 +20,8 @@ SUPERELEMENTS = (
     ("t8", "positions", "b"),
     ("f8", "converged_mean", "b"),
     ("planar-f2", "converged_mean", "b"),
+    ("planar-f2m2", "converged_mean", "b"),
+    ("planar-f2m4", "converged_mean", "b"),
     ("planar-f2", "converged_mean", "a"),
     ("planar-f2", "positions", "b"),
     ("planar-f3", "converged_mean", "b"),

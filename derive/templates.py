@@ -2,7 +2,7 @@
 
 SUPERELEMENT = '''"""Superelement kernel: layout {layout}, frame {frame}, inertia option {inertia}.
 
-{positions} position(s) and {rotations} rotation(s) of {space}; any number of internal modes.
+{positions} position(s) and {rotations} rotation(s) of {space}; {modes} internal modes.
 Frame: {frame_summary}.
 Inertia: {inertia_summary}.
 Cardona (2000), equations (11), (14)-(19), (30), (31), (36)-(51) or (52)-(63).
@@ -23,6 +23,7 @@ N_POSITIONS = {positions}
 N_ROTATIONS = {rotations}
 ROTATIONS = {first_rotation}      # first rotation among the local coordinates
 MODES = {first_mode}          # first internal mode
+N_MODES = {n_modes}        # their number, None where it is read at run time
 WORK_ROWS = {work_rows}
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {{"residual": ({residual_operations}, {residual_products}),
@@ -36,7 +37,7 @@ LEAVES = {{
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={{"contract"}})
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
-    n = width
+    n = {width}
 {rows}
     for element in range(count):
         first = element*stride

@@ -23,6 +23,7 @@ N_POSITIONS = 2
 N_ROTATIONS = 2
 ROTATIONS = 6      # first rotation among the local coordinates
 MODES = 12          # first internal mode
+N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 26
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (1281, 3),

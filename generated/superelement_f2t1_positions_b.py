@@ -23,6 +23,7 @@ N_POSITIONS = 3
 N_ROTATIONS = 2
 ROTATIONS = 9      # first rotation among the local coordinates
 MODES = 15          # first internal mode
+N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 25
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (1319, 3),

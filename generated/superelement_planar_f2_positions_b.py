@@ -22,6 +22,7 @@ N_POSITIONS = 2
 N_ROTATIONS = 2
 ROTATIONS = 4      # first rotation among the local coordinates
 MODES = 6          # first internal mode
+N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 23
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (569, 3),

@@ -23,6 +23,7 @@ N_POSITIONS = 8
 N_ROTATIONS = 0
 ROTATIONS = 24      # first rotation among the local coordinates
 MODES = 24          # first internal mode
+N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 23
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (2113, 3),

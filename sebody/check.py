@@ -119,7 +119,8 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     """A generic state of a superelement kernel."""
     random = np.random.default_rng(seed)
     planar = module.LAYOUT.startswith("planar")
-    d, npos, nrot, modes = (2 if planar else 3), module.N_POSITIONS, module.N_ROTATIONS, 3
+    d, npos, nrot, modes = (2 if planar else 3), module.N_POSITIONS, module.N_ROTATIONS, (
+        3 if module.N_MODES is None else module.N_MODES)
     n = module.MODES + modes
     around = 2 * np.pi * np.arange(npos) / npos       # spread out: no frame is ill-conditioned
     X = np.column_stack([np.cos(around), np.sin(around), 0 * around])[:, :d]

@@ -37,16 +37,17 @@ def load(name: str) -> ModuleType | None:
     return module
 
 
-def superelement_kernel(layout: str, frame: str, inertia: str) -> ModuleType:
-    """The kernel of a layout, frame and inertia option.
+def superelement_kernel(layout: str, frame: str, inertia: str, modes: int) -> ModuleType:
+    """The kernel of a layout, frame and inertia option: one for this number of modes, or for any.
 
     Raises
     ------
     InputError
         If it has not been generated; the message gives the command that makes it.
     """
-    name = f"superelement_{layout}_{frame}_{inertia}".replace("-", "_")
-    module = load(name)
+    names = [f"superelement_{layout}{pinned}_{frame}_{inertia}".replace("-", "_")
+             for pinned in (f"m{modes}", "")]
+    module = load(names[0]) or load(names[1])
     if module is None:
         raise InputError(f"there is no kernel for layout {layout!r}, frame {frame!r}, inertia "
                          f"{inertia!r}: make it with\n    python -m sebody.derive "

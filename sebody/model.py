@@ -192,7 +192,7 @@ class Model:
             alpha, alpha_r = _weights_of_node(name, placed, frame_node)
         layout = layout_name(placed)
         kernel = superelement_kernel(layout, "converged_mean" if frame == "node" else frame,
-                                     inertia)
+                                     inertia, placed.modes)
         self.bodies[name] = Superelement(name, placed, nodes, frame, inertia, layout, alpha,
                                          alpha_r, kernel, np.zeros(placed.modes))
         return self.bodies[name]
