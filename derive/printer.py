@@ -97,7 +97,7 @@ class StepPrinter:
     def _loads(self, over: str, used: set) -> list[str]:
         lines = []
         for quantity in self.space.known.values():
-            if quantity.home == over and quantity.array and used & set(quantity.kept):
+            if quantity.home in (over, "element") and quantity.array and used & set(quantity.kept):
                 names = ", ".join(map(str, quantity.kept))
                 places = ", ".join(self._place(quantity, s) for s in quantity.kept)
                 lines.append(f"{names} = {places}")
@@ -109,6 +109,8 @@ class StepPrinter:
         k = quantity.kept.index(symbol)
         if quantity.name == "R":
             return f"R[9*nodes[j] + {k}]"
+        if quantity.home == "element":
+            return f"{quantity.array}[{k}]"
         if quantity.kind == "rotation":
             return f"{quantity.array}[9*j + {k}]"
         if quantity.kind == "scalar":
@@ -118,8 +120,10 @@ class StepPrinter:
         return f"{quantity.array}[{first} + {k}]" if k else f"{quantity.array}[{first}]"
 
     def _product(self, step: Product) -> list[str]:
-        self.products += 1
-        return [f"columns_times({step.matrix}, {step.vector}, {step.out}, n)"]
+        rows, columns = step.shape
+        if rows == columns:
+            self.products += 1
+        return [f"columns_times({step.matrix}, {step.vector}, {step.out}, {rows}, {columns})"]
 
     def _solve(self, step: Solve) -> list[str]:
         unknown = step.unknown

@@ -61,6 +61,13 @@ TABLE = {
     "Ms": ("axial", "element", "", "", "moment on the mean of the variations, (20) [moment]"),
     "P": ("vector", "element", "", "", "momentum of the body [mass length/time]"),
     "H": ("axial", "element", "", "", "its moment about the origin"),
+    "field": ("vector", "element", "field", "g", "gravity [length/time^2]"),
+    "gamma": ("vector", "element", "gamma", "R0^T g", "gravity in frame axes"),
+    "d": ("vector", "element", "d", "r^T Mbar y", "first moment of mass of the deformation"),
+    "mc": ("vector", "element", "mc", "m c", "first moment of mass at rest, about the origin"),
+    "potential": ("scalar", "element", "", "", "potential of gravity [energy]"),
+    "strain": ("scalar", "element", "", "V", "strain energy, (24) [energy]"),
+    "mass": ("scalar", "element", "masses", "m", "mass of the body"),
     # directions of a variation: d is the differential of position, velocity or acceleration
     "dx": ("vector", "position", "dqe", "R0^T delta x_i", "variation of a position, frame axes"),
     "dv": ("vector", "position", "dve", "R0^T delta xdot_i", "variation of a velocity"),

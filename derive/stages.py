@@ -92,12 +92,18 @@ class Stage(NamedTuple):
 
 
 class Product(NamedTuple):
-    """``out = matrix vector`` with a symmetric matrix of the body's constants."""
+    """``out = matrix vector`` with a matrix of the body's constants, by padded columns."""
 
     title: str
     matrix: str
     vector: str
     out: str
+    shape: tuple[str, str] = ("n", "n")
+
+    def differential(self) -> "Product":
+        """The same product of the vector's differential: the matrix is constant."""
+        return self._replace(title="differential: " + self.title, vector="d" + self.vector,
+                             out="d" + self.out)
 
 
 class Solve(NamedTuple):

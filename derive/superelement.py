@@ -13,6 +13,7 @@ import sympy as sp
 
 from .elastic import VirtualWork, _of, virtual_work, virtual_work_small
 from .frames import FRAMES, Frame, origin_stage, relative_rotation
+from .gravity import Gravity, gravity, linearized, taken_off
 from .inertia import OPTIONS, Inertia, relative_turning
 from .kinematics import (
     elastic_rotation_variation,
@@ -79,10 +80,19 @@ def _derived(planar: bool, frame: str, inertia: str):
     moved = q.vs if frame == "positions" else q.Om
     varied = q.dx if frame == "positions" else q.dth
     work = virtual_work_small(q) if chosen.small else virtual_work(q)
-    before, after = _motion(q, chosen, option, moved), _forces(q, chosen, option, work)
-    residual = [origin_stage(q, q.x0, q.x), *chosen.locate, *before, *_products(""), *after]
-    tangent = _tangent(q, chosen, varied, before, after)
-    return q, chosen, option, (residual, _energy(q, option), tangent)
+    weight = gravity(q)
+    before = _motion(q, chosen, option, moved)
+    after = _forces(q, chosen, option, work, weight)
+    elastic, *inertia = PRODUCTS
+    residual = [origin_stage(q, q.x0, q.x), *chosen.locate, *before, *weight.before, elastic,
+                *weight.products, taken_off(""), *inertia, *after]
+    tangent = _tangent(q, chosen, varied, before, after, weight)
+    return q, chosen, option, (residual, _energy(q, option, weight), tangent)
+
+
+PRODUCTS = (Product("elastic force, s = Sbar y", "S", "y", "s"),
+            Product("momentum, p = Mbar ydot", "M", "yd", "p"),
+            Product("inertia force, pd = Mbar yddot", "M", "ydd", "pd"))
 
 
 def _motion(q: Quantities, frame: Frame, option: Inertia, moved) -> list[Step]:
@@ -93,14 +103,8 @@ def _motion(q: Quantities, frame: Frame, option: Inertia, moved) -> list[Step]:
                   sets=((q.ym, q.qm.symbols), (q.ydm, q.vm.symbols), (q.yddm, q.am.symbols)))]
 
 
-def _products(d: str) -> list[Step]:
-    title = "differential: " if d else ""
-    return [Product(title + "elastic force, s = Sbar y", "S", d + "y", d + "s"),
-            Product(title + "momentum, p = Mbar ydot", "M", d + "yd", d + "p"),
-            Product(title + "inertia force, pd = Mbar yddot", "M", d + "ydd", d + "pd")]
-
-
-def _forces(q: Quantities, frame: Frame, option: Inertia, work: VirtualWork) -> list[Step]:
+def _forces(q: Quantities, frame: Frame, option: Inertia, work: VirtualWork,
+            weight: Gravity) -> list[Step]:
     R0, h, alpha = q.R0.symbols, q.h.symbols, q.alpha.symbols[0]
     origin = [Stage("force on the origin, through the frame", "position",
                     adds=((q.F, frame.origin),), continues=True)] if any(frame.origin) else []
@@ -109,7 +113,10 @@ def _forces(q: Quantities, frame: Frame, option: Inertia, work: VirtualWork) -> 
     of_mean = q.alpha_r.symbols[0] * q.Ms.symbols if work.mean else sp.zeros(3, 1)
     return [
         Stage("forces on the frame: elastic (30) and inertia (57)", "position",
-              adds=((q.F, work.origin), (q.W, work.frame_positions + option.frame_positions))),
+              adds=((q.F, work.origin + alpha * weight.origin),
+                    (q.W, work.frame_positions + option.frame_positions))),
+        Stage("moment of gravity on the frame", "element", adds=((q.W, weight.on_frame),),
+              continues=True),
         Stage("moments on the frame: elastic (30) and inertia (45)", "rotation",
               adds=((q.W, work.frame_rotations + option.frame_rotations),), continues=True),
         *frame.pull, *origin, *on_mean,
@@ -125,7 +132,7 @@ def _forces(q: Quantities, frame: Frame, option: Inertia, work: VirtualWork) -> 
     ]
 
 
-def _tangent(q: Quantities, frame: Frame, varied, before, after) -> list[Step]:
+def _tangent(q: Quantities, frame: Frame, varied, before, after, weight) -> list[Step]:
     """Differential of all stages: first the local coordinates, then everything else."""
     d = q.space.d
     chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm)
@@ -140,13 +147,15 @@ def _tangent(q: Quantities, frame: Frame, varied, before, after) -> list[Step]:
                        sets=((d(q.ym), d(q.qm).symbols),)))
     for quantity in (q.psi, q.ym, q.beta, q.beta0):
         chain.move(quantity)
-    steps += [_products("d")[0], _geometric_switch(q), *frame.differentials]
+    elastic, *inertia = PRODUCTS
+    steps += [elastic.differential(), _geometric_switch(q), *frame.differentials,
+              *linearized(q, weight, chain), taken_off("d")]
     for quantity in (q.f, q.m, q.fm):
         chain.move(quantity)
     for step in before[1:]:
         if step.title not in skipped:
             steps.append(chain.solve(step) if hasattr(step, "unknown") else chain.stage(step))
-    steps += _products("d")[1:]
+    steps += [product.differential() for product in inertia]
     for quantity in (q.px, q.pw, q.pxd, q.pwd, q.pmd):
         chain.move(quantity)
     for step in after:
@@ -161,14 +170,17 @@ def _geometric_switch(q: Quantities) -> Text:
                 ("for i in range(n):", "    dy[i] *= c_geo", "    dqe[i] *= c_geo", *lines))
 
 
-def _energy(q: Quantities, option: Inertia) -> list[Step]:
-    """Momentum and its moment: what T is conjugate to in a rigid motion of the whole body."""
+def _energy(q: Quantities, option: Inertia, weight: Gravity) -> list[Step]:
+    """Potential of gravity; momentum and its moment: conjugate to rigid motions of the body."""
     e, push = q.space.quantity("e", "axial", "element"), q.space.quantity("e_v", "vector",
                                                                           "element")
     R0, p, x = q.R0.symbols, q.px.symbols, q.x.symbols
     of_positions = p.dot(R0.T * (push.symbols + cross(e.symbols, x)))
     of_rotations = option.spin.dot(q.R.symbols.T * e.symbols)
-    return [Stage("momentum and its moment about the origin: positions", "position",
+    one = sp.Matrix([weight.potential]), sp.Matrix([weight.strain])
+    return [Stage("energies", "element", sets=((q.potential, one[0]),), adds=((q.strain, one[1]),),
+                  continues=True),
+            Stage("momentum and its moment about the origin: positions", "position",
                   adds=((q.P, _of(of_positions, push.symbols)),
                         (q.H, _of(of_positions, e.symbols)))),
             Stage("moment of momentum: rotations", "rotation",

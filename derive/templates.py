@@ -38,6 +38,7 @@ LEAVES = {{
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = {width}
+    field = at(coefficients, 5)
 {rows}
     for element in range(count):
         first = element*stride
@@ -51,6 +52,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         X = at(alpha_rs, N_ROTATIONS)
         S = at(X, ROTATIONS)
         M = at(S, n*padded(n))
+        mass_columns = at(M, n*padded(n))
+        mass_rows = at(mass_columns, {axes_count}*padded(n))
+        mc = at(mass_rows, n*padded({axes_count}))
+        masses = at(mc, {axes_count})
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -120,10 +125,10 @@ else:
 '''
 
 ENERGY_OUTPUTS = {
-    False: ("energies[0] += kinetic", "energies[1] += strain",
+    False: ("energies[0] += kinetic", "energies[1] += strain", "energies[9] += potential",
             *(f"energies[{2 + k}] += P_{a}" for k, a in enumerate("xyz")),
             *(f"energies[{5 + k}] += H_{a}" for k, a in enumerate("xyz"))),
-    True: ("energies[0] += kinetic", "energies[1] += strain",
+    True: ("energies[0] += kinetic", "energies[1] += strain", "energies[9] += potential",
            "energies[2] += P_x", "energies[3] += P_y", "energies[7] += H_z"),
 }
 

@@ -24,16 +24,16 @@ N_ROTATIONS = 2
 ROTATIONS = 6      # first rotation among the local coordinates
 MODES = 12          # first internal mode
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 26
+WORK_ROWS = 32
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (1281, 3),
-              "column": (2798, 3)}
+OPERATIONS = {"residual": (1322, 3),
+              "column": (2845, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "02af63461db9",
+    "_columns_times": "bb899bc4d9a4",
     "_mean_of_two": "88b125f57ecf",
     "_mean_step": "a6f51f310f53",
-    "columns_times": "778c70e83538",
+    "columns_times": "d7f377e75edd",
     "converged_mean": "1e2dcc61ffa6",
     "exp_map": "833cbc6b09c9",
     "inverse_3": "207e4e8e3ea0",
@@ -53,6 +53,7 @@ LEAVES = {
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width
+    field = at(coefficients, 5)
     row = padded(max(n, 9*N_ROTATIONS))
     qe = at(work, 0*row)
     ve = at(work, 1*row)
@@ -68,18 +69,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     Q = at(work, 11*row)
     e0s = at(work, 12*row)
     e1s = at(work, 13*row)
-    dqe = at(work, 14*row)
-    dve = at(work, 15*row)
-    dae = at(work, 16*row)
-    dy = at(work, 17*row)
-    dyd = at(work, 18*row)
-    dydd = at(work, 19*row)
-    dacc = at(work, 20*row)
-    ds = at(work, 21*row)
-    dp = at(work, 22*row)
-    dpd = at(work, 23*row)
-    dh = at(work, 24*row)
-    dg = at(work, 25*row)
+    gamma = at(work, 14*row)
+    d = at(work, 15*row)
+    weight = at(work, 16*row)
+    dqe = at(work, 17*row)
+    dve = at(work, 18*row)
+    dae = at(work, 19*row)
+    dy = at(work, 20*row)
+    dyd = at(work, 21*row)
+    dydd = at(work, 22*row)
+    dacc = at(work, 23*row)
+    ds = at(work, 24*row)
+    dp = at(work, 25*row)
+    dpd = at(work, 26*row)
+    dh = at(work, 27*row)
+    dgamma = at(work, 28*row)
+    dd = at(work, 29*row)
+    dweight = at(work, 30*row)
+    dg = at(work, 31*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + 1])
@@ -92,6 +99,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         X = at(alpha_rs, N_ROTATIONS)
         S = at(X, ROTATIONS)
         M = at(S, n*padded(n))
+        mass_columns = at(M, n*padded(n))
+        mass_rows = at(mass_columns, 3*padded(n))
+        mc = at(mass_rows, n*padded(3))
+        masses = at(mc, 3)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -229,12 +240,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             y[k] = qm
             yd[k] = vm
             ydd[k] = am
+        # gravity in frame axes
+        field_x, field_y, field_z = field[0], field[1], field[2]
+        gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
+        gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
+        gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
+        # first moment of mass of the deformation, d = r^T Mbar y
+        columns_times(mass_rows, y, d, 3, n)
         # elastic force, s = Sbar y
-        columns_times(S, y, s, n)
+        columns_times(S, y, s, n, n)
+        # weight conjugate to y, Mbar r gamma
+        columns_times(mass_columns, gamma, weight, n, 3)
+        # force conjugate to y, elastic and gravity
+        for i in range(n):
+            s[i] -= weight[i]
         # momentum, p = Mbar ydot
-        columns_times(M, yd, p, n)
+        columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
-        columns_times(M, ydd, pd, n)
+        columns_times(M, ydd, pd, n, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -245,15 +268,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            t17 = X_z + u_z
-            t18 = X_y + u_y
-            t19 = X_x + u_x
-            F_x += -f_x
-            F_y += -f_y
-            F_z += -f_z
-            W_x += f_y*t17 - f_z*t18 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t17 + f_z*t19 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t18 - f_y*t19 - px_x*vs_y + px_y*vs_x
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            mass = masses[0]
+            alpha = alphas[i]
+            t17 = alpha*mass
+            t18 = X_z + u_z
+            t19 = X_y + u_y
+            t20 = X_x + u_x
+            F_x += -f_x - gamma_x*t17
+            F_y += -f_y - gamma_y*t17
+            F_z += -f_z - gamma_z*t17
+            W_x += f_y*t18 - f_z*t19 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t18 + f_z*t20 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t19 - f_y*t20 - px_x*vs_y + px_y*vs_x
+        # moment of gravity on the frame
+        gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+        d_x, d_y, d_z = d[0], d[1], d[2]
+        mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+        t21 = d_z + mc_z
+        t22 = d_y + mc_y
+        t23 = d_x + mc_x
+        W_x += gamma_y*t21 - gamma_z*t22
+        W_y += -gamma_x*t21 + gamma_z*t23
+        W_z += gamma_x*t22 - gamma_y*t23
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -262,24 +299,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t20 = -m_x*psi_y + m_y*psi_x
-            t21 = m_x*psi_z
-            t22 = -m_z*psi_x + t21
-            t23 = -m_y*psi_z + m_z*psi_y
-            W_x += (-e0*psi_y*t20 + e0*psi_z*t22 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y -
+            t24 = -m_x*psi_y + m_y*psi_x
+            t25 = m_x*psi_z
+            t26 = -m_z*psi_x + t25
+            t27 = -m_y*psi_z + m_z*psi_y
+            W_x += (-e0*psi_y*t24 + e0*psi_z*t26 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y -
                 pw_y*w_z + pw_z*w_y)
-            W_y += (e0*psi_x*t20 - e0*psi_z*t23 - m_y + (0.5)*m_z*psi_x + pw_x*w_z - pw_z*w_x -
-                0.5*t21)
-            W_z += (-e0*psi_x*t22 + e0*psi_y*t23 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z -
+            W_y += (e0*psi_x*t24 - e0*psi_z*t27 - m_y + (0.5)*m_z*psi_x + pw_x*w_z - pw_z*w_x -
+                0.5*t25)
+            W_z += (-e0*psi_x*t26 + e0*psi_y*t27 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z -
                 pw_x*w_y + pw_y*w_x)
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t24 = W_x + rhs_x
-        t25 = W_y + rhs_y
-        t26 = W_z + rhs_z
-        wp_x = Bxx*t24 + Byx*t25 + Bzx*t26
-        wp_y = Bxy*t24 + Byy*t25 + Bzy*t26
-        wp_z = Bxz*t24 + Byz*t25 + Bzz*t26
+        t28 = W_x + rhs_x
+        t29 = W_y + rhs_y
+        t30 = W_z + rhs_z
+        wp_x = Bxx*t28 + Byx*t29 + Bzx*t30
+        wp_y = Bxy*t28 + Byy*t29 + Bzy*t30
+        wp_z = Bxz*t28 + Byz*t29 + Bzz*t30
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -309,33 +346,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t27 = m_y*psi_z
-            t28 = m_x*psi_y
-            t29 = m_y*psi_x - t28
-            t30 = e0*psi_y
-            t31 = m_x*psi_z
-            t32 = m_z*psi_x
-            t33 = t31 - t32
-            t34 = e0*psi_z
-            t35 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
-            t36 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
-            t37 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
-            t38 = psi_y*wp_z
-            t39 = psi_z*wp_y
-            t40 = psi_x*wp_y
-            t41 = psi_y*wp_x
-            t42 = t40 - t41
-            t43 = psi_x*wp_z
-            t44 = psi_z*wp_x - t43
-            t45 = m_z*psi_y - t27
-            t46 = e0*psi_x
-            t47 = t38 - t39
-            g[j3] = (Q_xx*t35 + Q_yx*t36 + Q_zx*t37 + alpha_r*(t30*t42 - t34*t44 - 0.5*t38 +
-                (0.5)*t39 + wp_x) + m_x - 0.5*m_z*psi_y + (0.5)*t27 + t29*t30 - t33*t34)
-            g[j3 + 1] = (Q_xy*t35 + Q_yy*t36 + Q_zy*t37 + alpha_r*(-0.5*psi_z*wp_x + t34*t47 -
-                t42*t46 + (0.5)*t43 + wp_y) + m_y - t29*t46 - 0.5*t31 + (0.5)*t32 + t34*t45)
-            g[j3 + 2] = (Q_xz*t35 + Q_yz*t36 + Q_zz*t37 + alpha_r*(-t30*t47 - 0.5*t40 + (0.5)*t41
-                + t44*t46 + wp_z) - 0.5*m_y*psi_x + m_z + (0.5)*t28 - t30*t45 + t33*t46)
+            t31 = m_y*psi_z
+            t32 = m_x*psi_y
+            t33 = m_y*psi_x - t32
+            t34 = e0*psi_y
+            t35 = m_x*psi_z
+            t36 = m_z*psi_x
+            t37 = t35 - t36
+            t38 = e0*psi_z
+            t39 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
+            t40 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
+            t41 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
+            t42 = psi_y*wp_z
+            t43 = psi_z*wp_y
+            t44 = psi_x*wp_y
+            t45 = psi_y*wp_x
+            t46 = t44 - t45
+            t47 = psi_x*wp_z
+            t48 = psi_z*wp_x - t47
+            t49 = m_z*psi_y - t31
+            t50 = e0*psi_x
+            t51 = t42 - t43
+            g[j3] = (Q_xx*t39 + Q_yx*t40 + Q_zx*t41 + alpha_r*(t34*t46 - t38*t48 - 0.5*t42 +
+                (0.5)*t43 + wp_x) + m_x - 0.5*m_z*psi_y + (0.5)*t31 + t33*t34 - t37*t38)
+            g[j3 + 1] = (Q_xy*t39 + Q_yy*t40 + Q_zy*t41 + alpha_r*(-0.5*psi_z*wp_x + t38*t51 -
+                t46*t50 + (0.5)*t47 + wp_y) + m_y - t33*t50 - 0.5*t35 + (0.5)*t36 + t38*t49)
+            g[j3 + 2] = (Q_xz*t39 + Q_yz*t40 + Q_zz*t41 + alpha_r*(-t34*t51 - 0.5*t44 + (0.5)*t45
+                + t48*t50 + wp_z) - 0.5*m_y*psi_x + m_z + (0.5)*t32 - t34*t49 + t37*t50)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -347,6 +384,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
+            # energies
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            d_x, d_y, d_z = d[0], d[1], d[2]
+            mass = masses[0]
+            mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+            potential = (-gamma_x*(d_x + mc_x) - gamma_y*(d_y + mc_y) - gamma_z*(d_z + mc_z) -
+                mass*(gamma_x*(R0_xx*x0_x + R0_yx*x0_y + R0_zx*x0_z) + gamma_y*(R0_xy*x0_x +
+                R0_yy*x0_y + R0_zy*x0_z) + gamma_z*(R0_xz*x0_x + R0_yz*x0_y + R0_zz*x0_z)))
+            strain += (0.5)*d_x*gamma_x + (0.5)*d_y*gamma_y + (0.5)*d_z*gamma_z
             # momentum and its moment about the origin: positions
             P_x = P_y = P_z = 0.0
             H_x = H_y = H_z = 0.0
@@ -373,14 +419,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j] + 0],
                     R[9*nodes[j] + 1], R[9*nodes[j] + 2], R[9*nodes[j] + 3], R[9*nodes[j] + 4],
                     R[9*nodes[j] + 5], R[9*nodes[j] + 6], R[9*nodes[j] + 7], R[9*nodes[j] + 8])
-                t48 = Q_xx*pw_x + Q_yx*pw_y + Q_zx*pw_z
-                t49 = Q_xy*pw_x + Q_yy*pw_y + Q_zy*pw_z
-                t50 = Q_xz*pw_x + Q_yz*pw_y + Q_zz*pw_z
-                H_x += R_xx*t48 + R_xy*t49 + R_xz*t50
-                H_y += R_yx*t48 + R_yy*t49 + R_yz*t50
-                H_z += R_zx*t48 + R_zy*t49 + R_zz*t50
+                t52 = Q_xx*pw_x + Q_yx*pw_y + Q_zx*pw_z
+                t53 = Q_xy*pw_x + Q_yy*pw_y + Q_zy*pw_z
+                t54 = Q_xz*pw_x + Q_yz*pw_y + Q_zz*pw_z
+                H_x += R_xx*t52 + R_xy*t53 + R_xz*t54
+                H_y += R_yx*t52 + R_yy*t53 + R_yz*t54
+                H_z += R_zx*t52 + R_zy*t53 + R_zz*t54
             energies[0] += kinetic
             energies[1] += strain
+            energies[9] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[4] += P_z
@@ -432,16 +479,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t51 = -dth_x*psi_y + dth_y*psi_x
-                    t52 = dth_x*psi_z
-                    t53 = -dth_z*psi_x + t52
-                    t54 = -dth_y*psi_z + dth_z*psi_y
+                    t55 = -dth_x*psi_y + dth_y*psi_x
+                    t56 = dth_x*psi_z
+                    t57 = -dth_z*psi_x + t56
+                    t58 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t51 + e0*psi_z*t53))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t51 - e0*psi_z*t54 -
-                        0.5*t52))
-                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t53
-                        + e0*psi_y*t54))
+                        e0*psi_y*t55 + e0*psi_z*t57))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t55 - e0*psi_z*t58 -
+                        0.5*t56))
+                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t57
+                        + e0*psi_y*t58))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -451,47 +498,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    t55 = X_y + u_y
-                    t56 = X_z + u_z
-                    t57 = X_x + u_x
-                    dy[i3] = -dth0_y*t56 + dth0_z*t55 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t56 - dth0_z*t57 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t55 + dth0_y*t57 - dx0_z + dx_z
+                    t59 = X_y + u_y
+                    t60 = X_z + u_z
+                    t61 = X_x + u_x
+                    dy[i3] = -dth0_y*t60 + dth0_z*t59 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t60 - dth0_z*t61 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t59 + dth0_y*t61 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t58 = dth0_y*psi_z
-                    t59 = dth_y*psi_z
-                    t60 = dth0_x*psi_y
-                    t61 = dth0_y*psi_x - t60
-                    t62 = e0*psi_y
-                    t63 = dth_x*psi_z
-                    t64 = dth_z*psi_x
-                    t65 = t63 - t64
-                    t66 = e0*psi_z
-                    t67 = dth_x*psi_y
-                    t68 = dth_y*psi_x - t67
-                    t69 = dth0_x*psi_z
-                    t70 = dth0_z*psi_x
-                    t71 = t69 - t70
-                    t72 = e0*psi_x
-                    t73 = dth_z*psi_y - t59
-                    t74 = dth0_z*psi_y - t58
+                    t62 = dth0_y*psi_z
+                    t63 = dth_y*psi_z
+                    t64 = dth0_x*psi_y
+                    t65 = dth0_y*psi_x - t64
+                    t66 = e0*psi_y
+                    t67 = dth_x*psi_z
+                    t68 = dth_z*psi_x
+                    t69 = t67 - t68
+                    t70 = e0*psi_z
+                    t71 = dth_x*psi_y
+                    t72 = dth_y*psi_x - t71
+                    t73 = dth0_x*psi_z
+                    t74 = dth0_z*psi_x
+                    t75 = t73 - t74
+                    t76 = e0*psi_x
+                    t77 = dth_z*psi_y - t63
+                    t78 = dth0_z*psi_y - t62
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t68 + e0*psi_z*t71 - 0.5*t58 - 0.5*t59 - t61*t62 - t65*t66)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t61*t72 + (0.5)*t63 - 0.5*t64 + t66*t73 -
-                        t66*t74 - t68*t72 + (0.5)*t69 - 0.5*t70)
+                        e0*psi_y*t72 + e0*psi_z*t75 - 0.5*t62 - 0.5*t63 - t65*t66 - t69*t70)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t65*t76 + (0.5)*t67 - 0.5*t68 + t70*t77 -
+                        t70*t78 - t72*t76 + (0.5)*t73 - 0.5*t74)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t65 + e0*psi_y*t74 - 0.5*t60 - t62*t73 - 0.5*t67 - t71*t72)
+                        e0*psi_x*t69 + e0*psi_y*t78 - 0.5*t64 - t66*t77 - 0.5*t71 - t75*t76)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # differential: elastic force, s = Sbar y
-                columns_times(S, dy, ds, n)
+                columns_times(S, dy, ds, n, n)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
@@ -499,6 +546,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dth0_x *= c_geo
                 dth0_y *= c_geo
                 dth0_z *= c_geo
+                # differential: gravity in frame axes
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
+                dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
+                dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
+                # differential: first moment of mass of the deformation, d = r^T Mbar y
+                columns_times(mass_rows, dy, dd, 3, n)
+                # differential: weight conjugate to y, Mbar r gamma
+                columns_times(mass_columns, dgamma, dweight, n, 3)
+                # force conjugate to y, elastic and gravity
+                for i in range(n):
+                    ds[i] -= dweight[i]
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -544,46 +603,46 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t75 = -Om_x*psi_y + Om_y*psi_x
-                    t76 = dpsi_y*e0
-                    t77 = Om0_x*psi_z - Om0_z*psi_x
-                    t78 = dpsi_z*e0
-                    t79 = Om0_x*dpsi_z
-                    t80 = -Om0_z*dpsi_x + t79
-                    t81 = e0*psi_z
-                    t82 = -Om0_x*psi_y + Om0_y*psi_x
-                    t83 = Om_x*psi_z - Om_z*psi_x
-                    t84 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t85 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t86 = e0*psi_y
-                    t87 = Om_x*dpsi_z
-                    t88 = dOm_x*psi_z
-                    t89 = -Om_z*dpsi_x - dOm_z*psi_x + t87 + t88
-                    t90 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t91 = e1*t90
-                    t92 = psi_y*t91
-                    t93 = psi_z*t91
-                    t94 = dpsi_x*e0
-                    t95 = -Om_y*psi_z + Om_z*psi_y
-                    t96 = e0*psi_x
-                    t97 = -Om0_y*psi_z + Om0_z*psi_y
-                    t98 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t99 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t100 = psi_x*t91
+                    t79 = -Om_x*psi_y + Om_y*psi_x
+                    t80 = dpsi_y*e0
+                    t81 = Om0_x*psi_z - Om0_z*psi_x
+                    t82 = dpsi_z*e0
+                    t83 = Om0_x*dpsi_z
+                    t84 = -Om0_z*dpsi_x + t83
+                    t85 = e0*psi_z
+                    t86 = -Om0_x*psi_y + Om0_y*psi_x
+                    t87 = Om_x*psi_z - Om_z*psi_x
+                    t88 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t89 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t90 = e0*psi_y
+                    t91 = Om_x*dpsi_z
+                    t92 = dOm_x*psi_z
+                    t93 = -Om_z*dpsi_x - dOm_z*psi_x + t91 + t92
+                    t94 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t95 = e1*t94
+                    t96 = psi_y*t95
+                    t97 = psi_z*t95
+                    t98 = dpsi_x*e0
+                    t99 = -Om_y*psi_z + Om_z*psi_y
+                    t100 = e0*psi_x
+                    t101 = -Om0_y*psi_z + Om0_z*psi_y
+                    t102 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t103 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t104 = psi_x*t95
                     rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
                         - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t82 + dpsi_z*e0*t83 + e0*psi_y*t84 + e0*psi_z*t89 +
-                        e1*psi_y*t82*t90 + e1*psi_z*t83*t90 - t75*t76 - t75*t92 - t77*t78 -
-                        t77*t93 - t80*t81 - t85*t86))
+                        dpsi_y*e0*t86 + dpsi_z*e0*t87 + e0*psi_y*t88 + e0*psi_z*t93 +
+                        e1*psi_y*t86*t94 + e1*psi_z*t87*t94 - t79*t80 - t79*t96 - t81*t82 -
+                        t81*t97 - t84*t85 - t89*t90))
                     rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t75 + dpsi_z*e0*t97 + e0*psi_x*t85 +
-                        e0*psi_z*t98 + e1*psi_x*t75*t90 + e1*psi_z*t90*t97 - t100*t82 - t78*t95 -
-                        0.5*t79 - t81*t99 - t82*t94 - t84*t96 - 0.5*t87 - 0.5*t88 - t93*t95))
+                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t79 + dpsi_z*e0*t101 + e0*psi_x*t89 +
+                        e0*psi_z*t102 + e1*psi_x*t79*t94 + e1*psi_z*t101*t94 - t100*t88 - t103*t85
+                        - t104*t86 - t82*t99 - 0.5*t83 - t86*t98 - 0.5*t91 - 0.5*t92 - t97*t99))
                     rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
                         - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t77 + dpsi_y*e0*t95 + e0*psi_x*t80 + e0*psi_y*t99 +
-                        e1*psi_x*t77*t90 + e1*psi_y*t90*t95 - t100*t83 - t76*t97 - t83*t94 -
-                        t86*t98 - t89*t96 - t92*t97))
+                        dpsi_x*e0*t81 + dpsi_y*e0*t99 + e0*psi_x*t84 + e0*psi_y*t103 +
+                        e1*psi_x*t81*t94 + e1*psi_y*t94*t99 - t100*t93 - t101*t80 - t101*t96 -
+                        t102*t90 - t104*t87 - t87*t98))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -628,9 +687,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: momentum, p = Mbar ydot
-                columns_times(M, dyd, dp, n)
+                columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot
-                columns_times(M, dydd, dpd, n)
+                columns_times(M, dydd, dpd, n, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -641,22 +700,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
+                    mass = masses[0]
+                    alpha = alphas[i]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
+                    dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t101 = X_z + u_z
-                    t102 = X_y + u_y
-                    t103 = X_x + u_x
-                    dF_x += -df_x
-                    dF_y += -df_y
-                    dF_z += -df_z
-                    dW_x += (df_y*t101 - df_z*t102 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
+                    t105 = alpha*mass
+                    t106 = X_z + u_z
+                    t107 = X_y + u_y
+                    t108 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t105
+                    dF_y += -df_y - dgamma_y*t105
+                    dF_z += -df_z - dgamma_z*t105
+                    dW_x += (df_y*t106 - df_z*t107 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
                         + dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t101 + df_z*t103 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
+                    dW_y += (-df_x*t106 + df_z*t108 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
                         du_z*f_x - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t102 - df_y*t103 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
+                    dW_z += (df_x*t107 - df_y*t108 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
                         + dvs_x*px_y - dvs_y*px_x)
+                # differential: moment of gravity on the frame
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                d_x, d_y, d_z = d[0], d[1], d[2]
+                mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+                dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
+                dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
+                t109 = d_y + mc_y
+                t110 = d_z + mc_z
+                t111 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t110 - dgamma_z*t109
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t110 + dgamma_z*t111
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t109 - dgamma_y*t111
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -670,28 +745,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpw_x, dpw_y, dpw_z = dp[j3], dp[j3 + 1], dp[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t104 = -m_x*psi_y + m_y*psi_x
-                    t105 = m_x*psi_z - m_z*psi_x
-                    t106 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t107 = dm_x*psi_z
-                    t108 = dpsi_z*m_x
-                    t109 = -dm_z*psi_x - dpsi_x*m_z + t107 + t108
-                    t110 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t111 = e1*t110
-                    t112 = -m_y*psi_z + m_z*psi_y
-                    t113 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t104 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t105 + (0.5)*dpsi_z*m_y - dpw_y*w_z + dpw_z*w_y
-                        + dw_y*pw_z - dw_z*pw_y - e0*psi_y*t106 + e0*psi_z*t109 +
-                        e1*psi_z*t105*t110 - psi_y*t104*t111)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t104 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t112 + dpw_x*w_z - dpw_z*w_x - dw_x*pw_z + dw_z*pw_x +
-                        e0*psi_x*t106 - e0*psi_z*t113 + e1*psi_x*t104*t110 - psi_z*t111*t112 -
-                        0.5*t107 - 0.5*t108)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t105 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t112 + (0.5)*dpsi_y*m_x - dpw_x*w_y + dpw_y*w_x
-                        + dw_x*pw_y - dw_y*pw_x - e0*psi_x*t109 + e0*psi_y*t113 +
-                        e1*psi_y*t110*t112 - psi_x*t105*t111)
+                    t112 = -m_x*psi_y + m_y*psi_x
+                    t113 = m_x*psi_z - m_z*psi_x
+                    t114 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t115 = dm_x*psi_z
+                    t116 = dpsi_z*m_x
+                    t117 = -dm_z*psi_x - dpsi_x*m_z + t115 + t116
+                    t118 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t119 = e1*t118
+                    t120 = -m_y*psi_z + m_z*psi_y
+                    t121 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t112 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t113 + (0.5)*dpsi_z*m_y - dpw_y*w_z + dpw_z*w_y
+                        + dw_y*pw_z - dw_z*pw_y - e0*psi_y*t114 + e0*psi_z*t117 +
+                        e1*psi_z*t113*t118 - psi_y*t112*t119)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t112 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t120 + dpw_x*w_z - dpw_z*w_x - dw_x*pw_z + dw_z*pw_x +
+                        e0*psi_x*t114 - e0*psi_z*t121 + e1*psi_x*t112*t118 - psi_z*t119*t120 -
+                        0.5*t115 - 0.5*t116)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t113 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t120 + (0.5)*dpsi_y*m_x - dpw_x*w_y + dpw_y*w_x
+                        + dw_x*pw_y - dw_y*pw_x - e0*psi_x*t117 + e0*psi_y*t121 +
+                        e1*psi_y*t118*t120 - psi_x*t113*t119)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -701,33 +776,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t114 = dpsi_y*wp_z
-                    t115 = dpsi_z*wp_y
-                    t116 = psi_x*wp_y - psi_y*wp_x
-                    t117 = e0*t116
-                    t118 = dpsi_x*wp_y
-                    t119 = dpsi_y*wp_x
-                    t120 = e0*(t118 - t119)
-                    t121 = -psi_x*wp_z + psi_z*wp_x
-                    t122 = dpsi_x*wp_z
-                    t123 = dpsi_z*wp_x - t122
-                    t124 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t125 = e1*t124
-                    t126 = t116*t125
-                    t127 = psi_y*wp_z - psi_z*wp_y
-                    t128 = t114 - t115
-                    rhs_x += (-alpha_r*(dpsi_y*t117 - dpsi_z*e0*t121 - e0*psi_z*t123 + psi_y*t120
-                        + psi_y*t126 - psi_z*t121*t125 + (0.5)*t114 - 0.5*t115))
-                    rhs_y += (-alpha_r*(-dpsi_x*t117 + dpsi_z*e0*t127 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t128 + e1*psi_z*t124*t127 - psi_x*t120 - psi_x*t126 - 0.5*t122))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t121 - dpsi_y*e0*t127 + e0*psi_x*t123 -
-                        e0*psi_y*t128 + psi_x*t121*t125 - psi_y*t125*t127 + (0.5)*t118 - 0.5*t119))
-                t129 = dW_x + rhs_x
-                t130 = dW_y + rhs_y
-                t131 = dW_z + rhs_z
-                dwp_x = Bxx*t129 + Byx*t130 + Bzx*t131
-                dwp_y = Bxy*t129 + Byy*t130 + Bzy*t131
-                dwp_z = Bxz*t129 + Byz*t130 + Bzz*t131
+                    t122 = dpsi_y*wp_z
+                    t123 = dpsi_z*wp_y
+                    t124 = psi_x*wp_y - psi_y*wp_x
+                    t125 = e0*t124
+                    t126 = dpsi_x*wp_y
+                    t127 = dpsi_y*wp_x
+                    t128 = e0*(t126 - t127)
+                    t129 = -psi_x*wp_z + psi_z*wp_x
+                    t130 = dpsi_x*wp_z
+                    t131 = dpsi_z*wp_x - t130
+                    t132 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t133 = e1*t132
+                    t134 = t124*t133
+                    t135 = psi_y*wp_z - psi_z*wp_y
+                    t136 = t122 - t123
+                    rhs_x += (-alpha_r*(dpsi_y*t125 - dpsi_z*e0*t129 - e0*psi_z*t131 + psi_y*t128
+                        + psi_y*t134 - psi_z*t129*t133 + (0.5)*t122 - 0.5*t123))
+                    rhs_y += (-alpha_r*(-dpsi_x*t125 + dpsi_z*e0*t135 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t136 + e1*psi_z*t132*t135 - psi_x*t128 - psi_x*t134 - 0.5*t130))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t129 - dpsi_y*e0*t135 + e0*psi_x*t131 -
+                        e0*psi_y*t136 + psi_x*t129*t133 - psi_y*t133*t135 + (0.5)*t126 - 0.5*t127))
+                t137 = dW_x + rhs_x
+                t138 = dW_y + rhs_y
+                t139 = dW_z + rhs_z
+                dwp_x = Bxx*t137 + Byx*t138 + Bzx*t139
+                dwp_y = Bxy*t137 + Byy*t138 + Bzy*t139
+                dwp_z = Bxz*t137 + Byz*t138 + Bzz*t139
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -747,12 +822,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t132 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t133 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t134 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t132 + R0_xy*t133 + R0_xz*t134
-                    dg[i3 + 1] = R0_yx*t132 + R0_yy*t133 + R0_yz*t134
-                    dg[i3 + 2] = R0_zx*t132 + R0_zy*t133 + R0_zz*t134
+                    t140 = dh_x + dth0_y*h_z - dth0_z*h_y
+                    t141 = dh_y - dth0_x*h_z + dth0_z*h_x
+                    t142 = dh_z + dth0_x*h_y - dth0_y*h_x
+                    dg[i3] = R0_xx*t140 + R0_xy*t141 + R0_xz*t142
+                    dg[i3 + 1] = R0_yx*t140 + R0_yy*t141 + R0_yz*t142
+                    dg[i3 + 2] = R0_zx*t140 + R0_zy*t141 + R0_zz*t142
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -773,77 +848,77 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t135 = dm_y*psi_z
-                    t136 = dpsi_z*m_y
-                    t137 = -m_x*psi_y + m_y*psi_x
-                    t138 = dpsi_y*e0
-                    t139 = m_x*psi_z - m_z*psi_x
-                    t140 = dpsi_z*e0
-                    t141 = dm_x*psi_y
-                    t142 = dpsi_y*m_x
-                    t143 = dm_y*psi_x + dpsi_x*m_y - t141 - t142
-                    t144 = e0*psi_y
-                    t145 = dm_x*psi_z
-                    t146 = dpsi_z*m_x
-                    t147 = dm_z*psi_x
-                    t148 = dpsi_x*m_z
-                    t149 = t145 + t146 - t147 - t148
-                    t150 = e0*psi_z
-                    t151 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t152 = psi_y*t151
-                    t153 = psi_z*t151
-                    t154 = (Om0_y*dpw_z - Om0_z*dpw_y + dOm0_y*pw_z - dOm0_z*pw_y + dpw_y*w_z -
+                    t143 = dm_y*psi_z
+                    t144 = dpsi_z*m_y
+                    t145 = -m_x*psi_y + m_y*psi_x
+                    t146 = dpsi_y*e0
+                    t147 = m_x*psi_z - m_z*psi_x
+                    t148 = dpsi_z*e0
+                    t149 = dm_x*psi_y
+                    t150 = dpsi_y*m_x
+                    t151 = dm_y*psi_x + dpsi_x*m_y - t149 - t150
+                    t152 = e0*psi_y
+                    t153 = dm_x*psi_z
+                    t154 = dpsi_z*m_x
+                    t155 = dm_z*psi_x
+                    t156 = dpsi_x*m_z
+                    t157 = t153 + t154 - t155 - t156
+                    t158 = e0*psi_z
+                    t159 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t160 = psi_y*t159
+                    t161 = psi_z*t159
+                    t162 = (Om0_y*dpw_z - Om0_z*dpw_y + dOm0_y*pw_z - dOm0_z*pw_y + dpw_y*w_z -
                         dpw_z*w_y + dpwd_x - dw_y*pw_z + dw_z*pw_y)
-                    t155 = (-Om0_x*dpw_z + Om0_z*dpw_x - dOm0_x*pw_z + dOm0_z*pw_x - dpw_x*w_z +
+                    t163 = (-Om0_x*dpw_z + Om0_z*dpw_x - dOm0_x*pw_z + dOm0_z*pw_x - dpw_x*w_z +
                         dpw_z*w_x + dpwd_y + dw_x*pw_z - dw_z*pw_x)
-                    t156 = (Om0_x*dpw_y - Om0_y*dpw_x + dOm0_x*pw_y - dOm0_y*pw_x + dpw_x*w_y -
+                    t164 = (Om0_x*dpw_y - Om0_y*dpw_x + dOm0_x*pw_y - dOm0_y*pw_x + dpw_x*w_y -
                         dpw_y*w_x + dpwd_z - dw_x*pw_y + dw_y*pw_x)
-                    t157 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
-                    t158 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
-                    t159 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
-                    t160 = dpsi_y*wp_z
-                    t161 = dpsi_z*wp_y
-                    t162 = dwp_y*psi_z
-                    t163 = dwp_z*psi_y
-                    t164 = psi_x*wp_y - psi_y*wp_x
-                    t165 = -psi_x*wp_z + psi_z*wp_x
-                    t166 = dpsi_x*wp_y
-                    t167 = dwp_y*psi_x
-                    t168 = dpsi_y*wp_x
-                    t169 = dwp_x*psi_y
-                    t170 = t166 + t167 - t168 - t169
-                    t171 = dpsi_x*wp_z
-                    t172 = dwp_z*psi_x
-                    t173 = dpsi_z*wp_x + dwp_x*psi_z - t171 - t172
-                    t174 = -m_y*psi_z + m_z*psi_y
-                    t175 = dpsi_x*e0
-                    t176 = dm_z*psi_y + dpsi_y*m_z - t135 - t136
-                    t177 = e0*psi_x
-                    t178 = psi_x*t151
-                    t179 = psi_y*wp_z - psi_z*wp_y
-                    t180 = t160 - t161 - t162 + t163
-                    dg[j3] = (Q_xx*t154 + Q_yx*t155 + Q_zx*t156 + alpha_r*(dwp_x + t138*t164 -
-                        t140*t165 + t144*t170 - t150*t173 + t152*t164 - t153*t165 - 0.5*t160 +
-                        (0.5)*t161 + (0.5)*t162 - 0.5*t163) + dm_x - 0.5*dm_z*psi_y -
-                        0.5*dpsi_y*m_z + (0.5)*t135 + (0.5)*t136 + t137*t138 + t137*t152 -
-                        t139*t140 - t139*t153 + t143*t144 - t149*t150 + t157*(Q_xx*dth0_y -
-                        Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y) + t158*(-Q_xx*dth0_z + Q_yy*dth_z -
-                        Q_yz*dth_y + Q_zx*dth0_x) + t159*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
+                    t165 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
+                    t166 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
+                    t167 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
+                    t168 = dpsi_y*wp_z
+                    t169 = dpsi_z*wp_y
+                    t170 = dwp_y*psi_z
+                    t171 = dwp_z*psi_y
+                    t172 = psi_x*wp_y - psi_y*wp_x
+                    t173 = -psi_x*wp_z + psi_z*wp_x
+                    t174 = dpsi_x*wp_y
+                    t175 = dwp_y*psi_x
+                    t176 = dpsi_y*wp_x
+                    t177 = dwp_x*psi_y
+                    t178 = t174 + t175 - t176 - t177
+                    t179 = dpsi_x*wp_z
+                    t180 = dwp_z*psi_x
+                    t181 = dpsi_z*wp_x + dwp_x*psi_z - t179 - t180
+                    t182 = -m_y*psi_z + m_z*psi_y
+                    t183 = dpsi_x*e0
+                    t184 = dm_z*psi_y + dpsi_y*m_z - t143 - t144
+                    t185 = e0*psi_x
+                    t186 = psi_x*t159
+                    t187 = psi_y*wp_z - psi_z*wp_y
+                    t188 = t168 - t169 - t170 + t171
+                    dg[j3] = (Q_xx*t162 + Q_yx*t163 + Q_zx*t164 + alpha_r*(dwp_x + t146*t172 -
+                        t148*t173 + t152*t178 - t158*t181 + t160*t172 - t161*t173 - 0.5*t168 +
+                        (0.5)*t169 + (0.5)*t170 - 0.5*t171) + dm_x - 0.5*dm_z*psi_y -
+                        0.5*dpsi_y*m_z + (0.5)*t143 + (0.5)*t144 + t145*t146 + t145*t160 -
+                        t147*t148 - t147*t161 + t151*t152 - t157*t158 + t165*(Q_xx*dth0_y -
+                        Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y) + t166*(-Q_xx*dth0_z + Q_yy*dth_z -
+                        Q_yz*dth_y + Q_zx*dth0_x) + t167*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
                         Q_zx*dth0_y))
-                    dg[j3 + 1] = (Q_xy*t154 + Q_yy*t155 + Q_zy*t156 + alpha_r*(-0.5*dpsi_z*wp_x -
-                        0.5*dwp_x*psi_z + dwp_y + t140*t179 + t150*t180 + t153*t179 - t164*t175 -
-                        t164*t178 - t170*t177 + (0.5)*t171 + (0.5)*t172) + dm_y - t137*t175 -
-                        t137*t178 + t140*t174 - t143*t177 - 0.5*t145 - 0.5*t146 + (0.5)*t147 +
-                        (0.5)*t148 + t150*t176 + t153*t174 + t157*(Q_xy*dth0_y - Q_yy*dth0_x -
-                        Q_zx*dth_z + Q_zz*dth_x) + t158*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                        Q_zy*dth0_x) + t159*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y))
-                    dg[j3 + 2] = (Q_xz*t154 + Q_yz*t155 + Q_zz*t156 + alpha_r*(dwp_z - t138*t179 -
-                        t144*t180 - t152*t179 + t165*t175 + t165*t178 - 0.5*t166 - 0.5*t167 +
-                        (0.5)*t168 + (0.5)*t169 + t173*t177) - 0.5*dm_y*psi_x + dm_z -
-                        0.5*dpsi_x*m_y - t138*t174 + t139*t175 + t139*t178 + (0.5)*t141 +
-                        (0.5)*t142 - t144*t176 + t149*t177 - t152*t174 + t157*(Q_xz*dth0_y -
-                        Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x) + t158*(-Q_xz*dth0_z + Q_yx*dth_y -
-                        Q_yy*dth_x + Q_zz*dth0_x) + t159*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z -
+                    dg[j3 + 1] = (Q_xy*t162 + Q_yy*t163 + Q_zy*t164 + alpha_r*(-0.5*dpsi_z*wp_x -
+                        0.5*dwp_x*psi_z + dwp_y + t148*t187 + t158*t188 + t161*t187 - t172*t183 -
+                        t172*t186 - t178*t185 + (0.5)*t179 + (0.5)*t180) + dm_y - t145*t183 -
+                        t145*t186 + t148*t182 - t151*t185 - 0.5*t153 - 0.5*t154 + (0.5)*t155 +
+                        (0.5)*t156 + t158*t184 + t161*t182 + t165*(Q_xy*dth0_y - Q_yy*dth0_x -
+                        Q_zx*dth_z + Q_zz*dth_x) + t166*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
+                        Q_zy*dth0_x) + t167*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y))
+                    dg[j3 + 2] = (Q_xz*t162 + Q_yz*t163 + Q_zz*t164 + alpha_r*(dwp_z - t146*t187 -
+                        t152*t188 - t160*t187 + t173*t183 + t173*t186 - 0.5*t174 - 0.5*t175 +
+                        (0.5)*t176 + (0.5)*t177 + t181*t185) - 0.5*dm_y*psi_x + dm_z -
+                        0.5*dpsi_x*m_y - t146*t182 + t147*t183 + t147*t186 + (0.5)*t149 +
+                        (0.5)*t150 - t152*t184 + t157*t185 - t160*t182 + t165*(Q_xz*dth0_y -
+                        Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x) + t166*(-Q_xz*dth0_z + Q_yx*dth_y -
+                        Q_yy*dth_x + Q_zz*dth0_x) + t167*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z -
                         Q_zz*dth0_y))
                 # differential: force of the internal modes
                 for k in range(MODES, n):

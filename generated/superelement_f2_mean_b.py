@@ -24,14 +24,14 @@ N_ROTATIONS = 2
 ROTATIONS = 6      # first rotation among the local coordinates
 MODES = 12          # first internal mode
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 29
+WORK_ROWS = 35
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (1150, 3),
-              "column": (2082, 3)}
+OPERATIONS = {"residual": (1191, 3),
+              "column": (2129, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "02af63461db9",
-    "columns_times": "778c70e83538",
+    "_columns_times": "bb899bc4d9a4",
+    "columns_times": "d7f377e75edd",
     "exp_map": "833cbc6b09c9",
     "inverse_tangent_coefficients": "2b53d9add89f",
     "log_map": "2d5d06a001d3",
@@ -50,6 +50,7 @@ LEAVES = {
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width
+    field = at(coefficients, 5)
     row = padded(max(n, 9*N_ROTATIONS))
     qe = at(work, 0*row)
     ve = at(work, 1*row)
@@ -67,19 +68,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     e1s = at(work, 13*row)
     b0s = at(work, 14*row)
     b1s = at(work, 15*row)
-    dqe = at(work, 16*row)
-    dve = at(work, 17*row)
-    dae = at(work, 18*row)
-    dy = at(work, 19*row)
-    dyd = at(work, 20*row)
-    dydd = at(work, 21*row)
-    dacc = at(work, 22*row)
-    ds = at(work, 23*row)
-    dp = at(work, 24*row)
-    dpd = at(work, 25*row)
-    dh = at(work, 26*row)
-    dbeta = at(work, 27*row)
-    dg = at(work, 28*row)
+    gamma = at(work, 16*row)
+    d = at(work, 17*row)
+    weight = at(work, 18*row)
+    dqe = at(work, 19*row)
+    dve = at(work, 20*row)
+    dae = at(work, 21*row)
+    dy = at(work, 22*row)
+    dyd = at(work, 23*row)
+    dydd = at(work, 24*row)
+    dacc = at(work, 25*row)
+    ds = at(work, 26*row)
+    dp = at(work, 27*row)
+    dpd = at(work, 28*row)
+    dh = at(work, 29*row)
+    dbeta = at(work, 30*row)
+    dgamma = at(work, 31*row)
+    dd = at(work, 32*row)
+    dweight = at(work, 33*row)
+    dg = at(work, 34*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + 1])
@@ -92,6 +99,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         X = at(alpha_rs, N_ROTATIONS)
         S = at(X, ROTATIONS)
         M = at(S, n*padded(n))
+        mass_columns = at(M, n*padded(n))
+        mass_rows = at(mass_columns, 3*padded(n))
+        mc = at(mass_rows, n*padded(3))
+        masses = at(mc, 3)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -219,12 +230,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             y[k] = qm
             yd[k] = vm
             ydd[k] = am
+        # gravity in frame axes
+        field_x, field_y, field_z = field[0], field[1], field[2]
+        gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
+        gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
+        gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
+        # first moment of mass of the deformation, d = r^T Mbar y
+        columns_times(mass_rows, y, d, 3, n)
         # elastic force, s = Sbar y
-        columns_times(S, y, s, n)
+        columns_times(S, y, s, n, n)
+        # weight conjugate to y, Mbar r gamma
+        columns_times(mass_columns, gamma, weight, n, 3)
+        # force conjugate to y, elastic and gravity
+        for i in range(n):
+            s[i] -= weight[i]
         # momentum, p = Mbar ydot
-        columns_times(M, yd, p, n)
+        columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
-        columns_times(M, ydd, pd, n)
+        columns_times(M, ydd, pd, n, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -235,41 +258,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            t20 = X_z + u_z
-            t21 = X_y + u_y
-            t22 = X_x + u_x
-            F_x += -f_x
-            F_y += -f_y
-            F_z += -f_z
-            W_x += f_y*t20 - f_z*t21 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t20 + f_z*t22 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t21 - f_y*t22 - px_x*vs_y + px_y*vs_x
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            mass = masses[0]
+            alpha = alphas[i]
+            t20 = alpha*mass
+            t21 = X_z + u_z
+            t22 = X_y + u_y
+            t23 = X_x + u_x
+            F_x += -f_x - gamma_x*t20
+            F_y += -f_y - gamma_y*t20
+            F_z += -f_z - gamma_z*t20
+            W_x += f_y*t21 - f_z*t22 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t21 + f_z*t23 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t22 - f_y*t23 - px_x*vs_y + px_y*vs_x
+        # moment of gravity on the frame
+        gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+        d_x, d_y, d_z = d[0], d[1], d[2]
+        mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+        t24 = d_z + mc_z
+        t25 = d_y + mc_y
+        t26 = d_x + mc_x
+        W_x += gamma_y*t24 - gamma_z*t25
+        W_y += -gamma_x*t24 + gamma_z*t26
+        W_z += gamma_x*t25 - gamma_y*t26
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t23 = -m_x*psi_y + m_y*psi_x
-            t24 = m_x*psi_z
-            t25 = -m_z*psi_x + t24
-            t26 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t23 + e0*psi_z*t25 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t23 - e0*psi_z*t26 - m_y + (0.5)*m_z*psi_x - 0.5*t24
-            W_z += -e0*psi_x*t25 + e0*psi_y*t26 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t27 = -m_x*psi_y + m_y*psi_x
+            t28 = m_x*psi_z
+            t29 = -m_z*psi_x + t28
+            t30 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t27 + e0*psi_z*t29 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t27 - e0*psi_z*t30 - m_y + (0.5)*m_z*psi_x - 0.5*t28
+            W_z += -e0*psi_x*t29 + e0*psi_y*t30 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # moment on the frame, pulled back to the mean increment
-        t27 = beta0_y*c2
-        t28 = beta0_x*c3
-        t29 = beta0_z*t28
-        t30 = beta0_z*c2
-        t31 = beta0_y*t28
-        t32 = beta0_y*beta0_y*c3
-        t33 = beta0_z*beta0_z*c3 - 1
-        t34 = beta0_x*c2
-        t35 = beta0_x*beta0_x*c3
-        wp_x = W_x*(-t32 - t33) + W_y*(-t30 + t31) + W_z*(t27 + t29)
-        wp_y = W_x*(t30 + t31) + W_y*(-t33 - t35) + W_z*(beta0_y*beta0_z*c3 - t34)
-        wp_z = W_x*(-t27 + t29) + W_y*(beta0_y*beta0_z*c3 + t34) + W_z*(-t32 - t35 + 1)
+        t31 = beta0_y*c2
+        t32 = beta0_x*c3
+        t33 = beta0_z*t32
+        t34 = beta0_z*c2
+        t35 = beta0_y*t32
+        t36 = beta0_y*beta0_y*c3
+        t37 = beta0_z*beta0_z*c3 - 1
+        t38 = beta0_x*c2
+        t39 = beta0_x*beta0_x*c3
+        wp_x = W_x*(-t36 - t37) + W_y*(-t34 + t35) + W_z*(t31 + t33)
+        wp_y = W_x*(t34 + t35) + W_y*(-t37 - t39) + W_z*(beta0_y*beta0_z*c3 - t38)
+        wp_z = W_x*(-t31 + t33) + W_y*(beta0_y*beta0_z*c3 + t38) + W_z*(-t36 - t39 + 1)
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -299,31 +336,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
             b0 = b0s[j]
-            t36 = m_y*psi_z
-            t37 = m_x*psi_y
-            t38 = e0*(m_y*psi_x - t37)
-            t39 = m_x*psi_z
-            t40 = m_z*psi_x
-            t41 = t39 - t40
-            t42 = e0*psi_z
-            t43 = beta_y*wp_z
-            t44 = beta_z*wp_y
-            t45 = beta_x*wp_y
-            t46 = beta_y*wp_x
-            t47 = b0*(t45 - t46)
-            t48 = beta_x*wp_z
-            t49 = beta_z*wp_x - t48
-            t50 = b0*beta_z
-            t51 = m_z*psi_y - t36
-            t52 = t43 - t44
-            g[j3] = (Om_y*pw_z - Om_z*pw_y + alpha_r*(beta_y*t47 - 0.5*t43 + (0.5)*t44 - t49*t50 +
-                wp_x) + m_x - 0.5*m_z*psi_y + psi_y*t38 + pwd_x + (0.5)*t36 - t41*t42)
-            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + alpha_r*(-beta_x*t47 - 0.5*beta_z*wp_x +
-                (0.5)*t48 + t50*t52 + wp_y) + m_y - psi_x*t38 + pwd_y - 0.5*t39 + (0.5)*t40 +
-                t42*t51)
-            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + alpha_r*(b0*beta_x*t49 - b0*beta_y*t52 - 0.5*t45
-                + (0.5)*t46 + wp_z) + e0*psi_x*t41 - e0*psi_y*t51 - 0.5*m_y*psi_x + m_z + pwd_z +
-                (0.5)*t37)
+            t40 = m_y*psi_z
+            t41 = m_x*psi_y
+            t42 = e0*(m_y*psi_x - t41)
+            t43 = m_x*psi_z
+            t44 = m_z*psi_x
+            t45 = t43 - t44
+            t46 = e0*psi_z
+            t47 = beta_y*wp_z
+            t48 = beta_z*wp_y
+            t49 = beta_x*wp_y
+            t50 = beta_y*wp_x
+            t51 = b0*(t49 - t50)
+            t52 = beta_x*wp_z
+            t53 = beta_z*wp_x - t52
+            t54 = b0*beta_z
+            t55 = m_z*psi_y - t40
+            t56 = t47 - t48
+            g[j3] = (Om_y*pw_z - Om_z*pw_y + alpha_r*(beta_y*t51 - 0.5*t47 + (0.5)*t48 - t53*t54 +
+                wp_x) + m_x - 0.5*m_z*psi_y + psi_y*t42 + pwd_x + (0.5)*t40 - t45*t46)
+            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + alpha_r*(-beta_x*t51 - 0.5*beta_z*wp_x +
+                (0.5)*t52 + t54*t56 + wp_y) + m_y - psi_x*t42 + pwd_y - 0.5*t43 + (0.5)*t44 +
+                t46*t55)
+            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + alpha_r*(b0*beta_x*t53 - b0*beta_y*t56 - 0.5*t49
+                + (0.5)*t50 + wp_z) + e0*psi_x*t45 - e0*psi_y*t55 - 0.5*m_y*psi_x + m_z + pwd_z +
+                (0.5)*t41)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -335,6 +372,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
+            # energies
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            d_x, d_y, d_z = d[0], d[1], d[2]
+            mass = masses[0]
+            mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+            potential = (-gamma_x*(d_x + mc_x) - gamma_y*(d_y + mc_y) - gamma_z*(d_z + mc_z) -
+                mass*(gamma_x*(R0_xx*x0_x + R0_yx*x0_y + R0_zx*x0_z) + gamma_y*(R0_xy*x0_x +
+                R0_yy*x0_y + R0_zy*x0_z) + gamma_z*(R0_xz*x0_x + R0_yz*x0_y + R0_zz*x0_z)))
+            strain += (0.5)*d_x*gamma_x + (0.5)*d_y*gamma_y + (0.5)*d_z*gamma_z
             # momentum and its moment about the origin: positions
             P_x = P_y = P_z = 0.0
             H_x = H_y = H_z = 0.0
@@ -363,6 +409,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 H_z += R_zx*pw_x + R_zy*pw_y + R_zz*pw_z
             energies[0] += kinetic
             energies[1] += strain
+            energies[9] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[4] += P_z
@@ -414,83 +461,83 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t53 = beta_y*dth_z
-                    t54 = beta_z*dth_y
-                    t55 = beta_x*dth_y
-                    t56 = beta_y*dth_x
-                    t57 = b0*(t55 - t56)
-                    t58 = beta_x*dth_z
-                    t59 = beta_z*dth_x - t58
-                    t60 = b0*beta_z
-                    t61 = t53 - t54
-                    mean_dth0_x += alpha_r*(beta_y*t57 + dth_x + (0.5)*t53 - 0.5*t54 - t59*t60)
-                    mean_dth0_y += (alpha_r*(-beta_x*t57 + (0.5)*beta_z*dth_x + dth_y - 0.5*t58 +
-                        t60*t61))
-                    mean_dth0_z += (alpha_r*(b0*beta_x*t59 - b0*beta_y*t61 + dth_z + (0.5)*t55 -
-                        0.5*t56))
+                    t57 = beta_y*dth_z
+                    t58 = beta_z*dth_y
+                    t59 = beta_x*dth_y
+                    t60 = beta_y*dth_x
+                    t61 = b0*(t59 - t60)
+                    t62 = beta_x*dth_z
+                    t63 = beta_z*dth_x - t62
+                    t64 = b0*beta_z
+                    t65 = t57 - t58
+                    mean_dth0_x += alpha_r*(beta_y*t61 + dth_x + (0.5)*t57 - 0.5*t58 - t63*t64)
+                    mean_dth0_y += (alpha_r*(-beta_x*t61 + (0.5)*beta_z*dth_x + dth_y - 0.5*t62 +
+                        t64*t65))
+                    mean_dth0_z += (alpha_r*(b0*beta_x*t63 - b0*beta_y*t65 + dth_z + (0.5)*t59 -
+                        0.5*t60))
                 # rate of the frame, (19)
-                t62 = beta0_z*c2
-                t63 = beta0_x*c3
-                t64 = beta0_y*t63
-                t65 = beta0_y*c2
-                t66 = beta0_z*t63
-                t67 = beta0_y*beta0_y*c3
-                t68 = beta0_z*beta0_z*c3 - 1
-                t69 = beta0_x*c2
-                t70 = beta0_x*beta0_x*c3
-                dth0_x = (mean_dth0_x*(-t67 - t68) + mean_dth0_y*(t62 + t64) + mean_dth0_z*(-t65 +
-                    t66))
-                dth0_y = (mean_dth0_x*(-t62 + t64) + mean_dth0_y*(-t68 - t70) +
-                    mean_dth0_z*(beta0_y*beta0_z*c3 + t69))
-                dth0_z = (mean_dth0_x*(t65 + t66) + mean_dth0_y*(beta0_y*beta0_z*c3 - t69) +
-                    mean_dth0_z*(-t67 - t70 + 1))
+                t66 = beta0_z*c2
+                t67 = beta0_x*c3
+                t68 = beta0_y*t67
+                t69 = beta0_y*c2
+                t70 = beta0_z*t67
+                t71 = beta0_y*beta0_y*c3
+                t72 = beta0_z*beta0_z*c3 - 1
+                t73 = beta0_x*c2
+                t74 = beta0_x*beta0_x*c3
+                dth0_x = (mean_dth0_x*(-t71 - t72) + mean_dth0_y*(t66 + t68) + mean_dth0_z*(-t69 +
+                    t70))
+                dth0_y = (mean_dth0_x*(-t66 + t68) + mean_dth0_y*(-t72 - t74) +
+                    mean_dth0_z*(beta0_y*beta0_z*c3 + t73))
+                dth0_z = (mean_dth0_x*(t69 + t70) + mean_dth0_y*(beta0_y*beta0_z*c3 - t73) +
+                    mean_dth0_z*(-t71 - t74 + 1))
                 # differential: displacement of the nodes in the frame, (11)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    t71 = X_y + u_y
-                    t72 = X_z + u_z
-                    t73 = X_x + u_x
-                    dy[i3] = -dth0_y*t72 + dth0_z*t71 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t72 - dth0_z*t73 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t71 + dth0_y*t73 - dx0_z + dx_z
+                    t75 = X_y + u_y
+                    t76 = X_z + u_z
+                    t77 = X_x + u_x
+                    dy[i3] = -dth0_y*t76 + dth0_z*t75 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t76 - dth0_z*t77 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t75 + dth0_y*t77 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t74 = dth0_y*psi_z
-                    t75 = dth_y*psi_z
-                    t76 = dth0_x*psi_y
-                    t77 = dth0_y*psi_x - t76
-                    t78 = e0*psi_y
-                    t79 = dth_x*psi_z
-                    t80 = dth_z*psi_x
-                    t81 = t79 - t80
-                    t82 = e0*psi_z
-                    t83 = dth_x*psi_y
-                    t84 = dth_y*psi_x - t83
-                    t85 = dth0_x*psi_z
-                    t86 = dth0_z*psi_x
-                    t87 = t85 - t86
-                    t88 = e0*psi_x
-                    t89 = dth_z*psi_y - t75
-                    t90 = dth0_z*psi_y - t74
+                    t78 = dth0_y*psi_z
+                    t79 = dth_y*psi_z
+                    t80 = dth0_x*psi_y
+                    t81 = dth0_y*psi_x - t80
+                    t82 = e0*psi_y
+                    t83 = dth_x*psi_z
+                    t84 = dth_z*psi_x
+                    t85 = t83 - t84
+                    t86 = e0*psi_z
+                    t87 = dth_x*psi_y
+                    t88 = dth_y*psi_x - t87
+                    t89 = dth0_x*psi_z
+                    t90 = dth0_z*psi_x
+                    t91 = t89 - t90
+                    t92 = e0*psi_x
+                    t93 = dth_z*psi_y - t79
+                    t94 = dth0_z*psi_y - t78
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t84 + e0*psi_z*t87 - 0.5*t74 - 0.5*t75 - t77*t78 - t81*t82)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t77*t88 + (0.5)*t79 - 0.5*t80 + t82*t89 -
-                        t82*t90 - t84*t88 + (0.5)*t85 - 0.5*t86)
+                        e0*psi_y*t88 + e0*psi_z*t91 - 0.5*t78 - 0.5*t79 - t81*t82 - t85*t86)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t81*t92 + (0.5)*t83 - 0.5*t84 + t86*t93 -
+                        t86*t94 - t88*t92 + (0.5)*t89 - 0.5*t90)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t81 + e0*psi_y*t90 - 0.5*t76 - t78*t89 - 0.5*t83 - t87*t88)
+                        e0*psi_x*t85 + e0*psi_y*t94 - 0.5*t80 - t82*t93 - 0.5*t87 - t91*t92)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # differential: elastic force, s = Sbar y
-                columns_times(S, dy, ds, n)
+                columns_times(S, dy, ds, n, n)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
@@ -504,18 +551,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t91 = beta_y*dth_z
-                    t92 = beta_z*dth_y
-                    t93 = beta_x*dth_y
-                    t94 = beta_y*dth_x
-                    t95 = b0*(t93 - t94)
-                    t96 = beta_x*dth_z
-                    t97 = beta_z*dth_x - t96
-                    t98 = b0*beta_z
-                    t99 = t91 - t92
-                    dbeta[j3] = beta_y*t95 + dth_x + (0.5)*t91 - 0.5*t92 - t97*t98
-                    dbeta[j3 + 1] = -beta_x*t95 + (0.5)*beta_z*dth_x + dth_y - 0.5*t96 + t98*t99
-                    dbeta[j3 + 2] = b0*beta_x*t97 - b0*beta_y*t99 + dth_z + (0.5)*t93 - 0.5*t94
+                    t95 = beta_y*dth_z
+                    t96 = beta_z*dth_y
+                    t97 = beta_x*dth_y
+                    t98 = beta_y*dth_x
+                    t99 = b0*(t97 - t98)
+                    t100 = beta_x*dth_z
+                    t101 = beta_z*dth_x - t100
+                    t102 = b0*beta_z
+                    t103 = t95 - t96
+                    dbeta[j3] = beta_y*t99 + dth_x - t101*t102 + (0.5)*t95 - 0.5*t96
+                    dbeta[j3 + 1] = -beta_x*t99 + (0.5)*beta_z*dth_x + dth_y - 0.5*t100 + t102*t103
+                    dbeta[j3 + 2] = b0*beta_x*t101 - b0*beta_y*t103 + dth_z + (0.5)*t97 - 0.5*t98
                 # variation of their mean, (18)
                 dbeta0_x = dbeta0_y = dbeta0_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -524,20 +571,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t100 = beta_y*dth_z
-                    t101 = beta_z*dth_y
-                    t102 = beta_x*dth_y
-                    t103 = beta_y*dth_x
-                    t104 = b0*(t102 - t103)
-                    t105 = beta_x*dth_z
-                    t106 = beta_z*dth_x - t105
-                    t107 = b0*beta_z
-                    t108 = t100 - t101
-                    dbeta0_x += alpha_r*(beta_y*t104 + dth_x + (0.5)*t100 - 0.5*t101 - t106*t107)
-                    dbeta0_y += (alpha_r*(-beta_x*t104 + (0.5)*beta_z*dth_x + dth_y - 0.5*t105 +
-                        t107*t108))
-                    dbeta0_z += (alpha_r*(b0*beta_x*t106 - b0*beta_y*t108 + dth_z + (0.5)*t102 -
-                        0.5*t103))
+                    t104 = beta_y*dth_z
+                    t105 = beta_z*dth_y
+                    t106 = beta_x*dth_y
+                    t107 = beta_y*dth_x
+                    t108 = b0*(t106 - t107)
+                    t109 = beta_x*dth_z
+                    t110 = beta_z*dth_x - t109
+                    t111 = b0*beta_z
+                    t112 = t104 - t105
+                    dbeta0_x += alpha_r*(beta_y*t108 + dth_x + (0.5)*t104 - 0.5*t105 - t110*t111)
+                    dbeta0_y += (alpha_r*(-beta_x*t108 + (0.5)*beta_z*dth_x + dth_y - 0.5*t109 +
+                        t111*t112))
+                    dbeta0_z += (alpha_r*(b0*beta_x*t110 - b0*beta_y*t112 + dth_z + (0.5)*t106 -
+                        0.5*t107))
+                # differential: gravity in frame axes
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
+                dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
+                dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
+                # differential: first moment of mass of the deformation, d = r^T Mbar y
+                columns_times(mass_rows, dy, dd, 3, n)
+                # differential: weight conjugate to y, Mbar r gamma
+                columns_times(mass_columns, dgamma, dweight, n, 3)
+                # force conjugate to y, elastic and gravity
+                for i in range(n):
+                    ds[i] -= dweight[i]
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -569,78 +628,78 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
                     b0 = b0s[j]
                     b1 = b1s[j]
-                    t109 = Om_y*dbeta_z
-                    t110 = beta_z*dOm_y
-                    t111 = -Om_x*beta_y + Om_y*beta_x
-                    t112 = b0*t111
-                    t113 = Om_x*beta_z - Om_z*beta_x
-                    t114 = b0*dbeta_z
-                    t115 = Om_x*dbeta_y
-                    t116 = beta_y*dOm_x
-                    t117 = b0*(Om_y*dbeta_x + beta_x*dOm_y - t115 - t116)
-                    t118 = Om_x*dbeta_z
-                    t119 = beta_z*dOm_x
-                    t120 = Om_z*dbeta_x
-                    t121 = beta_x*dOm_z
-                    t122 = t118 + t119 - t120 - t121
-                    t123 = b0*beta_z
-                    t124 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
-                    t125 = t111*t124
-                    t126 = beta_z*t124
-                    t127 = -Om_y*beta_z + Om_z*beta_y
-                    t128 = Om_z*dbeta_y + beta_y*dOm_z - t109 - t110
-                    dmean_x += (alpha_r*((0.5)*Om_z*dbeta_y + (0.5)*beta_y*dOm_z + beta_y*t117 +
-                        beta_y*t125 + dOm_x + dbeta_y*t112 - 0.5*t109 - 0.5*t110 - t113*t114 -
-                        t113*t126 - t122*t123))
-                    dmean_y += (alpha_r*(-beta_x*t117 - beta_x*t125 + dOm_y - dbeta_x*t112 +
-                        t114*t127 + (0.5)*t118 + (0.5)*t119 - 0.5*t120 - 0.5*t121 + t123*t128 +
-                        t126*t127))
-                    dmean_z += (alpha_r*((0.5)*Om_y*dbeta_x + b0*beta_x*t122 - b0*beta_y*t128 +
-                        b0*dbeta_x*t113 - b0*dbeta_y*t127 + (0.5)*beta_x*dOm_y + beta_x*t113*t124
-                        - beta_y*t124*t127 + dOm_z - 0.5*t115 - 0.5*t116))
+                    t113 = Om_y*dbeta_z
+                    t114 = beta_z*dOm_y
+                    t115 = -Om_x*beta_y + Om_y*beta_x
+                    t116 = b0*t115
+                    t117 = Om_x*beta_z - Om_z*beta_x
+                    t118 = b0*dbeta_z
+                    t119 = Om_x*dbeta_y
+                    t120 = beta_y*dOm_x
+                    t121 = b0*(Om_y*dbeta_x + beta_x*dOm_y - t119 - t120)
+                    t122 = Om_x*dbeta_z
+                    t123 = beta_z*dOm_x
+                    t124 = Om_z*dbeta_x
+                    t125 = beta_x*dOm_z
+                    t126 = t122 + t123 - t124 - t125
+                    t127 = b0*beta_z
+                    t128 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
+                    t129 = t115*t128
+                    t130 = beta_z*t128
+                    t131 = -Om_y*beta_z + Om_z*beta_y
+                    t132 = Om_z*dbeta_y + beta_y*dOm_z - t113 - t114
+                    dmean_x += (alpha_r*((0.5)*Om_z*dbeta_y + (0.5)*beta_y*dOm_z + beta_y*t121 +
+                        beta_y*t129 + dOm_x + dbeta_y*t116 - 0.5*t113 - 0.5*t114 - t117*t118 -
+                        t117*t130 - t126*t127))
+                    dmean_y += (alpha_r*(-beta_x*t121 - beta_x*t129 + dOm_y - dbeta_x*t116 +
+                        t118*t131 + (0.5)*t122 + (0.5)*t123 - 0.5*t124 - 0.5*t125 + t127*t132 +
+                        t130*t131))
+                    dmean_z += (alpha_r*((0.5)*Om_y*dbeta_x + b0*beta_x*t126 - b0*beta_y*t132 +
+                        b0*dbeta_x*t117 - b0*dbeta_y*t131 + (0.5)*beta_x*dOm_y + beta_x*t117*t128
+                        - beta_y*t128*t131 + dOm_z - 0.5*t119 - 0.5*t120))
                 # differential: rate of the frame, (19)
-                t129 = beta0_z*c2
-                t130 = beta0_x*c3
-                t131 = beta0_y*t130
-                t132 = beta0_y*c2
-                t133 = beta0_z*t130
-                t134 = beta0_y*beta0_y
-                t135 = c3*t134
-                t136 = beta0_z*beta0_z
-                t137 = c3*t136 - 1
-                t138 = c2*dbeta0_z
-                t139 = 2*dbeta0_x
-                t140 = 2*beta0_y*dbeta0_y
-                t141 = 2*beta0_z*dbeta0_z
-                t142 = beta0_x*t139 + t140 + t141
-                t143 = t142*(-0.5*c3 + c4)
-                t144 = beta0_z*t143
-                t145 = c3*dbeta0_x
-                t146 = t142*(-0.5*c4 + (1.5)*c5)
-                t147 = beta0_x*t146
-                t148 = beta0_y*t145 + beta0_y*t147 + dbeta0_y*t130
-                t149 = c2*dbeta0_y
-                t150 = beta0_y*t143
-                t151 = beta0_z*t145 + beta0_z*t147 + dbeta0_z*t130
-                t152 = c3*t141 + t136*t146
-                t153 = c3*t140 + t134*t146
-                t154 = beta0_x*c2
-                t155 = beta0_y*c3
-                t156 = beta0_x*beta0_x
-                t157 = c3*t156
-                t158 = c2*dbeta0_x
-                t159 = beta0_x*t143
-                t160 = beta0_y*beta0_z*t146 + beta0_z*c3*dbeta0_y + dbeta0_z*t155
-                t161 = t130*t139 + t146*t156
-                dOm0_x = (dmean_x*(-t135 - t137) + dmean_y*(t129 + t131) + dmean_z*(-t132 + t133)
-                    + mean_x*(-t152 - t153) + mean_y*(t138 + t144 + t148) + mean_z*(-t149 - t150 +
-                    t151))
-                dOm0_y = (dmean_x*(-t129 + t131) + dmean_y*(-t137 - t157) + dmean_z*(beta0_z*t155
-                    + t154) + mean_x*(-t138 - t144 + t148) + mean_y*(-t152 - t161) + mean_z*(t158
-                    + t159 + t160))
-                dOm0_z = (dmean_x*(t132 + t133) + dmean_y*(beta0_y*beta0_z*c3 - t154) +
-                    dmean_z*(-t135 - t157 + 1) + mean_x*(t149 + t150 + t151) + mean_y*(-t158 -
-                    t159 + t160) + mean_z*(-t153 - t161))
+                t133 = beta0_z*c2
+                t134 = beta0_x*c3
+                t135 = beta0_y*t134
+                t136 = beta0_y*c2
+                t137 = beta0_z*t134
+                t138 = beta0_y*beta0_y
+                t139 = c3*t138
+                t140 = beta0_z*beta0_z
+                t141 = c3*t140 - 1
+                t142 = c2*dbeta0_z
+                t143 = 2*dbeta0_x
+                t144 = 2*beta0_y*dbeta0_y
+                t145 = 2*beta0_z*dbeta0_z
+                t146 = beta0_x*t143 + t144 + t145
+                t147 = t146*(-0.5*c3 + c4)
+                t148 = beta0_z*t147
+                t149 = c3*dbeta0_x
+                t150 = t146*(-0.5*c4 + (1.5)*c5)
+                t151 = beta0_x*t150
+                t152 = beta0_y*t149 + beta0_y*t151 + dbeta0_y*t134
+                t153 = c2*dbeta0_y
+                t154 = beta0_y*t147
+                t155 = beta0_z*t149 + beta0_z*t151 + dbeta0_z*t134
+                t156 = c3*t145 + t140*t150
+                t157 = c3*t144 + t138*t150
+                t158 = beta0_x*c2
+                t159 = beta0_y*c3
+                t160 = beta0_x*beta0_x
+                t161 = c3*t160
+                t162 = c2*dbeta0_x
+                t163 = beta0_x*t147
+                t164 = beta0_y*beta0_z*t150 + beta0_z*c3*dbeta0_y + dbeta0_z*t159
+                t165 = t134*t143 + t150*t160
+                dOm0_x = (dmean_x*(-t139 - t141) + dmean_y*(t133 + t135) + dmean_z*(-t136 + t137)
+                    + mean_x*(-t156 - t157) + mean_y*(t142 + t148 + t152) + mean_z*(-t153 - t154 +
+                    t155))
+                dOm0_y = (dmean_x*(-t133 + t135) + dmean_y*(-t141 - t161) + dmean_z*(beta0_z*t159
+                    + t158) + mean_x*(-t142 - t148 + t152) + mean_y*(-t156 - t165) + mean_z*(t162
+                    + t163 + t164))
+                dOm0_z = (dmean_x*(t136 + t137) + dmean_y*(beta0_y*beta0_z*c3 - t158) +
+                    dmean_z*(-t139 - t161 + 1) + mean_x*(t153 + t154 + t155) + mean_y*(-t162 -
+                    t163 + t164) + mean_z*(-t157 - t165))
                 # differential: local accelerations of the nodes, (46), (58)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -666,9 +725,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: momentum, p = Mbar ydot
-                columns_times(M, dyd, dp, n)
+                columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot
-                columns_times(M, dydd, dpd, n)
+                columns_times(M, dydd, dpd, n, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -679,22 +738,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
+                    mass = masses[0]
+                    alpha = alphas[i]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
+                    dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t162 = X_z + u_z
-                    t163 = X_y + u_y
-                    t164 = X_x + u_x
-                    dF_x += -df_x
-                    dF_y += -df_y
-                    dF_z += -df_z
-                    dW_x += (df_y*t162 - df_z*t163 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
+                    t166 = alpha*mass
+                    t167 = X_z + u_z
+                    t168 = X_y + u_y
+                    t169 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t166
+                    dF_y += -df_y - dgamma_y*t166
+                    dF_z += -df_z - dgamma_z*t166
+                    dW_x += (df_y*t167 - df_z*t168 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
                         + dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t162 + df_z*t164 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
+                    dW_y += (-df_x*t167 + df_z*t169 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
                         du_z*f_x - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t163 - df_y*t164 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
+                    dW_z += (df_x*t168 - df_y*t169 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
                         + dvs_x*px_y - dvs_y*px_x)
+                # differential: moment of gravity on the frame
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                d_x, d_y, d_z = d[0], d[1], d[2]
+                mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+                dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
+                dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
+                t170 = d_y + mc_y
+                t171 = d_z + mc_z
+                t172 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t171 - dgamma_z*t170
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t171 + dgamma_z*t172
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t170 - dgamma_y*t172
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -704,65 +779,65 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t165 = -m_x*psi_y + m_y*psi_x
-                    t166 = m_x*psi_z - m_z*psi_x
-                    t167 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t168 = dm_x*psi_z
-                    t169 = dpsi_z*m_x
-                    t170 = -dm_z*psi_x - dpsi_x*m_z + t168 + t169
-                    t171 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t172 = e1*t171
-                    t173 = -m_y*psi_z + m_z*psi_y
-                    t174 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t165 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t166 + (0.5)*dpsi_z*m_y - e0*psi_y*t167 +
-                        e0*psi_z*t170 + e1*psi_z*t166*t171 - psi_y*t165*t172)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t165 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t173 + e0*psi_x*t167 - e0*psi_z*t174 + e1*psi_x*t165*t171 -
-                        psi_z*t172*t173 - 0.5*t168 - 0.5*t169)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t166 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t173 + (0.5)*dpsi_y*m_x - e0*psi_x*t170 +
-                        e0*psi_y*t174 + e1*psi_y*t171*t173 - psi_x*t166*t172)
+                    t173 = -m_x*psi_y + m_y*psi_x
+                    t174 = m_x*psi_z - m_z*psi_x
+                    t175 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t176 = dm_x*psi_z
+                    t177 = dpsi_z*m_x
+                    t178 = -dm_z*psi_x - dpsi_x*m_z + t176 + t177
+                    t179 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t180 = e1*t179
+                    t181 = -m_y*psi_z + m_z*psi_y
+                    t182 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t173 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t174 + (0.5)*dpsi_z*m_y - e0*psi_y*t175 +
+                        e0*psi_z*t178 + e1*psi_z*t174*t179 - psi_y*t173*t180)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t173 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t181 + e0*psi_x*t175 - e0*psi_z*t182 + e1*psi_x*t173*t179 -
+                        psi_z*t180*t181 - 0.5*t176 - 0.5*t177)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t174 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t181 + (0.5)*dpsi_y*m_x - e0*psi_x*t178 +
+                        e0*psi_y*t182 + e1*psi_y*t179*t181 - psi_x*t174*t180)
                 # differential: moment on the frame, pulled back to the mean increment
-                t175 = beta0_y*c2
-                t176 = beta0_x*c3
-                t177 = beta0_z*t176
-                t178 = beta0_z*c2
-                t179 = beta0_y*t176
-                t180 = beta0_y*beta0_y
-                t181 = c3*t180
-                t182 = beta0_z*beta0_z
-                t183 = c3*t182 - 1
-                t184 = c2*dbeta0_y
-                t185 = 2*beta0_x*dbeta0_x
-                t186 = 2*beta0_y*dbeta0_y
-                t187 = 2*beta0_z*dbeta0_z
-                t188 = t185 + t186 + t187
-                t189 = t188*(-0.5*c3 + c4)
-                t190 = beta0_y*t189
-                t191 = c3*dbeta0_x
-                t192 = t188*(-0.5*c4 + (1.5)*c5)
-                t193 = beta0_x*t192
-                t194 = beta0_z*t191 + beta0_z*t193 + dbeta0_z*t176
-                t195 = c2*dbeta0_z
-                t196 = beta0_z*t189
-                t197 = beta0_y*t191 + beta0_y*t193 + dbeta0_y*t176
-                t198 = c3*t187 + t182*t192
-                t199 = c3*t186 + t180*t192
-                t200 = beta0_x*c2
-                t201 = beta0_x*beta0_x
-                t202 = c3*t201
-                t203 = c2*dbeta0_x
-                t204 = beta0_x*t189
-                t205 = beta0_y*c3
-                t206 = beta0_y*beta0_z*t192 + beta0_z*c3*dbeta0_y + dbeta0_z*t205
-                t207 = c3*t185 + t192*t201
-                dwp_x = (W_x*(-t198 - t199) + W_y*(-t195 - t196 + t197) + W_z*(t184 + t190 + t194)
-                    + dW_x*(-t181 - t183) + dW_y*(-t178 + t179) + dW_z*(t175 + t177))
-                dwp_y = (W_x*(t195 + t196 + t197) + W_y*(-t198 - t207) + W_z*(-t203 - t204 + t206)
-                    + dW_x*(t178 + t179) + dW_y*(-t183 - t202) + dW_z*(beta0_y*beta0_z*c3 - t200))
-                dwp_z = (W_x*(-t184 - t190 + t194) + W_y*(t203 + t204 + t206) + W_z*(-t199 - t207)
-                    + dW_x*(-t175 + t177) + dW_y*(beta0_z*t205 + t200) + dW_z*(-t181 - t202 + 1))
+                t183 = beta0_y*c2
+                t184 = beta0_x*c3
+                t185 = beta0_z*t184
+                t186 = beta0_z*c2
+                t187 = beta0_y*t184
+                t188 = beta0_y*beta0_y
+                t189 = c3*t188
+                t190 = beta0_z*beta0_z
+                t191 = c3*t190 - 1
+                t192 = c2*dbeta0_y
+                t193 = 2*beta0_x*dbeta0_x
+                t194 = 2*beta0_y*dbeta0_y
+                t195 = 2*beta0_z*dbeta0_z
+                t196 = t193 + t194 + t195
+                t197 = t196*(-0.5*c3 + c4)
+                t198 = beta0_y*t197
+                t199 = c3*dbeta0_x
+                t200 = t196*(-0.5*c4 + (1.5)*c5)
+                t201 = beta0_x*t200
+                t202 = beta0_z*t199 + beta0_z*t201 + dbeta0_z*t184
+                t203 = c2*dbeta0_z
+                t204 = beta0_z*t197
+                t205 = beta0_y*t199 + beta0_y*t201 + dbeta0_y*t184
+                t206 = c3*t195 + t190*t200
+                t207 = c3*t194 + t188*t200
+                t208 = beta0_x*c2
+                t209 = beta0_x*beta0_x
+                t210 = c3*t209
+                t211 = c2*dbeta0_x
+                t212 = beta0_x*t197
+                t213 = beta0_y*c3
+                t214 = beta0_y*beta0_z*t200 + beta0_z*c3*dbeta0_y + dbeta0_z*t213
+                t215 = c3*t193 + t200*t209
+                dwp_x = (W_x*(-t206 - t207) + W_y*(-t203 - t204 + t205) + W_z*(t192 + t198 + t202)
+                    + dW_x*(-t189 - t191) + dW_y*(-t186 + t187) + dW_z*(t183 + t185))
+                dwp_y = (W_x*(t203 + t204 + t205) + W_y*(-t206 - t215) + W_z*(-t211 - t212 + t214)
+                    + dW_x*(t186 + t187) + dW_y*(-t191 - t210) + dW_z*(beta0_y*beta0_z*c3 - t208))
+                dwp_z = (W_x*(-t192 - t198 + t202) + W_y*(t211 + t212 + t214) + W_z*(-t207 - t215)
+                    + dW_x*(-t183 + t185) + dW_y*(beta0_z*t213 + t208) + dW_z*(-t189 - t210 + 1))
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -782,12 +857,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t208 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t209 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t210 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t208 + R0_xy*t209 + R0_xz*t210
-                    dg[i3 + 1] = R0_yx*t208 + R0_yy*t209 + R0_yz*t210
-                    dg[i3 + 2] = R0_zx*t208 + R0_zy*t209 + R0_zz*t210
+                    t216 = dh_x + dth0_y*h_z - dth0_z*h_y
+                    t217 = dh_y - dth0_x*h_z + dth0_z*h_x
+                    t218 = dh_z + dth0_x*h_y - dth0_y*h_x
+                    dg[i3] = R0_xx*t216 + R0_xy*t217 + R0_xz*t218
+                    dg[i3 + 1] = R0_yx*t216 + R0_yy*t217 + R0_yz*t218
+                    dg[i3 + 2] = R0_zx*t216 + R0_zy*t217 + R0_zz*t218
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -807,64 +882,64 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e1 = e1s[j]
                     b0 = b0s[j]
                     b1 = b1s[j]
-                    t211 = dm_y*psi_z
-                    t212 = dpsi_z*m_y
-                    t213 = -m_x*psi_y + m_y*psi_x
-                    t214 = e0*t213
-                    t215 = m_x*psi_z - m_z*psi_x
-                    t216 = dpsi_z*e0
-                    t217 = dm_x*psi_y
-                    t218 = dpsi_y*m_x
-                    t219 = e0*(dm_y*psi_x + dpsi_x*m_y - t217 - t218)
-                    t220 = dm_x*psi_z
-                    t221 = dpsi_z*m_x
-                    t222 = dm_z*psi_x
-                    t223 = dpsi_x*m_z
-                    t224 = t220 + t221 - t222 - t223
-                    t225 = e0*psi_z
-                    t226 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t227 = t213*t226
-                    t228 = psi_z*t226
-                    t229 = beta_y*dwp_z
-                    t230 = beta_z*dwp_y
-                    t231 = dbeta_y*wp_z
-                    t232 = dbeta_z*wp_y
-                    t233 = beta_x*wp_y - beta_y*wp_x
-                    t234 = b0*t233
-                    t235 = -beta_x*wp_z + beta_z*wp_x
-                    t236 = b0*dbeta_z
-                    t237 = beta_x*dwp_y
-                    t238 = dbeta_x*wp_y
-                    t239 = beta_y*dwp_x
-                    t240 = dbeta_y*wp_x
-                    t241 = b0*(t237 + t238 - t239 - t240)
-                    t242 = beta_x*dwp_z
-                    t243 = dbeta_x*wp_z
-                    t244 = beta_z*dwp_x + dbeta_z*wp_x - t242 - t243
-                    t245 = b0*beta_z
-                    t246 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
-                    t247 = t233*t246
-                    t248 = beta_z*t246
-                    t249 = -m_y*psi_z + m_z*psi_y
-                    t250 = dm_z*psi_y + dpsi_y*m_z - t211 - t212
-                    t251 = beta_y*wp_z - beta_z*wp_y
-                    t252 = t229 - t230 + t231 - t232
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(beta_y*t241 + beta_y*t247 +
-                        dbeta_y*t234 + dwp_x - 0.5*t229 + (0.5)*t230 - 0.5*t231 + (0.5)*t232 -
-                        t235*t236 - t235*t248 - t244*t245) + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t214 + dpwd_x + psi_y*t219 +
-                        psi_y*t227 + (0.5)*t211 + (0.5)*t212 - t215*t216 - t215*t228 - t224*t225)
-                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-beta_x*t241 - beta_x*t247 -
-                        0.5*beta_z*dwp_x - dbeta_x*t234 - 0.5*dbeta_z*wp_x + dwp_y + t236*t251 +
-                        (0.5)*t242 + (0.5)*t243 + t245*t252 + t248*t251) - dOm_x*pw_z + dOm_z*pw_x
-                        + dm_y - dpsi_x*t214 + dpwd_y - psi_x*t219 - psi_x*t227 + t216*t249 -
-                        0.5*t220 - 0.5*t221 + (0.5)*t222 + (0.5)*t223 + t225*t250 + t228*t249)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(b0*beta_x*t244 -
-                        b0*beta_y*t252 + b0*dbeta_x*t235 - b0*dbeta_y*t251 + beta_x*t235*t246 -
-                        beta_y*t246*t251 + dwp_z - 0.5*t237 - 0.5*t238 + (0.5)*t239 + (0.5)*t240)
-                        + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t215 -
-                        0.5*dpsi_x*m_y - dpsi_y*e0*t249 + dpwd_z + e0*psi_x*t224 - e0*psi_y*t250 +
-                        psi_x*t215*t226 - psi_y*t226*t249 + (0.5)*t217 + (0.5)*t218)
+                    t219 = dm_y*psi_z
+                    t220 = dpsi_z*m_y
+                    t221 = -m_x*psi_y + m_y*psi_x
+                    t222 = e0*t221
+                    t223 = m_x*psi_z - m_z*psi_x
+                    t224 = dpsi_z*e0
+                    t225 = dm_x*psi_y
+                    t226 = dpsi_y*m_x
+                    t227 = e0*(dm_y*psi_x + dpsi_x*m_y - t225 - t226)
+                    t228 = dm_x*psi_z
+                    t229 = dpsi_z*m_x
+                    t230 = dm_z*psi_x
+                    t231 = dpsi_x*m_z
+                    t232 = t228 + t229 - t230 - t231
+                    t233 = e0*psi_z
+                    t234 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t235 = t221*t234
+                    t236 = psi_z*t234
+                    t237 = beta_y*dwp_z
+                    t238 = beta_z*dwp_y
+                    t239 = dbeta_y*wp_z
+                    t240 = dbeta_z*wp_y
+                    t241 = beta_x*wp_y - beta_y*wp_x
+                    t242 = b0*t241
+                    t243 = -beta_x*wp_z + beta_z*wp_x
+                    t244 = b0*dbeta_z
+                    t245 = beta_x*dwp_y
+                    t246 = dbeta_x*wp_y
+                    t247 = beta_y*dwp_x
+                    t248 = dbeta_y*wp_x
+                    t249 = b0*(t245 + t246 - t247 - t248)
+                    t250 = beta_x*dwp_z
+                    t251 = dbeta_x*wp_z
+                    t252 = beta_z*dwp_x + dbeta_z*wp_x - t250 - t251
+                    t253 = b0*beta_z
+                    t254 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
+                    t255 = t241*t254
+                    t256 = beta_z*t254
+                    t257 = -m_y*psi_z + m_z*psi_y
+                    t258 = dm_z*psi_y + dpsi_y*m_z - t219 - t220
+                    t259 = beta_y*wp_z - beta_z*wp_y
+                    t260 = t237 - t238 + t239 - t240
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(beta_y*t249 + beta_y*t255 +
+                        dbeta_y*t242 + dwp_x - 0.5*t237 + (0.5)*t238 - 0.5*t239 + (0.5)*t240 -
+                        t243*t244 - t243*t256 - t252*t253) + dOm_y*pw_z - dOm_z*pw_y + dm_x -
+                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t222 + dpwd_x + psi_y*t227 +
+                        psi_y*t235 + (0.5)*t219 + (0.5)*t220 - t223*t224 - t223*t236 - t232*t233)
+                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-beta_x*t249 - beta_x*t255 -
+                        0.5*beta_z*dwp_x - dbeta_x*t242 - 0.5*dbeta_z*wp_x + dwp_y + t244*t259 +
+                        (0.5)*t250 + (0.5)*t251 + t253*t260 + t256*t259) - dOm_x*pw_z + dOm_z*pw_x
+                        + dm_y - dpsi_x*t222 + dpwd_y - psi_x*t227 - psi_x*t235 + t224*t257 -
+                        0.5*t228 - 0.5*t229 + (0.5)*t230 + (0.5)*t231 + t233*t258 + t236*t257)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(b0*beta_x*t252 -
+                        b0*beta_y*t260 + b0*dbeta_x*t243 - b0*dbeta_y*t259 + beta_x*t243*t254 -
+                        beta_y*t254*t259 + dwp_z - 0.5*t245 - 0.5*t246 + (0.5)*t247 + (0.5)*t248)
+                        + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t223 -
+                        0.5*dpsi_x*m_y - dpsi_y*e0*t257 + dpwd_z + e0*psi_x*t232 - e0*psi_y*t258 +
+                        psi_x*t223*t234 - psi_y*t234*t257 + (0.5)*t225 + (0.5)*t226)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -24,14 +24,14 @@ N_ROTATIONS = 2
 ROTATIONS = 6      # first rotation among the local coordinates
 MODES = 12          # first internal mode
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 29
+WORK_ROWS = 35
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (874, 3),
-              "column": (1128, 3)}
+OPERATIONS = {"residual": (915, 3),
+              "column": (1175, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "02af63461db9",
-    "columns_times": "778c70e83538",
+    "_columns_times": "bb899bc4d9a4",
+    "columns_times": "d7f377e75edd",
     "exp_map": "833cbc6b09c9",
     "inverse_tangent_coefficients": "2b53d9add89f",
     "log_map": "2d5d06a001d3",
@@ -50,6 +50,7 @@ LEAVES = {
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width
+    field = at(coefficients, 5)
     row = padded(max(n, 9*N_ROTATIONS))
     qe = at(work, 0*row)
     ve = at(work, 1*row)
@@ -67,19 +68,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     e1s = at(work, 13*row)
     b0s = at(work, 14*row)
     b1s = at(work, 15*row)
-    dqe = at(work, 16*row)
-    dve = at(work, 17*row)
-    dae = at(work, 18*row)
-    dy = at(work, 19*row)
-    dyd = at(work, 20*row)
-    dydd = at(work, 21*row)
-    dacc = at(work, 22*row)
-    ds = at(work, 23*row)
-    dp = at(work, 24*row)
-    dpd = at(work, 25*row)
-    dh = at(work, 26*row)
-    dbeta = at(work, 27*row)
-    dg = at(work, 28*row)
+    gamma = at(work, 16*row)
+    d = at(work, 17*row)
+    weight = at(work, 18*row)
+    dqe = at(work, 19*row)
+    dve = at(work, 20*row)
+    dae = at(work, 21*row)
+    dy = at(work, 22*row)
+    dyd = at(work, 23*row)
+    dydd = at(work, 24*row)
+    dacc = at(work, 25*row)
+    ds = at(work, 26*row)
+    dp = at(work, 27*row)
+    dpd = at(work, 28*row)
+    dh = at(work, 29*row)
+    dbeta = at(work, 30*row)
+    dgamma = at(work, 31*row)
+    dd = at(work, 32*row)
+    dweight = at(work, 33*row)
+    dg = at(work, 34*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + 1])
@@ -92,6 +99,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         X = at(alpha_rs, N_ROTATIONS)
         S = at(X, ROTATIONS)
         M = at(S, n*padded(n))
+        mass_columns = at(M, n*padded(n))
+        mass_rows = at(mass_columns, 3*padded(n))
+        mc = at(mass_rows, n*padded(3))
+        masses = at(mc, 3)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -199,12 +210,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             y[k] = qm
             yd[k] = vm
             ydd[k] = am
+        # gravity in frame axes
+        field_x, field_y, field_z = field[0], field[1], field[2]
+        gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
+        gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
+        gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
+        # first moment of mass of the deformation, d = r^T Mbar y
+        columns_times(mass_rows, y, d, 3, n)
         # elastic force, s = Sbar y
-        columns_times(S, y, s, n)
+        columns_times(S, y, s, n, n)
+        # weight conjugate to y, Mbar r gamma
+        columns_times(mass_columns, gamma, weight, n, 3)
+        # force conjugate to y, elastic and gravity
+        for i in range(n):
+            s[i] -= weight[i]
         # momentum, p = Mbar ydot
-        columns_times(M, yd, p, n)
+        columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
-        columns_times(M, ydd, pd, n)
+        columns_times(M, ydd, pd, n, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -215,15 +238,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            t5 = X_z + u_z
-            t6 = X_y + u_y
-            t7 = X_x + u_x
-            F_x += -f_x
-            F_y += -f_y
-            F_z += -f_z
-            W_x += f_y*t5 - f_z*t6 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t5 + f_z*t7 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t6 - f_y*t7 - px_x*vs_y + px_y*vs_x
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            mass = masses[0]
+            alpha = alphas[i]
+            t5 = alpha*mass
+            t6 = X_z + u_z
+            t7 = X_y + u_y
+            t8 = X_x + u_x
+            F_x += -f_x - gamma_x*t5
+            F_y += -f_y - gamma_y*t5
+            F_z += -f_z - gamma_z*t5
+            W_x += f_y*t6 - f_z*t7 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t6 + f_z*t8 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t7 - f_y*t8 - px_x*vs_y + px_y*vs_x
+        # moment of gravity on the frame
+        gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+        d_x, d_y, d_z = d[0], d[1], d[2]
+        mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+        t9 = d_z + mc_z
+        t10 = d_y + mc_y
+        t11 = d_x + mc_x
+        W_x += gamma_y*t9 - gamma_z*t10
+        W_y += -gamma_x*t9 + gamma_z*t11
+        W_z += gamma_x*t10 - gamma_y*t11
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -237,9 +274,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
-            t8 = (0.5)*psi_z
-            Ms_x += m_y*t8 - 0.5*m_z*psi_y
-            Ms_y += -m_x*t8 + (0.5)*m_z*psi_x
+            t12 = (0.5)*psi_z
+            Ms_x += m_y*t12 - 0.5*m_z*psi_y
+            Ms_y += -m_x*t12 + (0.5)*m_z*psi_x
             Ms_z += (0.5)*m_x*psi_y - 0.5*m_y*psi_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -267,15 +304,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
-            t9 = (0.5)*psi_z
-            t10 = (0.5)*psi_y
-            t11 = (0.5)*psi_x
-            g[j3] = (Ms_x*alpha_r + Om_y*pw_z - Om_z*pw_y + alpha_r*(W_x + W_y*t9 - W_z*t10) + m_x
-                + m_y*t9 - m_z*t10 + pwd_x)
-            g[j3 + 1] = (Ms_y*alpha_r - Om_x*pw_z + Om_z*pw_x + alpha_r*(-W_x*t9 + W_y + W_z*t11)
-                - m_x*t9 + m_y + m_z*t11 + pwd_y)
-            g[j3 + 2] = (Ms_z*alpha_r + Om_x*pw_y - Om_y*pw_x + alpha_r*(W_x*t10 - W_y*t11 + W_z)
-                + m_x*t10 - m_y*t11 + m_z + pwd_z)
+            t13 = (0.5)*psi_z
+            t14 = (0.5)*psi_y
+            t15 = (0.5)*psi_x
+            g[j3] = (Ms_x*alpha_r + Om_y*pw_z - Om_z*pw_y + alpha_r*(W_x + W_y*t13 - W_z*t14) +
+                m_x + m_y*t13 - m_z*t14 + pwd_x)
+            g[j3 + 1] = (Ms_y*alpha_r - Om_x*pw_z + Om_z*pw_x + alpha_r*(-W_x*t13 + W_y + W_z*t15)
+                - m_x*t13 + m_y + m_z*t15 + pwd_y)
+            g[j3 + 2] = (Ms_z*alpha_r + Om_x*pw_y - Om_y*pw_x + alpha_r*(W_x*t14 - W_y*t15 + W_z)
+                + m_x*t14 - m_y*t15 + m_z + pwd_z)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -287,6 +324,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
+            # energies
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            d_x, d_y, d_z = d[0], d[1], d[2]
+            mass = masses[0]
+            mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+            potential = (-gamma_x*(d_x + mc_x) - gamma_y*(d_y + mc_y) - gamma_z*(d_z + mc_z) -
+                mass*(gamma_x*(R0_xx*x0_x + R0_yx*x0_y + R0_zx*x0_z) + gamma_y*(R0_xy*x0_x +
+                R0_yy*x0_y + R0_zy*x0_z) + gamma_z*(R0_xz*x0_x + R0_yz*x0_y + R0_zz*x0_z)))
+            strain += (0.5)*d_x*gamma_x + (0.5)*d_y*gamma_y + (0.5)*d_z*gamma_z
             # momentum and its moment about the origin: positions
             P_x = P_y = P_z = 0.0
             H_x = H_y = H_z = 0.0
@@ -315,6 +361,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 H_z += R_zx*pw_x + R_zy*pw_y + R_zz*pw_z
             energies[0] += kinetic
             energies[1] += strain
+            energies[9] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[4] += P_z
@@ -366,83 +413,83 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t12 = beta_y*dth_z
-                    t13 = beta_z*dth_y
-                    t14 = beta_x*dth_y
-                    t15 = beta_y*dth_x
-                    t16 = b0*(t14 - t15)
-                    t17 = beta_x*dth_z
-                    t18 = beta_z*dth_x - t17
-                    t19 = b0*beta_z
-                    t20 = t12 - t13
-                    mean_dth0_x += alpha_r*(beta_y*t16 + dth_x + (0.5)*t12 - 0.5*t13 - t18*t19)
-                    mean_dth0_y += (alpha_r*(-beta_x*t16 + (0.5)*beta_z*dth_x + dth_y - 0.5*t17 +
-                        t19*t20))
-                    mean_dth0_z += (alpha_r*(b0*beta_x*t18 - b0*beta_y*t20 + dth_z + (0.5)*t14 -
-                        0.5*t15))
+                    t16 = beta_y*dth_z
+                    t17 = beta_z*dth_y
+                    t18 = beta_x*dth_y
+                    t19 = beta_y*dth_x
+                    t20 = b0*(t18 - t19)
+                    t21 = beta_x*dth_z
+                    t22 = beta_z*dth_x - t21
+                    t23 = b0*beta_z
+                    t24 = t16 - t17
+                    mean_dth0_x += alpha_r*(beta_y*t20 + dth_x + (0.5)*t16 - 0.5*t17 - t22*t23)
+                    mean_dth0_y += (alpha_r*(-beta_x*t20 + (0.5)*beta_z*dth_x + dth_y - 0.5*t21 +
+                        t23*t24))
+                    mean_dth0_z += (alpha_r*(b0*beta_x*t22 - b0*beta_y*t24 + dth_z + (0.5)*t18 -
+                        0.5*t19))
                 # rate of the frame, (19)
-                t21 = beta0_z*c2
-                t22 = beta0_x*c3
-                t23 = beta0_y*t22
-                t24 = beta0_y*c2
-                t25 = beta0_z*t22
-                t26 = beta0_y*beta0_y*c3
-                t27 = beta0_z*beta0_z*c3 - 1
-                t28 = beta0_x*c2
-                t29 = beta0_x*beta0_x*c3
-                dth0_x = (mean_dth0_x*(-t26 - t27) + mean_dth0_y*(t21 + t23) + mean_dth0_z*(-t24 +
-                    t25))
-                dth0_y = (mean_dth0_x*(-t21 + t23) + mean_dth0_y*(-t27 - t29) +
-                    mean_dth0_z*(beta0_y*beta0_z*c3 + t28))
-                dth0_z = (mean_dth0_x*(t24 + t25) + mean_dth0_y*(beta0_y*beta0_z*c3 - t28) +
-                    mean_dth0_z*(-t26 - t29 + 1))
+                t25 = beta0_z*c2
+                t26 = beta0_x*c3
+                t27 = beta0_y*t26
+                t28 = beta0_y*c2
+                t29 = beta0_z*t26
+                t30 = beta0_y*beta0_y*c3
+                t31 = beta0_z*beta0_z*c3 - 1
+                t32 = beta0_x*c2
+                t33 = beta0_x*beta0_x*c3
+                dth0_x = (mean_dth0_x*(-t30 - t31) + mean_dth0_y*(t25 + t27) + mean_dth0_z*(-t28 +
+                    t29))
+                dth0_y = (mean_dth0_x*(-t25 + t27) + mean_dth0_y*(-t31 - t33) +
+                    mean_dth0_z*(beta0_y*beta0_z*c3 + t32))
+                dth0_z = (mean_dth0_x*(t28 + t29) + mean_dth0_y*(beta0_y*beta0_z*c3 - t32) +
+                    mean_dth0_z*(-t30 - t33 + 1))
                 # differential: displacement of the nodes in the frame, (11)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    t30 = X_y + u_y
-                    t31 = X_z + u_z
-                    t32 = X_x + u_x
-                    dy[i3] = -dth0_y*t31 + dth0_z*t30 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t31 - dth0_z*t32 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t30 + dth0_y*t32 - dx0_z + dx_z
+                    t34 = X_y + u_y
+                    t35 = X_z + u_z
+                    t36 = X_x + u_x
+                    dy[i3] = -dth0_y*t35 + dth0_z*t34 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t35 - dth0_z*t36 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t34 + dth0_y*t36 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t33 = dth0_y*psi_z
-                    t34 = dth_y*psi_z
-                    t35 = dth0_x*psi_y
-                    t36 = dth0_y*psi_x - t35
-                    t37 = e0*psi_y
-                    t38 = dth_x*psi_z
-                    t39 = dth_z*psi_x
-                    t40 = t38 - t39
-                    t41 = e0*psi_z
-                    t42 = dth_x*psi_y
-                    t43 = dth_y*psi_x - t42
-                    t44 = dth0_x*psi_z
-                    t45 = dth0_z*psi_x
-                    t46 = t44 - t45
-                    t47 = e0*psi_x
-                    t48 = dth_z*psi_y - t34
-                    t49 = dth0_z*psi_y - t33
+                    t37 = dth0_y*psi_z
+                    t38 = dth_y*psi_z
+                    t39 = dth0_x*psi_y
+                    t40 = dth0_y*psi_x - t39
+                    t41 = e0*psi_y
+                    t42 = dth_x*psi_z
+                    t43 = dth_z*psi_x
+                    t44 = t42 - t43
+                    t45 = e0*psi_z
+                    t46 = dth_x*psi_y
+                    t47 = dth_y*psi_x - t46
+                    t48 = dth0_x*psi_z
+                    t49 = dth0_z*psi_x
+                    t50 = t48 - t49
+                    t51 = e0*psi_x
+                    t52 = dth_z*psi_y - t38
+                    t53 = dth0_z*psi_y - t37
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t43 + e0*psi_z*t46 - 0.5*t33 - 0.5*t34 - t36*t37 - t40*t41)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t36*t47 + (0.5)*t38 - 0.5*t39 + t41*t48 -
-                        t41*t49 - t43*t47 + (0.5)*t44 - 0.5*t45)
+                        e0*psi_y*t47 + e0*psi_z*t50 - 0.5*t37 - 0.5*t38 - t40*t41 - t44*t45)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t40*t51 + (0.5)*t42 - 0.5*t43 + t45*t52 -
+                        t45*t53 - t47*t51 + (0.5)*t48 - 0.5*t49)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t40 + e0*psi_y*t49 - 0.5*t35 - t37*t48 - 0.5*t42 - t46*t47)
+                        e0*psi_x*t44 + e0*psi_y*t53 - 0.5*t39 - t41*t52 - 0.5*t46 - t50*t51)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # differential: elastic force, s = Sbar y
-                columns_times(S, dy, ds, n)
+                columns_times(S, dy, ds, n, n)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
@@ -456,18 +503,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t50 = beta_y*dth_z
-                    t51 = beta_z*dth_y
-                    t52 = beta_x*dth_y
-                    t53 = beta_y*dth_x
-                    t54 = b0*(t52 - t53)
-                    t55 = beta_x*dth_z
-                    t56 = beta_z*dth_x - t55
-                    t57 = b0*beta_z
-                    t58 = t50 - t51
-                    dbeta[j3] = beta_y*t54 + dth_x + (0.5)*t50 - 0.5*t51 - t56*t57
-                    dbeta[j3 + 1] = -beta_x*t54 + (0.5)*beta_z*dth_x + dth_y - 0.5*t55 + t57*t58
-                    dbeta[j3 + 2] = b0*beta_x*t56 - b0*beta_y*t58 + dth_z + (0.5)*t52 - 0.5*t53
+                    t54 = beta_y*dth_z
+                    t55 = beta_z*dth_y
+                    t56 = beta_x*dth_y
+                    t57 = beta_y*dth_x
+                    t58 = b0*(t56 - t57)
+                    t59 = beta_x*dth_z
+                    t60 = beta_z*dth_x - t59
+                    t61 = b0*beta_z
+                    t62 = t54 - t55
+                    dbeta[j3] = beta_y*t58 + dth_x + (0.5)*t54 - 0.5*t55 - t60*t61
+                    dbeta[j3 + 1] = -beta_x*t58 + (0.5)*beta_z*dth_x + dth_y - 0.5*t59 + t61*t62
+                    dbeta[j3 + 2] = b0*beta_x*t60 - b0*beta_y*t62 + dth_z + (0.5)*t56 - 0.5*t57
                 # variation of their mean, (18)
                 dbeta0_x = dbeta0_y = dbeta0_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -476,20 +523,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t59 = beta_y*dth_z
-                    t60 = beta_z*dth_y
-                    t61 = beta_x*dth_y
-                    t62 = beta_y*dth_x
-                    t63 = b0*(t61 - t62)
-                    t64 = beta_x*dth_z
-                    t65 = beta_z*dth_x - t64
-                    t66 = b0*beta_z
-                    t67 = t59 - t60
-                    dbeta0_x += alpha_r*(beta_y*t63 + dth_x + (0.5)*t59 - 0.5*t60 - t65*t66)
-                    dbeta0_y += (alpha_r*(-beta_x*t63 + (0.5)*beta_z*dth_x + dth_y - 0.5*t64 +
-                        t66*t67))
-                    dbeta0_z += (alpha_r*(b0*beta_x*t65 - b0*beta_y*t67 + dth_z + (0.5)*t61 -
-                        0.5*t62))
+                    t63 = beta_y*dth_z
+                    t64 = beta_z*dth_y
+                    t65 = beta_x*dth_y
+                    t66 = beta_y*dth_x
+                    t67 = b0*(t65 - t66)
+                    t68 = beta_x*dth_z
+                    t69 = beta_z*dth_x - t68
+                    t70 = b0*beta_z
+                    t71 = t63 - t64
+                    dbeta0_x += alpha_r*(beta_y*t67 + dth_x + (0.5)*t63 - 0.5*t64 - t69*t70)
+                    dbeta0_y += (alpha_r*(-beta_x*t67 + (0.5)*beta_z*dth_x + dth_y - 0.5*t68 +
+                        t70*t71))
+                    dbeta0_z += (alpha_r*(b0*beta_x*t69 - b0*beta_y*t71 + dth_z + (0.5)*t65 -
+                        0.5*t66))
+                # differential: gravity in frame axes
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
+                dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
+                dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
+                # differential: first moment of mass of the deformation, d = r^T Mbar y
+                columns_times(mass_rows, dy, dd, 3, n)
+                # differential: weight conjugate to y, Mbar r gamma
+                columns_times(mass_columns, dgamma, dweight, n, 3)
+                # force conjugate to y, elastic and gravity
+                for i in range(n):
+                    ds[i] -= dweight[i]
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -519,12 +578,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                     dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                    t68 = (0.5)*dpsi_z
-                    t69 = (0.5)*Om_z
-                    t70 = (0.5)*psi_z
-                    t71 = (0.5)*dOm_z
-                    dOm0_x += alpha_r*(-Om_y*t68 + dOm_x - dOm_y*t70 + dpsi_y*t69 + psi_y*t71)
-                    dOm0_y += alpha_r*(Om_x*t68 + dOm_x*t70 + dOm_y - dpsi_x*t69 - psi_x*t71)
+                    t72 = (0.5)*dpsi_z
+                    t73 = (0.5)*Om_z
+                    t74 = (0.5)*psi_z
+                    t75 = (0.5)*dOm_z
+                    dOm0_x += alpha_r*(-Om_y*t72 + dOm_x - dOm_y*t74 + dpsi_y*t73 + psi_y*t75)
+                    dOm0_y += alpha_r*(Om_x*t72 + dOm_x*t74 + dOm_y - dpsi_x*t73 - psi_x*t75)
                     dOm0_z += (alpha_r*(-0.5*Om_x*dpsi_y + (0.5)*Om_y*dpsi_x - 0.5*dOm_x*psi_y +
                         (0.5)*dOm_y*psi_x + dOm_z))
                 # differential: local accelerations of the nodes, (46), (58)
@@ -552,9 +611,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: momentum, p = Mbar ydot
-                columns_times(M, dyd, dp, n)
+                columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot
-                columns_times(M, dydd, dpd, n)
+                columns_times(M, dydd, dpd, n, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -565,22 +624,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
+                    mass = masses[0]
+                    alpha = alphas[i]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
+                    dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t72 = X_z + u_z
-                    t73 = X_y + u_y
-                    t74 = X_x + u_x
-                    dF_x += -df_x
-                    dF_y += -df_y
-                    dF_z += -df_z
-                    dW_x += (df_y*t72 - df_z*t73 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                    t76 = alpha*mass
+                    t77 = X_z + u_z
+                    t78 = X_y + u_y
+                    t79 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t76
+                    dF_y += -df_y - dgamma_y*t76
+                    dF_z += -df_z - dgamma_z*t76
+                    dW_x += (df_y*t77 - df_z*t78 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                         dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t72 + df_z*t74 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
+                    dW_y += (-df_x*t77 + df_z*t79 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
                         - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t73 - df_y*t74 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                    dW_z += (df_x*t78 - df_y*t79 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                         dvs_x*px_y - dvs_y*px_x)
+                # differential: moment of gravity on the frame
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                d_x, d_y, d_z = d[0], d[1], d[2]
+                mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+                dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
+                dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
+                t80 = d_y + mc_y
+                t81 = d_z + mc_z
+                t82 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t81 - dgamma_z*t80
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t81 + dgamma_z*t82
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t80 - dgamma_y*t82
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -596,10 +671,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
-                    t75 = (0.5)*psi_z
-                    t76 = (0.5)*dpsi_z
-                    dMs_x += dm_y*t75 - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + m_y*t76
-                    dMs_y += -dm_x*t75 + (0.5)*dm_z*psi_x + (0.5)*dpsi_x*m_z - m_x*t76
+                    t83 = (0.5)*psi_z
+                    t84 = (0.5)*dpsi_z
+                    dMs_x += dm_y*t83 - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + m_y*t84
+                    dMs_y += -dm_x*t83 + (0.5)*dm_z*psi_x + (0.5)*dpsi_x*m_z - m_x*t84
                     dMs_z += (0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - 0.5*dpsi_x*m_y + (0.5)*dpsi_y*m_x
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -620,12 +695,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t77 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t78 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t79 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t77 + R0_xy*t78 + R0_xz*t79
-                    dg[i3 + 1] = R0_yx*t77 + R0_yy*t78 + R0_yz*t79
-                    dg[i3 + 2] = R0_zx*t77 + R0_zy*t78 + R0_zz*t79
+                    t85 = dh_x + dth0_y*h_z - dth0_z*h_y
+                    t86 = dh_y - dth0_x*h_z + dth0_z*h_x
+                    t87 = dh_z + dth0_x*h_y - dth0_y*h_x
+                    dg[i3] = R0_xx*t85 + R0_xy*t86 + R0_xz*t87
+                    dg[i3 + 1] = R0_yx*t85 + R0_yy*t86 + R0_yz*t87
+                    dg[i3 + 2] = R0_zx*t85 + R0_zy*t86 + R0_zz*t87
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -639,21 +714,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     dpw_x, dpw_y, dpw_z = dp[j3], dp[j3 + 1], dp[j3 + 2]
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
-                    t80 = (0.5)*psi_z
-                    t81 = (0.5)*psi_y
-                    t82 = (0.5)*dpsi_y
-                    t83 = (0.5)*dpsi_z
-                    t84 = (0.5)*psi_x
-                    t85 = (0.5)*dpsi_x
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*dMs_x + alpha_r*(W_y*t83 - W_z*t82
-                        + dW_x + dW_y*t80 - dW_z*t81) + dOm_y*pw_z - dOm_z*pw_y + dm_x + dm_y*t80
-                        - dm_z*t81 + dpwd_x + m_y*t83 - m_z*t82)
-                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*dMs_y + alpha_r*(-W_x*t83 +
-                        W_z*t85 - dW_x*t80 + dW_y + dW_z*t84) - dOm_x*pw_z + dOm_z*pw_x - dm_x*t80
-                        + dm_y + dm_z*t84 + dpwd_y - m_x*t83 + m_z*t85)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*dMs_z + alpha_r*(W_x*t82 -
-                        W_y*t85 + dW_x*t81 - dW_y*t84 + dW_z) + dOm_x*pw_y - dOm_y*pw_x + dm_x*t81
-                        - dm_y*t84 + dm_z + dpwd_z + m_x*t82 - m_y*t85)
+                    t88 = (0.5)*psi_z
+                    t89 = (0.5)*psi_y
+                    t90 = (0.5)*dpsi_y
+                    t91 = (0.5)*dpsi_z
+                    t92 = (0.5)*psi_x
+                    t93 = (0.5)*dpsi_x
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*dMs_x + alpha_r*(W_y*t91 - W_z*t90
+                        + dW_x + dW_y*t88 - dW_z*t89) + dOm_y*pw_z - dOm_z*pw_y + dm_x + dm_y*t88
+                        - dm_z*t89 + dpwd_x + m_y*t91 - m_z*t90)
+                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*dMs_y + alpha_r*(-W_x*t91 +
+                        W_z*t93 - dW_x*t88 + dW_y + dW_z*t92) - dOm_x*pw_z + dOm_z*pw_x - dm_x*t88
+                        + dm_y + dm_z*t92 + dpwd_y - m_x*t91 + m_z*t93)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*dMs_z + alpha_r*(W_x*t90 -
+                        W_y*t93 + dW_x*t89 - dW_y*t92 + dW_z) + dOm_x*pw_y - dOm_y*pw_x + dm_x*t89
+                        - dm_y*t92 + dm_z + dpwd_z + m_x*t90 - m_y*t93)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -24,16 +24,16 @@ N_ROTATIONS = 2
 ROTATIONS = 6      # first rotation among the local coordinates
 MODES = 12          # first internal mode
 N_MODES = 4        # their number, None where it is read at run time
-WORK_ROWS = 25
+WORK_ROWS = 31
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (1029, 3),
-              "column": (2030, 3)}
+OPERATIONS = {"residual": (1070, 3),
+              "column": (2077, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "02af63461db9",
+    "_columns_times": "bb899bc4d9a4",
     "_mean_of_two": "88b125f57ecf",
     "_mean_step": "a6f51f310f53",
-    "columns_times": "778c70e83538",
+    "columns_times": "d7f377e75edd",
     "converged_mean": "1e2dcc61ffa6",
     "exp_map": "833cbc6b09c9",
     "inverse_3": "207e4e8e3ea0",
@@ -53,6 +53,7 @@ LEAVES = {
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = 16
+    field = at(coefficients, 5)
     row = padded(max(n, 9*N_ROTATIONS))
     qe = at(work, 0*row)
     ve = at(work, 1*row)
@@ -67,18 +68,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     h = at(work, 10*row)
     e0s = at(work, 11*row)
     e1s = at(work, 12*row)
-    dqe = at(work, 13*row)
-    dve = at(work, 14*row)
-    dae = at(work, 15*row)
-    dy = at(work, 16*row)
-    dyd = at(work, 17*row)
-    dydd = at(work, 18*row)
-    dacc = at(work, 19*row)
-    ds = at(work, 20*row)
-    dp = at(work, 21*row)
-    dpd = at(work, 22*row)
-    dh = at(work, 23*row)
-    dg = at(work, 24*row)
+    gamma = at(work, 13*row)
+    d = at(work, 14*row)
+    weight = at(work, 15*row)
+    dqe = at(work, 16*row)
+    dve = at(work, 17*row)
+    dae = at(work, 18*row)
+    dy = at(work, 19*row)
+    dyd = at(work, 20*row)
+    dydd = at(work, 21*row)
+    dacc = at(work, 22*row)
+    ds = at(work, 23*row)
+    dp = at(work, 24*row)
+    dpd = at(work, 25*row)
+    dh = at(work, 26*row)
+    dgamma = at(work, 27*row)
+    dd = at(work, 28*row)
+    dweight = at(work, 29*row)
+    dg = at(work, 30*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + 1])
@@ -91,6 +98,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         X = at(alpha_rs, N_ROTATIONS)
         S = at(X, ROTATIONS)
         M = at(S, n*padded(n))
+        mass_columns = at(M, n*padded(n))
+        mass_rows = at(mass_columns, 3*padded(n))
+        mc = at(mass_rows, n*padded(3))
+        masses = at(mc, 3)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -209,12 +220,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             y[k] = qm
             yd[k] = vm
             ydd[k] = am
+        # gravity in frame axes
+        field_x, field_y, field_z = field[0], field[1], field[2]
+        gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
+        gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
+        gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
+        # first moment of mass of the deformation, d = r^T Mbar y
+        columns_times(mass_rows, y, d, 3, n)
         # elastic force, s = Sbar y
-        columns_times(S, y, s, n)
+        columns_times(S, y, s, n, n)
+        # weight conjugate to y, Mbar r gamma
+        columns_times(mass_columns, gamma, weight, n, 3)
+        # force conjugate to y, elastic and gravity
+        for i in range(n):
+            s[i] -= weight[i]
         # momentum, p = Mbar ydot
-        columns_times(M, yd, p, n)
+        columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
-        columns_times(M, ydd, pd, n)
+        columns_times(M, ydd, pd, n, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -225,36 +248,50 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            t17 = X_z + u_z
-            t18 = X_y + u_y
-            t19 = X_x + u_x
-            F_x += -f_x
-            F_y += -f_y
-            F_z += -f_z
-            W_x += f_y*t17 - f_z*t18 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t17 + f_z*t19 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t18 - f_y*t19 - px_x*vs_y + px_y*vs_x
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            mass = masses[0]
+            alpha = alphas[i]
+            t17 = alpha*mass
+            t18 = X_z + u_z
+            t19 = X_y + u_y
+            t20 = X_x + u_x
+            F_x += -f_x - gamma_x*t17
+            F_y += -f_y - gamma_y*t17
+            F_z += -f_z - gamma_z*t17
+            W_x += f_y*t18 - f_z*t19 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t18 + f_z*t20 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t19 - f_y*t20 - px_x*vs_y + px_y*vs_x
+        # moment of gravity on the frame
+        gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+        d_x, d_y, d_z = d[0], d[1], d[2]
+        mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+        t21 = d_z + mc_z
+        t22 = d_y + mc_y
+        t23 = d_x + mc_x
+        W_x += gamma_y*t21 - gamma_z*t22
+        W_y += -gamma_x*t21 + gamma_z*t23
+        W_z += gamma_x*t22 - gamma_y*t23
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t20 = -m_x*psi_y + m_y*psi_x
-            t21 = m_x*psi_z
-            t22 = -m_z*psi_x + t21
-            t23 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t20 + e0*psi_z*t22 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t20 - e0*psi_z*t23 - m_y + (0.5)*m_z*psi_x - 0.5*t21
-            W_z += -e0*psi_x*t22 + e0*psi_y*t23 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t24 = -m_x*psi_y + m_y*psi_x
+            t25 = m_x*psi_z
+            t26 = -m_z*psi_x + t25
+            t27 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t24 + e0*psi_z*t26 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t24 - e0*psi_z*t27 - m_y + (0.5)*m_z*psi_x - 0.5*t25
+            W_z += -e0*psi_x*t26 + e0*psi_y*t27 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t24 = W_x + rhs_x
-        t25 = W_y + rhs_y
-        t26 = W_z + rhs_z
-        wp_x = Bxx*t24 + Byx*t25 + Bzx*t26
-        wp_y = Bxy*t24 + Byy*t25 + Bzy*t26
-        wp_z = Bxz*t24 + Byz*t25 + Bzz*t26
+        t28 = W_x + rhs_x
+        t29 = W_y + rhs_y
+        t30 = W_z + rhs_z
+        wp_x = Bxx*t28 + Byx*t29 + Bzx*t30
+        wp_y = Bxy*t28 + Byy*t29 + Bzy*t30
+        wp_z = Bxz*t28 + Byz*t29 + Bzz*t30
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -282,30 +319,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t27 = m_y*psi_z
-            t28 = m_x*psi_y
-            t29 = m_y*psi_x - t28
-            t30 = e0*psi_y
-            t31 = m_x*psi_z
-            t32 = m_z*psi_x
-            t33 = t31 - t32
-            t34 = e0*psi_z
-            t35 = psi_y*wp_z
-            t36 = psi_z*wp_y
-            t37 = psi_x*wp_y
-            t38 = psi_y*wp_x
-            t39 = t37 - t38
-            t40 = psi_x*wp_z
-            t41 = psi_z*wp_x - t40
-            t42 = m_z*psi_y - t27
-            t43 = e0*psi_x
-            t44 = t35 - t36
-            g[j3] = (Om_y*pw_z - Om_z*pw_y + alpha_r*(t30*t39 - t34*t41 - 0.5*t35 + (0.5)*t36 +
-                wp_x) + m_x - 0.5*m_z*psi_y + pwd_x + (0.5)*t27 + t29*t30 - t33*t34)
-            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + alpha_r*(-0.5*psi_z*wp_x + t34*t44 - t39*t43 +
-                (0.5)*t40 + wp_y) + m_y + pwd_y - t29*t43 - 0.5*t31 + (0.5)*t32 + t34*t42)
-            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + alpha_r*(-t30*t44 - 0.5*t37 + (0.5)*t38 + t41*t43
-                + wp_z) - 0.5*m_y*psi_x + m_z + pwd_z + (0.5)*t28 - t30*t42 + t33*t43)
+            t31 = m_y*psi_z
+            t32 = m_x*psi_y
+            t33 = m_y*psi_x - t32
+            t34 = e0*psi_y
+            t35 = m_x*psi_z
+            t36 = m_z*psi_x
+            t37 = t35 - t36
+            t38 = e0*psi_z
+            t39 = psi_y*wp_z
+            t40 = psi_z*wp_y
+            t41 = psi_x*wp_y
+            t42 = psi_y*wp_x
+            t43 = t41 - t42
+            t44 = psi_x*wp_z
+            t45 = psi_z*wp_x - t44
+            t46 = m_z*psi_y - t31
+            t47 = e0*psi_x
+            t48 = t39 - t40
+            g[j3] = (Om_y*pw_z - Om_z*pw_y + alpha_r*(t34*t43 - t38*t45 - 0.5*t39 + (0.5)*t40 +
+                wp_x) + m_x - 0.5*m_z*psi_y + pwd_x + (0.5)*t31 + t33*t34 - t37*t38)
+            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + alpha_r*(-0.5*psi_z*wp_x + t38*t48 - t43*t47 +
+                (0.5)*t44 + wp_y) + m_y + pwd_y - t33*t47 - 0.5*t35 + (0.5)*t36 + t38*t46)
+            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + alpha_r*(-t34*t48 - 0.5*t41 + (0.5)*t42 + t45*t47
+                + wp_z) - 0.5*m_y*psi_x + m_z + pwd_z + (0.5)*t32 - t34*t46 + t37*t47)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -317,6 +354,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
+            # energies
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            d_x, d_y, d_z = d[0], d[1], d[2]
+            mass = masses[0]
+            mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+            potential = (-gamma_x*(d_x + mc_x) - gamma_y*(d_y + mc_y) - gamma_z*(d_z + mc_z) -
+                mass*(gamma_x*(R0_xx*x0_x + R0_yx*x0_y + R0_zx*x0_z) + gamma_y*(R0_xy*x0_x +
+                R0_yy*x0_y + R0_zy*x0_z) + gamma_z*(R0_xz*x0_x + R0_yz*x0_y + R0_zz*x0_z)))
+            strain += (0.5)*d_x*gamma_x + (0.5)*d_y*gamma_y + (0.5)*d_z*gamma_z
             # momentum and its moment about the origin: positions
             P_x = P_y = P_z = 0.0
             H_x = H_y = H_z = 0.0
@@ -345,6 +391,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 H_z += R_zx*pw_x + R_zy*pw_y + R_zz*pw_z
             energies[0] += kinetic
             energies[1] += strain
+            energies[9] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[4] += P_z
@@ -396,16 +443,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t45 = -dth_x*psi_y + dth_y*psi_x
-                    t46 = dth_x*psi_z
-                    t47 = -dth_z*psi_x + t46
-                    t48 = -dth_y*psi_z + dth_z*psi_y
+                    t49 = -dth_x*psi_y + dth_y*psi_x
+                    t50 = dth_x*psi_z
+                    t51 = -dth_z*psi_x + t50
+                    t52 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t45 + e0*psi_z*t47))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t45 - e0*psi_z*t48 -
-                        0.5*t46))
-                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t47
-                        + e0*psi_y*t48))
+                        e0*psi_y*t49 + e0*psi_z*t51))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t49 - e0*psi_z*t52 -
+                        0.5*t50))
+                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t51
+                        + e0*psi_y*t52))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -415,47 +462,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    t49 = X_y + u_y
-                    t50 = X_z + u_z
-                    t51 = X_x + u_x
-                    dy[i3] = -dth0_y*t50 + dth0_z*t49 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t50 - dth0_z*t51 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t49 + dth0_y*t51 - dx0_z + dx_z
+                    t53 = X_y + u_y
+                    t54 = X_z + u_z
+                    t55 = X_x + u_x
+                    dy[i3] = -dth0_y*t54 + dth0_z*t53 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t54 - dth0_z*t55 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t53 + dth0_y*t55 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t52 = dth0_y*psi_z
-                    t53 = dth_y*psi_z
-                    t54 = dth0_x*psi_y
-                    t55 = dth0_y*psi_x - t54
-                    t56 = e0*psi_y
-                    t57 = dth_x*psi_z
-                    t58 = dth_z*psi_x
-                    t59 = t57 - t58
-                    t60 = e0*psi_z
-                    t61 = dth_x*psi_y
-                    t62 = dth_y*psi_x - t61
-                    t63 = dth0_x*psi_z
-                    t64 = dth0_z*psi_x
-                    t65 = t63 - t64
-                    t66 = e0*psi_x
-                    t67 = dth_z*psi_y - t53
-                    t68 = dth0_z*psi_y - t52
+                    t56 = dth0_y*psi_z
+                    t57 = dth_y*psi_z
+                    t58 = dth0_x*psi_y
+                    t59 = dth0_y*psi_x - t58
+                    t60 = e0*psi_y
+                    t61 = dth_x*psi_z
+                    t62 = dth_z*psi_x
+                    t63 = t61 - t62
+                    t64 = e0*psi_z
+                    t65 = dth_x*psi_y
+                    t66 = dth_y*psi_x - t65
+                    t67 = dth0_x*psi_z
+                    t68 = dth0_z*psi_x
+                    t69 = t67 - t68
+                    t70 = e0*psi_x
+                    t71 = dth_z*psi_y - t57
+                    t72 = dth0_z*psi_y - t56
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t62 + e0*psi_z*t65 - 0.5*t52 - 0.5*t53 - t55*t56 - t59*t60)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t55*t66 + (0.5)*t57 - 0.5*t58 + t60*t67 -
-                        t60*t68 - t62*t66 + (0.5)*t63 - 0.5*t64)
+                        e0*psi_y*t66 + e0*psi_z*t69 - 0.5*t56 - 0.5*t57 - t59*t60 - t63*t64)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t59*t70 + (0.5)*t61 - 0.5*t62 + t64*t71 -
+                        t64*t72 - t66*t70 + (0.5)*t67 - 0.5*t68)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t59 + e0*psi_y*t68 - 0.5*t54 - t56*t67 - 0.5*t61 - t65*t66)
+                        e0*psi_x*t63 + e0*psi_y*t72 - 0.5*t58 - t60*t71 - 0.5*t65 - t69*t70)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # differential: elastic force, s = Sbar y
-                columns_times(S, dy, ds, n)
+                columns_times(S, dy, ds, n, n)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
@@ -463,6 +510,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dth0_x *= c_geo
                 dth0_y *= c_geo
                 dth0_z *= c_geo
+                # differential: gravity in frame axes
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
+                dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
+                dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
+                # differential: first moment of mass of the deformation, d = r^T Mbar y
+                columns_times(mass_rows, dy, dd, 3, n)
+                # differential: weight conjugate to y, Mbar r gamma
+                columns_times(mass_columns, dgamma, dweight, n, 3)
+                # force conjugate to y, elastic and gravity
+                for i in range(n):
+                    ds[i] -= dweight[i]
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -494,46 +553,46 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t69 = -Om_x*psi_y + Om_y*psi_x
-                    t70 = dpsi_y*e0
-                    t71 = Om0_x*psi_z - Om0_z*psi_x
-                    t72 = dpsi_z*e0
-                    t73 = Om0_x*dpsi_z
-                    t74 = -Om0_z*dpsi_x + t73
-                    t75 = e0*psi_z
-                    t76 = -Om0_x*psi_y + Om0_y*psi_x
-                    t77 = Om_x*psi_z - Om_z*psi_x
-                    t78 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t79 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t80 = e0*psi_y
-                    t81 = Om_x*dpsi_z
-                    t82 = dOm_x*psi_z
-                    t83 = -Om_z*dpsi_x - dOm_z*psi_x + t81 + t82
-                    t84 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t85 = e1*t84
-                    t86 = psi_y*t85
-                    t87 = psi_z*t85
-                    t88 = dpsi_x*e0
-                    t89 = -Om_y*psi_z + Om_z*psi_y
-                    t90 = e0*psi_x
-                    t91 = -Om0_y*psi_z + Om0_z*psi_y
-                    t92 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t93 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t94 = psi_x*t85
+                    t73 = -Om_x*psi_y + Om_y*psi_x
+                    t74 = dpsi_y*e0
+                    t75 = Om0_x*psi_z - Om0_z*psi_x
+                    t76 = dpsi_z*e0
+                    t77 = Om0_x*dpsi_z
+                    t78 = -Om0_z*dpsi_x + t77
+                    t79 = e0*psi_z
+                    t80 = -Om0_x*psi_y + Om0_y*psi_x
+                    t81 = Om_x*psi_z - Om_z*psi_x
+                    t82 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t83 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t84 = e0*psi_y
+                    t85 = Om_x*dpsi_z
+                    t86 = dOm_x*psi_z
+                    t87 = -Om_z*dpsi_x - dOm_z*psi_x + t85 + t86
+                    t88 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t89 = e1*t88
+                    t90 = psi_y*t89
+                    t91 = psi_z*t89
+                    t92 = dpsi_x*e0
+                    t93 = -Om_y*psi_z + Om_z*psi_y
+                    t94 = e0*psi_x
+                    t95 = -Om0_y*psi_z + Om0_z*psi_y
+                    t96 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t97 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t98 = psi_x*t89
                     rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
                         - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t76 + dpsi_z*e0*t77 + e0*psi_y*t78 + e0*psi_z*t83 +
-                        e1*psi_y*t76*t84 + e1*psi_z*t77*t84 - t69*t70 - t69*t86 - t71*t72 -
-                        t71*t87 - t74*t75 - t79*t80))
+                        dpsi_y*e0*t80 + dpsi_z*e0*t81 + e0*psi_y*t82 + e0*psi_z*t87 +
+                        e1*psi_y*t80*t88 + e1*psi_z*t81*t88 - t73*t74 - t73*t90 - t75*t76 -
+                        t75*t91 - t78*t79 - t83*t84))
                     rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t69 + dpsi_z*e0*t91 + e0*psi_x*t79 +
-                        e0*psi_z*t92 + e1*psi_x*t69*t84 + e1*psi_z*t84*t91 - t72*t89 - 0.5*t73 -
-                        t75*t93 - t76*t88 - t76*t94 - t78*t90 - 0.5*t81 - 0.5*t82 - t87*t89))
+                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t73 + dpsi_z*e0*t95 + e0*psi_x*t83 +
+                        e0*psi_z*t96 + e1*psi_x*t73*t88 + e1*psi_z*t88*t95 - t76*t93 - 0.5*t77 -
+                        t79*t97 - t80*t92 - t80*t98 - t82*t94 - 0.5*t85 - 0.5*t86 - t91*t93))
                     rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
                         - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t71 + dpsi_y*e0*t89 + e0*psi_x*t74 + e0*psi_y*t93 +
-                        e1*psi_x*t71*t84 + e1*psi_y*t84*t89 - t70*t91 - t77*t88 - t77*t94 -
-                        t80*t92 - t83*t90 - t86*t91))
+                        dpsi_x*e0*t75 + dpsi_y*e0*t93 + e0*psi_x*t78 + e0*psi_y*t97 +
+                        e1*psi_x*t75*t88 + e1*psi_y*t88*t93 - t74*t95 - t81*t92 - t81*t98 -
+                        t84*t96 - t87*t94 - t90*t95))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -562,9 +621,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: momentum, p = Mbar ydot
-                columns_times(M, dyd, dp, n)
+                columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot
-                columns_times(M, dydd, dpd, n)
+                columns_times(M, dydd, dpd, n, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -575,22 +634,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
+                    mass = masses[0]
+                    alpha = alphas[i]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
+                    dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t95 = X_z + u_z
-                    t96 = X_y + u_y
-                    t97 = X_x + u_x
-                    dF_x += -df_x
-                    dF_y += -df_y
-                    dF_z += -df_z
-                    dW_x += (df_y*t95 - df_z*t96 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
-                        dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t95 + df_z*t97 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
-                        - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t96 - df_y*t97 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
-                        dvs_x*px_y - dvs_y*px_x)
+                    t99 = alpha*mass
+                    t100 = X_z + u_z
+                    t101 = X_y + u_y
+                    t102 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t99
+                    dF_y += -df_y - dgamma_y*t99
+                    dF_z += -df_z - dgamma_z*t99
+                    dW_x += (df_y*t100 - df_z*t101 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
+                        + dvs_y*px_z - dvs_z*px_y)
+                    dW_y += (-df_x*t100 + df_z*t102 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
+                        du_z*f_x - dvs_x*px_z + dvs_z*px_x)
+                    dW_z += (df_x*t101 - df_y*t102 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
+                        + dvs_x*px_y - dvs_y*px_x)
+                # differential: moment of gravity on the frame
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                d_x, d_y, d_z = d[0], d[1], d[2]
+                mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+                dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
+                dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
+                t103 = d_y + mc_y
+                t104 = d_z + mc_z
+                t105 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t104 - dgamma_z*t103
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t104 + dgamma_z*t105
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t103 - dgamma_y*t105
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -600,25 +675,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t98 = -m_x*psi_y + m_y*psi_x
-                    t99 = m_x*psi_z - m_z*psi_x
-                    t100 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t101 = dm_x*psi_z
-                    t102 = dpsi_z*m_x
-                    t103 = -dm_z*psi_x - dpsi_x*m_z + t101 + t102
-                    t104 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t105 = e1*t104
-                    t106 = -m_y*psi_z + m_z*psi_y
-                    t107 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t98 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t99 + (0.5)*dpsi_z*m_y - e0*psi_y*t100 +
-                        e0*psi_z*t103 + e1*psi_z*t104*t99 - psi_y*t105*t98)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t98 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t106 + e0*psi_x*t100 - e0*psi_z*t107 + e1*psi_x*t104*t98 -
-                        psi_z*t105*t106 - 0.5*t101 - 0.5*t102)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t99 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t106 + (0.5)*dpsi_y*m_x - e0*psi_x*t103 +
-                        e0*psi_y*t107 + e1*psi_y*t104*t106 - psi_x*t105*t99)
+                    t106 = -m_x*psi_y + m_y*psi_x
+                    t107 = m_x*psi_z - m_z*psi_x
+                    t108 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t109 = dm_x*psi_z
+                    t110 = dpsi_z*m_x
+                    t111 = -dm_z*psi_x - dpsi_x*m_z + t109 + t110
+                    t112 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t113 = e1*t112
+                    t114 = -m_y*psi_z + m_z*psi_y
+                    t115 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t106 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t107 + (0.5)*dpsi_z*m_y - e0*psi_y*t108 +
+                        e0*psi_z*t111 + e1*psi_z*t107*t112 - psi_y*t106*t113)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t106 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t114 + e0*psi_x*t108 - e0*psi_z*t115 + e1*psi_x*t106*t112 -
+                        psi_z*t113*t114 - 0.5*t109 - 0.5*t110)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t107 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t114 + (0.5)*dpsi_y*m_x - e0*psi_x*t111 +
+                        e0*psi_y*t115 + e1*psi_y*t112*t114 - psi_x*t107*t113)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -628,33 +703,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t108 = dpsi_y*wp_z
-                    t109 = dpsi_z*wp_y
-                    t110 = psi_x*wp_y - psi_y*wp_x
-                    t111 = e0*t110
-                    t112 = dpsi_x*wp_y
-                    t113 = dpsi_y*wp_x
-                    t114 = e0*(t112 - t113)
-                    t115 = -psi_x*wp_z + psi_z*wp_x
-                    t116 = dpsi_x*wp_z
-                    t117 = dpsi_z*wp_x - t116
-                    t118 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t119 = e1*t118
-                    t120 = t110*t119
-                    t121 = psi_y*wp_z - psi_z*wp_y
-                    t122 = t108 - t109
-                    rhs_x += (-alpha_r*(dpsi_y*t111 - dpsi_z*e0*t115 - e0*psi_z*t117 + psi_y*t114
-                        + psi_y*t120 - psi_z*t115*t119 + (0.5)*t108 - 0.5*t109))
-                    rhs_y += (-alpha_r*(-dpsi_x*t111 + dpsi_z*e0*t121 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t122 + e1*psi_z*t118*t121 - psi_x*t114 - psi_x*t120 - 0.5*t116))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t115 - dpsi_y*e0*t121 + e0*psi_x*t117 -
-                        e0*psi_y*t122 + psi_x*t115*t119 - psi_y*t119*t121 + (0.5)*t112 - 0.5*t113))
-                t123 = dW_x + rhs_x
-                t124 = dW_y + rhs_y
-                t125 = dW_z + rhs_z
-                dwp_x = Bxx*t123 + Byx*t124 + Bzx*t125
-                dwp_y = Bxy*t123 + Byy*t124 + Bzy*t125
-                dwp_z = Bxz*t123 + Byz*t124 + Bzz*t125
+                    t116 = dpsi_y*wp_z
+                    t117 = dpsi_z*wp_y
+                    t118 = psi_x*wp_y - psi_y*wp_x
+                    t119 = e0*t118
+                    t120 = dpsi_x*wp_y
+                    t121 = dpsi_y*wp_x
+                    t122 = e0*(t120 - t121)
+                    t123 = -psi_x*wp_z + psi_z*wp_x
+                    t124 = dpsi_x*wp_z
+                    t125 = dpsi_z*wp_x - t124
+                    t126 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t127 = e1*t126
+                    t128 = t118*t127
+                    t129 = psi_y*wp_z - psi_z*wp_y
+                    t130 = t116 - t117
+                    rhs_x += (-alpha_r*(dpsi_y*t119 - dpsi_z*e0*t123 - e0*psi_z*t125 + psi_y*t122
+                        + psi_y*t128 - psi_z*t123*t127 + (0.5)*t116 - 0.5*t117))
+                    rhs_y += (-alpha_r*(-dpsi_x*t119 + dpsi_z*e0*t129 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t130 + e1*psi_z*t126*t129 - psi_x*t122 - psi_x*t128 - 0.5*t124))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t123 - dpsi_y*e0*t129 + e0*psi_x*t125 -
+                        e0*psi_y*t130 + psi_x*t123*t127 - psi_y*t127*t129 + (0.5)*t120 - 0.5*t121))
+                t131 = dW_x + rhs_x
+                t132 = dW_y + rhs_y
+                t133 = dW_z + rhs_z
+                dwp_x = Bxx*t131 + Byx*t132 + Bzx*t133
+                dwp_y = Bxy*t131 + Byy*t132 + Bzy*t133
+                dwp_z = Bxz*t131 + Byz*t132 + Bzz*t133
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -674,12 +749,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t126 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t127 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t128 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t126 + R0_xy*t127 + R0_xz*t128
-                    dg[i3 + 1] = R0_yx*t126 + R0_yy*t127 + R0_yz*t128
-                    dg[i3 + 2] = R0_zx*t126 + R0_zy*t127 + R0_zz*t128
+                    t134 = dh_x + dth0_y*h_z - dth0_z*h_y
+                    t135 = dh_y - dth0_x*h_z + dth0_z*h_x
+                    t136 = dh_z + dth0_x*h_y - dth0_y*h_x
+                    dg[i3] = R0_xx*t134 + R0_xy*t135 + R0_xz*t136
+                    dg[i3 + 1] = R0_yx*t134 + R0_yy*t135 + R0_yz*t136
+                    dg[i3 + 2] = R0_zx*t134 + R0_zy*t135 + R0_zz*t136
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -695,61 +770,61 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t129 = dm_y*psi_z
-                    t130 = dpsi_z*m_y
-                    t131 = -m_x*psi_y + m_y*psi_x
-                    t132 = dpsi_y*e0
-                    t133 = m_x*psi_z - m_z*psi_x
-                    t134 = dpsi_z*e0
-                    t135 = dm_x*psi_y
-                    t136 = dpsi_y*m_x
-                    t137 = dm_y*psi_x + dpsi_x*m_y - t135 - t136
-                    t138 = e0*psi_y
-                    t139 = dm_x*psi_z
-                    t140 = dpsi_z*m_x
-                    t141 = dm_z*psi_x
-                    t142 = dpsi_x*m_z
-                    t143 = t139 + t140 - t141 - t142
-                    t144 = e0*psi_z
-                    t145 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t146 = psi_y*t145
-                    t147 = psi_z*t145
-                    t148 = dpsi_y*wp_z
-                    t149 = dpsi_z*wp_y
-                    t150 = dwp_y*psi_z
-                    t151 = dwp_z*psi_y
-                    t152 = psi_x*wp_y - psi_y*wp_x
-                    t153 = -psi_x*wp_z + psi_z*wp_x
-                    t154 = dpsi_x*wp_y
-                    t155 = dwp_y*psi_x
-                    t156 = dpsi_y*wp_x
-                    t157 = dwp_x*psi_y
-                    t158 = t154 + t155 - t156 - t157
-                    t159 = dpsi_x*wp_z
-                    t160 = dwp_z*psi_x
-                    t161 = dpsi_z*wp_x + dwp_x*psi_z - t159 - t160
-                    t162 = -m_y*psi_z + m_z*psi_y
-                    t163 = dpsi_x*e0
-                    t164 = dm_z*psi_y + dpsi_y*m_z - t129 - t130
-                    t165 = e0*psi_x
-                    t166 = psi_x*t145
-                    t167 = psi_y*wp_z - psi_z*wp_y
-                    t168 = t148 - t149 - t150 + t151
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(dwp_x + t132*t152 - t134*t153 +
-                        t138*t158 - t144*t161 + t146*t152 - t147*t153 - 0.5*t148 + (0.5)*t149 +
-                        (0.5)*t150 - 0.5*t151) + dOm_y*pw_z - dOm_z*pw_y + dm_x - 0.5*dm_z*psi_y -
-                        0.5*dpsi_y*m_z + dpwd_x + (0.5)*t129 + (0.5)*t130 + t131*t132 + t131*t146
-                        - t133*t134 - t133*t147 + t137*t138 - t143*t144)
+                    t137 = dm_y*psi_z
+                    t138 = dpsi_z*m_y
+                    t139 = -m_x*psi_y + m_y*psi_x
+                    t140 = dpsi_y*e0
+                    t141 = m_x*psi_z - m_z*psi_x
+                    t142 = dpsi_z*e0
+                    t143 = dm_x*psi_y
+                    t144 = dpsi_y*m_x
+                    t145 = dm_y*psi_x + dpsi_x*m_y - t143 - t144
+                    t146 = e0*psi_y
+                    t147 = dm_x*psi_z
+                    t148 = dpsi_z*m_x
+                    t149 = dm_z*psi_x
+                    t150 = dpsi_x*m_z
+                    t151 = t147 + t148 - t149 - t150
+                    t152 = e0*psi_z
+                    t153 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t154 = psi_y*t153
+                    t155 = psi_z*t153
+                    t156 = dpsi_y*wp_z
+                    t157 = dpsi_z*wp_y
+                    t158 = dwp_y*psi_z
+                    t159 = dwp_z*psi_y
+                    t160 = psi_x*wp_y - psi_y*wp_x
+                    t161 = -psi_x*wp_z + psi_z*wp_x
+                    t162 = dpsi_x*wp_y
+                    t163 = dwp_y*psi_x
+                    t164 = dpsi_y*wp_x
+                    t165 = dwp_x*psi_y
+                    t166 = t162 + t163 - t164 - t165
+                    t167 = dpsi_x*wp_z
+                    t168 = dwp_z*psi_x
+                    t169 = dpsi_z*wp_x + dwp_x*psi_z - t167 - t168
+                    t170 = -m_y*psi_z + m_z*psi_y
+                    t171 = dpsi_x*e0
+                    t172 = dm_z*psi_y + dpsi_y*m_z - t137 - t138
+                    t173 = e0*psi_x
+                    t174 = psi_x*t153
+                    t175 = psi_y*wp_z - psi_z*wp_y
+                    t176 = t156 - t157 - t158 + t159
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(dwp_x + t140*t160 - t142*t161 +
+                        t146*t166 - t152*t169 + t154*t160 - t155*t161 - 0.5*t156 + (0.5)*t157 +
+                        (0.5)*t158 - 0.5*t159) + dOm_y*pw_z - dOm_z*pw_y + dm_x - 0.5*dm_z*psi_y -
+                        0.5*dpsi_y*m_z + dpwd_x + (0.5)*t137 + (0.5)*t138 + t139*t140 + t139*t154
+                        - t141*t142 - t141*t155 + t145*t146 - t151*t152)
                     dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-0.5*dpsi_z*wp_x -
-                        0.5*dwp_x*psi_z + dwp_y + t134*t167 + t144*t168 + t147*t167 - t152*t163 -
-                        t152*t166 - t158*t165 + (0.5)*t159 + (0.5)*t160) - dOm_x*pw_z + dOm_z*pw_x
-                        + dm_y + dpwd_y - t131*t163 - t131*t166 + t134*t162 - t137*t165 - 0.5*t139
-                        - 0.5*t140 + (0.5)*t141 + (0.5)*t142 + t144*t164 + t147*t162)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(dwp_z - t132*t167 - t138*t168
-                        - t146*t167 + t153*t163 + t153*t166 - 0.5*t154 - 0.5*t155 + (0.5)*t156 +
-                        (0.5)*t157 + t161*t165) + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z
-                        - 0.5*dpsi_x*m_y + dpwd_z - t132*t162 + t133*t163 + t133*t166 + (0.5)*t135
-                        + (0.5)*t136 - t138*t164 + t143*t165 - t146*t162)
+                        0.5*dwp_x*psi_z + dwp_y + t142*t175 + t152*t176 + t155*t175 - t160*t171 -
+                        t160*t174 - t166*t173 + (0.5)*t167 + (0.5)*t168) - dOm_x*pw_z + dOm_z*pw_x
+                        + dm_y + dpwd_y - t139*t171 - t139*t174 + t142*t170 - t145*t173 - 0.5*t147
+                        - 0.5*t148 + (0.5)*t149 + (0.5)*t150 + t152*t172 + t155*t170)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(dwp_z - t140*t175 - t146*t176
+                        - t154*t175 + t161*t171 + t161*t174 - 0.5*t162 - 0.5*t163 + (0.5)*t164 +
+                        (0.5)*t165 + t169*t173) + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z
+                        - 0.5*dpsi_x*m_y + dpwd_z - t140*t170 + t141*t171 + t141*t174 + (0.5)*t143
+                        + (0.5)*t144 - t146*t172 + t151*t173 - t154*t170)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -24,16 +24,16 @@ N_ROTATIONS = 2
 ROTATIONS = 9      # first rotation among the local coordinates
 MODES = 15          # first internal mode
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 25
+WORK_ROWS = 31
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (1319, 3),
-              "column": (1607, 3)}
+OPERATIONS = {"residual": (1367, 3),
+              "column": (1661, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "02af63461db9",
+    "_columns_times": "bb899bc4d9a4",
     "_fit_step": "a1cc712721a0",
     "best_fit": "a0b054ff9264",
-    "columns_times": "778c70e83538",
+    "columns_times": "d7f377e75edd",
     "exp_map": "833cbc6b09c9",
     "inverse_3": "207e4e8e3ea0",
     "inverse_tangent_coefficients": "2b53d9add89f",
@@ -52,6 +52,7 @@ LEAVES = {
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width
+    field = at(coefficients, 5)
     row = padded(max(n, 9*N_ROTATIONS))
     qe = at(work, 0*row)
     ve = at(work, 1*row)
@@ -66,18 +67,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     h = at(work, 10*row)
     e0s = at(work, 11*row)
     e1s = at(work, 12*row)
-    dqe = at(work, 13*row)
-    dve = at(work, 14*row)
-    dae = at(work, 15*row)
-    dy = at(work, 16*row)
-    dyd = at(work, 17*row)
-    dydd = at(work, 18*row)
-    dacc = at(work, 19*row)
-    ds = at(work, 20*row)
-    dp = at(work, 21*row)
-    dpd = at(work, 22*row)
-    dh = at(work, 23*row)
-    dg = at(work, 24*row)
+    gamma = at(work, 13*row)
+    d = at(work, 14*row)
+    weight = at(work, 15*row)
+    dqe = at(work, 16*row)
+    dve = at(work, 17*row)
+    dae = at(work, 18*row)
+    dy = at(work, 19*row)
+    dyd = at(work, 20*row)
+    dydd = at(work, 21*row)
+    dacc = at(work, 22*row)
+    ds = at(work, 23*row)
+    dp = at(work, 24*row)
+    dpd = at(work, 25*row)
+    dh = at(work, 26*row)
+    dgamma = at(work, 27*row)
+    dd = at(work, 28*row)
+    dweight = at(work, 29*row)
+    dg = at(work, 30*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + 1])
@@ -90,6 +97,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         X = at(alpha_rs, N_ROTATIONS)
         S = at(X, ROTATIONS)
         M = at(S, n*padded(n))
+        mass_columns = at(M, n*padded(n))
+        mass_rows = at(mass_columns, 3*padded(n))
+        mc = at(mass_rows, n*padded(3))
+        masses = at(mc, 3)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -219,12 +230,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             y[k] = qm
             yd[k] = vm
             ydd[k] = am
+        # gravity in frame axes
+        field_x, field_y, field_z = field[0], field[1], field[2]
+        gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
+        gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
+        gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
+        # first moment of mass of the deformation, d = r^T Mbar y
+        columns_times(mass_rows, y, d, 3, n)
         # elastic force, s = Sbar y
-        columns_times(S, y, s, n)
+        columns_times(S, y, s, n, n)
+        # weight conjugate to y, Mbar r gamma
+        columns_times(mass_columns, gamma, weight, n, 3)
+        # force conjugate to y, elastic and gravity
+        for i in range(n):
+            s[i] -= weight[i]
         # momentum, p = Mbar ydot
-        columns_times(M, yd, p, n)
+        columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
-        columns_times(M, ydd, pd, n)
+        columns_times(M, ydd, pd, n, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -235,44 +258,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t15 = X_z + u_z
-            t16 = X_y + u_y
-            t17 = X_x + u_x
-            F_x += -f_x
-            F_y += -f_y
-            F_z += -f_z
-            W_x += f_y*t15 - f_z*t16 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t15 + f_z*t17 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t16 - f_y*t17 - px_x*vs_y + px_y*vs_x
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            mass = masses[0]
+            alpha = alphas[i]
+            t15 = alpha*mass
+            t16 = X_z + u_z
+            t17 = X_y + u_y
+            t18 = X_x + u_x
+            F_x += -f_x - gamma_x*t15
+            F_y += -f_y - gamma_y*t15
+            F_z += -f_z - gamma_z*t15
+            W_x += f_y*t16 - f_z*t17 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t16 + f_z*t18 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t17 - f_y*t18 - px_x*vs_y + px_y*vs_x
+        # moment of gravity on the frame
+        gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+        d_x, d_y, d_z = d[0], d[1], d[2]
+        mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+        t19 = d_z + mc_z
+        t20 = d_y + mc_y
+        t21 = d_x + mc_x
+        W_x += gamma_y*t19 - gamma_z*t20
+        W_y += -gamma_x*t19 + gamma_z*t21
+        W_z += gamma_x*t20 - gamma_y*t21
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t18 = -m_x*psi_y + m_y*psi_x
-            t19 = m_x*psi_z
-            t20 = -m_z*psi_x + t19
-            t21 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t18 + e0*psi_z*t20 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t18 - e0*psi_z*t21 - m_y + (0.5)*m_z*psi_x - 0.5*t19
-            W_z += -e0*psi_x*t20 + e0*psi_y*t21 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t22 = -m_x*psi_y + m_y*psi_x
+            t23 = m_x*psi_z
+            t24 = -m_z*psi_x + t23
+            t25 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t22 + e0*psi_z*t24 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t22 - e0*psi_z*t25 - m_y + (0.5)*m_z*psi_x - 0.5*t23
+            W_z += -e0*psi_x*t24 + e0*psi_y*t25 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t22 = W_x + rhs_x
-        t23 = W_y + rhs_y
-        t24 = W_z + rhs_z
-        wp_x = Bxx*t22 + Byx*t23 + Bzx*t24
-        wp_y = Bxy*t22 + Byy*t23 + Bzy*t24
-        wp_z = Bxz*t22 + Byz*t23 + Bzz*t24
+        t26 = W_x + rhs_x
+        t27 = W_y + rhs_y
+        t28 = W_z + rhs_z
+        wp_x = Bxx*t26 + Byx*t27 + Bzx*t28
+        wp_y = Bxy*t26 + Byy*t27 + Bzy*t28
+        wp_z = Bxz*t26 + Byz*t27 + Bzz*t28
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t25 = fit*wp_z
-            F_x += -X_y*t25 + X_z*fit*wp_y
-            F_y += X_x*t25 - X_z*fit*wp_x
+            t29 = fit*wp_z
+            F_x += -X_y*t29 + X_z*fit*wp_y
+            F_y += X_x*t29 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -283,10 +320,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pxd_x, pxd_y, pxd_z = pd[i3], pd[i3 + 1], pd[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             alpha = alphas[i]
-            t26 = fit*wp_z
-            t27 = X_z*fit
-            h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t26 + f_x + pxd_x - t27*wp_y
-            h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x - X_x*t26 + f_y + pxd_y + t27*wp_x
+            t30 = fit*wp_z
+            t31 = X_z*fit
+            h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t30 + f_x + pxd_x - t31*wp_y
+            h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x - X_x*t30 + f_y + pxd_y + t31*wp_x
             h[i3 + 2] = (F_z*alpha + Om0_x*px_y - Om0_y*px_x + X_x*fit*wp_y - X_y*fit*wp_x + f_z +
                 pxd_z)
         # force on the nodes
@@ -305,20 +342,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t28 = m_y*psi_z
-            t29 = m_x*psi_y
-            t30 = e0*(m_y*psi_x - t29)
-            t31 = m_x*psi_z
-            t32 = m_z*psi_x
-            t33 = t31 - t32
-            t34 = e0*psi_z
-            t35 = m_z*psi_y - t28
-            g[j3] = (Om_y*pw_z - Om_z*pw_y + m_x - 0.5*m_z*psi_y + psi_y*t30 + pwd_x + (0.5)*t28 -
-                t33*t34)
-            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + m_y - psi_x*t30 + pwd_y - 0.5*t31 + (0.5)*t32 +
-                t34*t35)
-            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t33 - e0*psi_y*t35 - 0.5*m_y*psi_x + m_z
-                + pwd_z + (0.5)*t29)
+            t32 = m_y*psi_z
+            t33 = m_x*psi_y
+            t34 = e0*(m_y*psi_x - t33)
+            t35 = m_x*psi_z
+            t36 = m_z*psi_x
+            t37 = t35 - t36
+            t38 = e0*psi_z
+            t39 = m_z*psi_y - t32
+            g[j3] = (Om_y*pw_z - Om_z*pw_y + m_x - 0.5*m_z*psi_y + psi_y*t34 + pwd_x + (0.5)*t32 -
+                t37*t38)
+            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + m_y - psi_x*t34 + pwd_y - 0.5*t35 + (0.5)*t36 +
+                t38*t39)
+            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t37 - e0*psi_y*t39 - 0.5*m_y*psi_x + m_z
+                + pwd_z + (0.5)*t33)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -330,6 +367,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
+            # energies
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            d_x, d_y, d_z = d[0], d[1], d[2]
+            mass = masses[0]
+            mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+            potential = (-gamma_x*(d_x + mc_x) - gamma_y*(d_y + mc_y) - gamma_z*(d_z + mc_z) -
+                mass*(gamma_x*(R0_xx*x0_x + R0_yx*x0_y + R0_zx*x0_z) + gamma_y*(R0_xy*x0_x +
+                R0_yy*x0_y + R0_zy*x0_z) + gamma_z*(R0_xz*x0_x + R0_yz*x0_y + R0_zz*x0_z)))
+            strain += (0.5)*d_x*gamma_x + (0.5)*d_y*gamma_y + (0.5)*d_z*gamma_z
             # momentum and its moment about the origin: positions
             P_x = P_y = P_z = 0.0
             H_x = H_y = H_z = 0.0
@@ -358,6 +404,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 H_z += R_zx*pw_x + R_zy*pw_y + R_zz*pw_z
             energies[0] += kinetic
             energies[1] += strain
+            energies[9] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[4] += P_z
@@ -408,12 +455,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t36 = -dx0_z + dx_z
-                    t37 = -dx0_y + dx_y
-                    t38 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t36 - X_z*t37)
-                    rhs_y += -fit*(-X_x*t36 + X_z*t38)
-                    rhs_z += -fit*(X_x*t37 - X_y*t38)
+                    t40 = -dx0_z + dx_z
+                    t41 = -dx0_y + dx_y
+                    t42 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t40 - X_z*t41)
+                    rhs_y += -fit*(-X_x*t40 + X_z*t42)
+                    rhs_z += -fit*(X_x*t41 - X_y*t42)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -423,47 +470,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t39 = X_y + u_y
-                    t40 = X_z + u_z
-                    t41 = X_x + u_x
-                    dy[i3] = -dth0_y*t40 + dth0_z*t39 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t40 - dth0_z*t41 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t39 + dth0_y*t41 - dx0_z + dx_z
+                    t43 = X_y + u_y
+                    t44 = X_z + u_z
+                    t45 = X_x + u_x
+                    dy[i3] = -dth0_y*t44 + dth0_z*t43 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t44 - dth0_z*t45 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t43 + dth0_y*t45 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t42 = dth0_y*psi_z
-                    t43 = dth_y*psi_z
-                    t44 = dth0_x*psi_y
-                    t45 = dth0_y*psi_x - t44
-                    t46 = e0*psi_y
-                    t47 = dth_x*psi_z
-                    t48 = dth_z*psi_x
-                    t49 = t47 - t48
-                    t50 = e0*psi_z
-                    t51 = dth_x*psi_y
-                    t52 = dth_y*psi_x - t51
-                    t53 = dth0_x*psi_z
-                    t54 = dth0_z*psi_x
-                    t55 = t53 - t54
-                    t56 = e0*psi_x
-                    t57 = dth_z*psi_y - t43
-                    t58 = dth0_z*psi_y - t42
+                    t46 = dth0_y*psi_z
+                    t47 = dth_y*psi_z
+                    t48 = dth0_x*psi_y
+                    t49 = dth0_y*psi_x - t48
+                    t50 = e0*psi_y
+                    t51 = dth_x*psi_z
+                    t52 = dth_z*psi_x
+                    t53 = t51 - t52
+                    t54 = e0*psi_z
+                    t55 = dth_x*psi_y
+                    t56 = dth_y*psi_x - t55
+                    t57 = dth0_x*psi_z
+                    t58 = dth0_z*psi_x
+                    t59 = t57 - t58
+                    t60 = e0*psi_x
+                    t61 = dth_z*psi_y - t47
+                    t62 = dth0_z*psi_y - t46
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t52 + e0*psi_z*t55 - 0.5*t42 - 0.5*t43 - t45*t46 - t49*t50)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t45*t56 + (0.5)*t47 - 0.5*t48 + t50*t57 -
-                        t50*t58 - t52*t56 + (0.5)*t53 - 0.5*t54)
+                        e0*psi_y*t56 + e0*psi_z*t59 - 0.5*t46 - 0.5*t47 - t49*t50 - t53*t54)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t49*t60 + (0.5)*t51 - 0.5*t52 + t54*t61 -
+                        t54*t62 - t56*t60 + (0.5)*t57 - 0.5*t58)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t49 + e0*psi_y*t58 - 0.5*t44 - t46*t57 - 0.5*t51 - t55*t56)
+                        e0*psi_x*t53 + e0*psi_y*t62 - 0.5*t48 - t50*t61 - 0.5*t55 - t59*t60)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # differential: elastic force, s = Sbar y
-                columns_times(S, dy, ds, n)
+                columns_times(S, dy, ds, n, n)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
@@ -471,6 +518,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dth0_x *= c_geo
                 dth0_y *= c_geo
                 dth0_z *= c_geo
+                # differential: gravity in frame axes
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
+                dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
+                dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
+                # differential: first moment of mass of the deformation, d = r^T Mbar y
+                columns_times(mass_rows, dy, dd, 3, n)
+                # differential: weight conjugate to y, Mbar r gamma
+                columns_times(mass_columns, dgamma, dweight, n, 3)
+                # force conjugate to y, elastic and gravity
+                for i in range(n):
+                    ds[i] -= dweight[i]
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -508,12 +567,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t59 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t60 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t61 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t59 - X_z*t60)
-                    rhs_y += -fit*(-X_x*t59 + X_z*t61)
-                    rhs_z += -fit*(X_x*t60 - X_y*t61)
+                    t63 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t64 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t65 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t63 - X_z*t64)
+                    rhs_y += -fit*(-X_x*t63 + X_z*t65)
+                    rhs_z += -fit*(X_x*t64 - X_y*t65)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -542,9 +601,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: momentum, p = Mbar ydot
-                columns_times(M, dyd, dp, n)
+                columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot
-                columns_times(M, dydd, dpd, n)
+                columns_times(M, dydd, dpd, n, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -555,22 +614,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                     vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
+                    mass = masses[0]
+                    alpha = alphas[i]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
+                    dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t62 = X_z + u_z
-                    t63 = X_y + u_y
-                    t64 = X_x + u_x
-                    dF_x += -df_x
-                    dF_y += -df_y
-                    dF_z += -df_z
-                    dW_x += (df_y*t62 - df_z*t63 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                    t66 = alpha*mass
+                    t67 = X_z + u_z
+                    t68 = X_y + u_y
+                    t69 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t66
+                    dF_y += -df_y - dgamma_y*t66
+                    dF_z += -df_z - dgamma_z*t66
+                    dW_x += (df_y*t67 - df_z*t68 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                         dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t62 + df_z*t64 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
+                    dW_y += (-df_x*t67 + df_z*t69 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
                         - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t63 - df_y*t64 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                    dW_z += (df_x*t68 - df_y*t69 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                         dvs_x*px_y - dvs_y*px_x)
+                # differential: moment of gravity on the frame
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                d_x, d_y, d_z = d[0], d[1], d[2]
+                mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+                dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
+                dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
+                t70 = d_y + mc_y
+                t71 = d_z + mc_z
+                t72 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t71 - dgamma_z*t70
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t71 + dgamma_z*t72
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t70 - dgamma_y*t72
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -580,25 +655,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t65 = -m_x*psi_y + m_y*psi_x
-                    t66 = m_x*psi_z - m_z*psi_x
-                    t67 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t68 = dm_x*psi_z
-                    t69 = dpsi_z*m_x
-                    t70 = -dm_z*psi_x - dpsi_x*m_z + t68 + t69
-                    t71 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t72 = e1*t71
-                    t73 = -m_y*psi_z + m_z*psi_y
-                    t74 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t65 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t66 + (0.5)*dpsi_z*m_y - e0*psi_y*t67 +
-                        e0*psi_z*t70 + e1*psi_z*t66*t71 - psi_y*t65*t72)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t65 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t73 + e0*psi_x*t67 - e0*psi_z*t74 + e1*psi_x*t65*t71 -
-                        psi_z*t72*t73 - 0.5*t68 - 0.5*t69)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t66 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t73 + (0.5)*dpsi_y*m_x - e0*psi_x*t70 +
-                        e0*psi_y*t74 + e1*psi_y*t71*t73 - psi_x*t66*t72)
+                    t73 = -m_x*psi_y + m_y*psi_x
+                    t74 = m_x*psi_z - m_z*psi_x
+                    t75 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t76 = dm_x*psi_z
+                    t77 = dpsi_z*m_x
+                    t78 = -dm_z*psi_x - dpsi_x*m_z + t76 + t77
+                    t79 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t80 = e1*t79
+                    t81 = -m_y*psi_z + m_z*psi_y
+                    t82 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t73 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t74 + (0.5)*dpsi_z*m_y - e0*psi_y*t75 +
+                        e0*psi_z*t78 + e1*psi_z*t74*t79 - psi_y*t73*t80)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t73 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t81 + e0*psi_x*t75 - e0*psi_z*t82 + e1*psi_x*t73*t79 -
+                        psi_z*t80*t81 - 0.5*t76 - 0.5*t77)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t74 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t81 + (0.5)*dpsi_y*m_x - e0*psi_x*t78 +
+                        e0*psi_y*t82 + e1*psi_y*t79*t81 - psi_x*t74*t80)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -606,26 +681,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t75 = X_x*wp_y - X_y*wp_x
-                    t76 = -X_x*wp_z + X_z*wp_x
-                    t77 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t75 - du_z*t76)
-                    rhs_y += -fit*(-du_x*t75 + du_z*t77)
-                    rhs_z += -fit*(du_x*t76 - du_y*t77)
-                t78 = dW_x + rhs_x
-                t79 = dW_y + rhs_y
-                t80 = dW_z + rhs_z
-                dwp_x = Bxx*t78 + Byx*t79 + Bzx*t80
-                dwp_y = Bxy*t78 + Byy*t79 + Bzy*t80
-                dwp_z = Bxz*t78 + Byz*t79 + Bzz*t80
+                    t83 = X_x*wp_y - X_y*wp_x
+                    t84 = -X_x*wp_z + X_z*wp_x
+                    t85 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t83 - du_z*t84)
+                    rhs_y += -fit*(-du_x*t83 + du_z*t85)
+                    rhs_z += -fit*(du_x*t84 - du_y*t85)
+                t86 = dW_x + rhs_x
+                t87 = dW_y + rhs_y
+                t88 = dW_z + rhs_z
+                dwp_x = Bxx*t86 + Byx*t87 + Bzx*t88
+                dwp_y = Bxy*t86 + Byy*t87 + Bzy*t88
+                dwp_z = Bxz*t86 + Byz*t87 + Bzz*t88
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t81 = dwp_z*fit
-                    dF_x += -X_y*t81 + X_z*dwp_y*fit
-                    dF_y += X_x*t81 - X_z*dwp_x*fit
+                    t89 = dwp_z*fit
+                    dF_x += -X_y*t89 + X_z*dwp_y*fit
+                    dF_y += X_x*t89 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -637,12 +712,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
                     dpxd_x, dpxd_y, dpxd_z = dpd[i3], dpd[i3 + 1], dpd[i3 + 2]
-                    t82 = dwp_z*fit
-                    t83 = X_z*fit
-                    dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t82 + alpha*dF_x + dOm0_y*px_z -
-                        dOm0_z*px_y + df_x + dpxd_x - dwp_y*t83)
-                    dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t82 + alpha*dF_y - dOm0_x*px_z
-                        + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t83)
+                    t90 = dwp_z*fit
+                    t91 = X_z*fit
+                    dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t90 + alpha*dF_x + dOm0_y*px_z -
+                        dOm0_z*px_y + df_x + dpxd_x - dwp_y*t91)
+                    dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t90 + alpha*dF_y - dOm0_x*px_z
+                        + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t91)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + X_x*dwp_y*fit - X_y*dwp_x*fit +
                         alpha*dF_z + dOm0_x*px_y - dOm0_y*px_x + df_z + dpxd_z)
                 # differential: force on the nodes
@@ -650,12 +725,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t84 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t85 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t86 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t84 + R0_xy*t85 + R0_xz*t86
-                    dg[i3 + 1] = R0_yx*t84 + R0_yy*t85 + R0_yz*t86
-                    dg[i3 + 2] = R0_zx*t84 + R0_zy*t85 + R0_zz*t86
+                    t92 = dh_x + dth0_y*h_z - dth0_z*h_y
+                    t93 = dh_y - dth0_x*h_z + dth0_z*h_x
+                    t94 = dh_z + dth0_x*h_y - dth0_y*h_x
+                    dg[i3] = R0_xx*t92 + R0_xy*t93 + R0_xz*t94
+                    dg[i3 + 1] = R0_yx*t92 + R0_yy*t93 + R0_yz*t94
+                    dg[i3 + 2] = R0_zx*t92 + R0_zy*t93 + R0_zz*t94
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -670,36 +745,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t87 = dm_y*psi_z
-                    t88 = dpsi_z*m_y
-                    t89 = -m_x*psi_y + m_y*psi_x
-                    t90 = e0*t89
-                    t91 = m_x*psi_z - m_z*psi_x
-                    t92 = dpsi_z*e0
-                    t93 = dm_x*psi_y
-                    t94 = dpsi_y*m_x
-                    t95 = e0*(dm_y*psi_x + dpsi_x*m_y - t93 - t94)
-                    t96 = dm_x*psi_z
-                    t97 = dpsi_z*m_x
-                    t98 = dm_z*psi_x
-                    t99 = dpsi_x*m_z
-                    t100 = t96 + t97 - t98 - t99
-                    t101 = e0*psi_z
-                    t102 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t103 = t102*t89
-                    t104 = psi_z*t102
-                    t105 = -m_y*psi_z + m_z*psi_y
-                    t106 = dm_z*psi_y + dpsi_y*m_z - t87 - t88
+                    t95 = dm_y*psi_z
+                    t96 = dpsi_z*m_y
+                    t97 = -m_x*psi_y + m_y*psi_x
+                    t98 = e0*t97
+                    t99 = m_x*psi_z - m_z*psi_x
+                    t100 = dpsi_z*e0
+                    t101 = dm_x*psi_y
+                    t102 = dpsi_y*m_x
+                    t103 = e0*(dm_y*psi_x + dpsi_x*m_y - t101 - t102)
+                    t104 = dm_x*psi_z
+                    t105 = dpsi_z*m_x
+                    t106 = dm_z*psi_x
+                    t107 = dpsi_x*m_z
+                    t108 = t104 + t105 - t106 - t107
+                    t109 = e0*psi_z
+                    t110 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t111 = t110*t97
+                    t112 = psi_z*t110
+                    t113 = -m_y*psi_z + m_z*psi_y
+                    t114 = dm_z*psi_y + dpsi_y*m_z - t95 - t96
                     dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t90 + dpwd_x + psi_y*t103 +
-                        psi_y*t95 - t100*t101 - t104*t91 + (0.5)*t87 + (0.5)*t88 - t91*t92)
+                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t98 + dpwd_x + psi_y*t103 +
+                        psi_y*t111 - t100*t99 - t108*t109 - t112*t99 + (0.5)*t95 + (0.5)*t96)
                     dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x + dm_y -
-                        dpsi_x*t90 + dpwd_y - psi_x*t103 - psi_x*t95 + t101*t106 + t104*t105 +
-                        t105*t92 - 0.5*t96 - 0.5*t97 + (0.5)*t98 + (0.5)*t99)
+                        dpsi_x*t98 + dpwd_y - psi_x*t103 - psi_x*t111 + t100*t113 - 0.5*t104 -
+                        0.5*t105 + (0.5)*t106 + (0.5)*t107 + t109*t114 + t112*t113)
                     dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x -
-                        0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t91 - 0.5*dpsi_x*m_y - dpsi_y*e0*t105 +
-                        dpwd_z + e0*psi_x*t100 - e0*psi_y*t106 + psi_x*t102*t91 - psi_y*t102*t105
-                        + (0.5)*t93 + (0.5)*t94)
+                        0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t99 - 0.5*dpsi_x*m_y - dpsi_y*e0*t113 +
+                        dpwd_z + e0*psi_x*t108 - e0*psi_y*t114 + psi_x*t110*t99 - psi_y*t110*t113
+                        + (0.5)*t101 + (0.5)*t102)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -23,14 +23,14 @@ N_ROTATIONS = 2
 ROTATIONS = 4      # first rotation among the local coordinates
 MODES = 6          # first internal mode
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 23
+WORK_ROWS = 29
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (323, 3),
-              "column": (157, 3)}
+OPERATIONS = {"residual": (344, 3),
+              "column": (179, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "02af63461db9",
-    "columns_times": "778c70e83538",
+    "_columns_times": "bb899bc4d9a4",
+    "columns_times": "d7f377e75edd",
     "planar_mean": "01f6e3d46f71",
 }
 
@@ -39,6 +39,7 @@ LEAVES = {
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width
+    field = at(coefficients, 5)
     row = padded(max(n, 9*N_ROTATIONS))
     qe = at(work, 0*row)
     ve = at(work, 1*row)
@@ -51,18 +52,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     p = at(work, 8*row)
     pd = at(work, 9*row)
     h = at(work, 10*row)
-    dqe = at(work, 11*row)
-    dve = at(work, 12*row)
-    dae = at(work, 13*row)
-    dy = at(work, 14*row)
-    dyd = at(work, 15*row)
-    dydd = at(work, 16*row)
-    dacc = at(work, 17*row)
-    ds = at(work, 18*row)
-    dp = at(work, 19*row)
-    dpd = at(work, 20*row)
-    dh = at(work, 21*row)
-    dg = at(work, 22*row)
+    gamma = at(work, 11*row)
+    d = at(work, 12*row)
+    weight = at(work, 13*row)
+    dqe = at(work, 14*row)
+    dve = at(work, 15*row)
+    dae = at(work, 16*row)
+    dy = at(work, 17*row)
+    dyd = at(work, 18*row)
+    dydd = at(work, 19*row)
+    dacc = at(work, 20*row)
+    ds = at(work, 21*row)
+    dp = at(work, 22*row)
+    dpd = at(work, 23*row)
+    dh = at(work, 24*row)
+    dgamma = at(work, 25*row)
+    dd = at(work, 26*row)
+    dweight = at(work, 27*row)
+    dg = at(work, 28*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + 1])
@@ -75,6 +82,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         X = at(alpha_rs, N_ROTATIONS)
         S = at(X, ROTATIONS)
         M = at(S, n*padded(n))
+        mass_columns = at(M, n*padded(n))
+        mass_rows = at(mass_columns, 2*padded(n))
+        mc = at(mass_rows, n*padded(2))
+        masses = at(mc, 2)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -144,12 +155,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             y[k] = qm
             yd[k] = vm
             ydd[k] = am
+        # gravity in frame axes
+        field_x, field_y = field[0], field[1]
+        gamma[0] = R0_cos*field_x + R0_sin*field_y
+        gamma[1] = R0_cos*field_y - R0_sin*field_x
+        # first moment of mass of the deformation, d = r^T Mbar y
+        columns_times(mass_rows, y, d, 2, n)
         # elastic force, s = Sbar y
-        columns_times(S, y, s, n)
+        columns_times(S, y, s, n, n)
+        # weight conjugate to y, Mbar r gamma
+        columns_times(mass_columns, gamma, weight, n, 2)
+        # force conjugate to y, elastic and gravity
+        for i in range(n):
+            s[i] -= weight[i]
         # momentum, p = Mbar ydot
-        columns_times(M, yd, p, n)
+        columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
-        columns_times(M, ydd, pd, n)
+        columns_times(M, ydd, pd, n, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = 0.0
         W_z = 0.0
@@ -160,9 +182,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             f_x, f_y = s[i3], s[i3 + 1]
             X_x, X_y = X[i3], X[i3 + 1]
             u_x, u_y = y[i3], y[i3 + 1]
-            F_x += -f_x
-            F_y += -f_y
+            gamma_x, gamma_y = gamma[0], gamma[1]
+            mass = masses[0]
+            alpha = alphas[i]
+            t2 = alpha*mass
+            F_x += -f_x - gamma_x*t2
+            F_y += -f_y - gamma_y*t2
             W_z += f_x*(X_y + u_y) + f_y*(-X_x - u_x) - px_x*vs_y + px_y*vs_x
+        # moment of gravity on the frame
+        gamma_x, gamma_y = gamma[0], gamma[1]
+        d_x, d_y = d[0], d[1]
+        mc_x, mc_y = mc[0], mc[1]
+        W_z += gamma_x*(d_y + mc_y) - gamma_y*(d_x + mc_x)
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
@@ -204,6 +235,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
+            # energies
+            gamma_x, gamma_y = gamma[0], gamma[1]
+            d_x, d_y = d[0], d[1]
+            mass = masses[0]
+            mc_x, mc_y = mc[0], mc[1]
+            potential = (-gamma_x*(d_x + mc_x) - gamma_y*(d_y + mc_y) - mass*(gamma_x*(R0_cos*x0_x
+                + R0_sin*x0_y) + gamma_y*(R0_cos*x0_y - R0_sin*x0_x)))
+            strain += (0.5)*d_x*gamma_x + (0.5)*d_y*gamma_y
             # momentum and its moment about the origin: positions
             P_x = P_y = 0.0
             H_z = 0.0
@@ -221,6 +260,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 H_z += pw_z
             energies[0] += kinetic
             energies[1] += strain
+            energies[9] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[7] += H_z
@@ -279,12 +319,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqm = dqe[k]
                     dy[k] = dqm
                 # differential: elastic force, s = Sbar y
-                columns_times(S, dy, ds, n)
+                columns_times(S, dy, ds, n, n)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
                     dqe[i] *= c_geo
                 dth0_z *= c_geo
+                # differential: gravity in frame axes
+                gamma_x, gamma_y = gamma[0], gamma[1]
+                dgamma[0] = dth0_z*gamma_y
+                dgamma[1] = -dth0_z*gamma_x
+                # differential: first moment of mass of the deformation, d = r^T Mbar y
+                columns_times(mass_rows, dy, dd, 2, n)
+                # differential: weight conjugate to y, Mbar r gamma
+                columns_times(mass_columns, dgamma, dweight, n, 2)
+                # force conjugate to y, elastic and gravity
+                for i in range(n):
+                    ds[i] -= dweight[i]
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 2*i
@@ -331,9 +382,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: momentum, p = Mbar ydot
-                columns_times(M, dyd, dp, n)
+                columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot
-                columns_times(M, dydd, dpd, n)
+                columns_times(M, dydd, dpd, n, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = 0.0
                 dW_z = 0.0
@@ -344,14 +395,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y = s[i3], s[i3 + 1]
                     X_x, X_y = X[i3], X[i3 + 1]
                     u_x, u_y = y[i3], y[i3 + 1]
+                    mass = masses[0]
+                    alpha = alphas[i]
                     du_x, du_y = dy[i3], dy[i3 + 1]
+                    dgamma_x, dgamma_y = dgamma[0], dgamma[1]
                     df_x, df_y = ds[i3], ds[i3 + 1]
                     dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]
                     dpx_x, dpx_y = dp[i3], dp[i3 + 1]
-                    dF_x += -df_x
-                    dF_y += -df_y
+                    t3 = alpha*mass
+                    dF_x += -df_x - dgamma_x*t3
+                    dF_y += -df_y - dgamma_y*t3
                     dW_z += (df_x*(X_y + u_y) + df_y*(-X_x - u_x) - dpx_x*vs_y + dpx_y*vs_x -
                         du_x*f_y + du_y*f_x + dvs_x*px_y - dvs_y*px_x)
+                # differential: moment of gravity on the frame
+                gamma_x, gamma_y = gamma[0], gamma[1]
+                d_x, d_y = d[0], d[1]
+                mc_x, mc_y = mc[0], mc[1]
+                dd_x, dd_y = dd[0], dd[1]
+                dgamma_x, dgamma_y = dgamma[0], dgamma[1]
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*(d_y + mc_y) - dgamma_y*(d_x + mc_x)
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
@@ -375,10 +437,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 2*i
                     h_x, h_y = h[i3], h[i3 + 1]
                     dh_x, dh_y = dh[i3], dh[i3 + 1]
-                    t2 = dh_x - dth0_z*h_y
-                    t3 = dh_y + dth0_z*h_x
-                    dg[i3] = R0_cos*t2 - R0_sin*t3
-                    dg[i3 + 1] = R0_cos*t3 + R0_sin*t2
+                    t4 = dh_x - dth0_z*h_y
+                    t5 = dh_y + dth0_z*h_x
+                    dg[i3] = R0_cos*t4 - R0_sin*t5
+                    dg[i3 + 1] = R0_cos*t5 + R0_sin*t4
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j

@@ -24,16 +24,16 @@ N_ROTATIONS = 0
 ROTATIONS = 24      # first rotation among the local coordinates
 MODES = 24          # first internal mode
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 23
+WORK_ROWS = 29
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (2113, 3),
-              "column": (2328, 3)}
+OPERATIONS = {"residual": (2196, 3),
+              "column": (2417, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "02af63461db9",
+    "_columns_times": "bb899bc4d9a4",
     "_fit_step": "a1cc712721a0",
     "best_fit": "a0b054ff9264",
-    "columns_times": "778c70e83538",
+    "columns_times": "d7f377e75edd",
     "exp_map": "833cbc6b09c9",
     "inverse_3": "207e4e8e3ea0",
     "log_map": "2d5d06a001d3",
@@ -49,6 +49,7 @@ LEAVES = {
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width
+    field = at(coefficients, 5)
     row = padded(max(n, 9*N_ROTATIONS))
     qe = at(work, 0*row)
     ve = at(work, 1*row)
@@ -61,18 +62,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     p = at(work, 8*row)
     pd = at(work, 9*row)
     h = at(work, 10*row)
-    dqe = at(work, 11*row)
-    dve = at(work, 12*row)
-    dae = at(work, 13*row)
-    dy = at(work, 14*row)
-    dyd = at(work, 15*row)
-    dydd = at(work, 16*row)
-    dacc = at(work, 17*row)
-    ds = at(work, 18*row)
-    dp = at(work, 19*row)
-    dpd = at(work, 20*row)
-    dh = at(work, 21*row)
-    dg = at(work, 22*row)
+    gamma = at(work, 11*row)
+    d = at(work, 12*row)
+    weight = at(work, 13*row)
+    dqe = at(work, 14*row)
+    dve = at(work, 15*row)
+    dae = at(work, 16*row)
+    dy = at(work, 17*row)
+    dyd = at(work, 18*row)
+    dydd = at(work, 19*row)
+    dacc = at(work, 20*row)
+    ds = at(work, 21*row)
+    dp = at(work, 22*row)
+    dpd = at(work, 23*row)
+    dh = at(work, 24*row)
+    dgamma = at(work, 25*row)
+    dd = at(work, 26*row)
+    dweight = at(work, 27*row)
+    dg = at(work, 28*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + 1])
@@ -85,6 +92,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         X = at(alpha_rs, N_ROTATIONS)
         S = at(X, ROTATIONS)
         M = at(S, n*padded(n))
+        mass_columns = at(M, n*padded(n))
+        mass_rows = at(mass_columns, 3*padded(n))
+        mc = at(mass_rows, n*padded(3))
+        masses = at(mc, 3)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -195,12 +206,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             y[k] = qm
             yd[k] = vm
             ydd[k] = am
+        # gravity in frame axes
+        field_x, field_y, field_z = field[0], field[1], field[2]
+        gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
+        gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
+        gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
+        # first moment of mass of the deformation, d = r^T Mbar y
+        columns_times(mass_rows, y, d, 3, n)
         # elastic force, s = Sbar y
-        columns_times(S, y, s, n)
+        columns_times(S, y, s, n, n)
+        # weight conjugate to y, Mbar r gamma
+        columns_times(mass_columns, gamma, weight, n, 3)
+        # force conjugate to y, elastic and gravity
+        for i in range(n):
+            s[i] -= weight[i]
         # momentum, p = Mbar ydot
-        columns_times(M, yd, p, n)
+        columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
-        columns_times(M, ydd, pd, n)
+        columns_times(M, ydd, pd, n, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -211,31 +234,45 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t15 = X_z + u_z
-            t16 = X_y + u_y
-            t17 = X_x + u_x
-            F_x += -f_x
-            F_y += -f_y
-            F_z += -f_z
-            W_x += f_y*t15 - f_z*t16 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t15 + f_z*t17 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t16 - f_y*t17 - px_x*vs_y + px_y*vs_x
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            mass = masses[0]
+            alpha = alphas[i]
+            t15 = alpha*mass
+            t16 = X_z + u_z
+            t17 = X_y + u_y
+            t18 = X_x + u_x
+            F_x += -f_x - gamma_x*t15
+            F_y += -f_y - gamma_y*t15
+            F_z += -f_z - gamma_z*t15
+            W_x += f_y*t16 - f_z*t17 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t16 + f_z*t18 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t17 - f_y*t18 - px_x*vs_y + px_y*vs_x
+        # moment of gravity on the frame
+        gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+        d_x, d_y, d_z = d[0], d[1], d[2]
+        mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+        t19 = d_z + mc_z
+        t20 = d_y + mc_y
+        t21 = d_x + mc_x
+        W_x += gamma_y*t19 - gamma_z*t20
+        W_y += -gamma_x*t19 + gamma_z*t21
+        W_z += gamma_x*t20 - gamma_y*t21
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t18 = W_x + rhs_x
-        t19 = W_y + rhs_y
-        t20 = W_z + rhs_z
-        wp_x = Bxx*t18 + Byx*t19 + Bzx*t20
-        wp_y = Bxy*t18 + Byy*t19 + Bzy*t20
-        wp_z = Bxz*t18 + Byz*t19 + Bzz*t20
+        t22 = W_x + rhs_x
+        t23 = W_y + rhs_y
+        t24 = W_z + rhs_z
+        wp_x = Bxx*t22 + Byx*t23 + Bzx*t24
+        wp_y = Bxy*t22 + Byy*t23 + Bzy*t24
+        wp_z = Bxz*t22 + Byz*t23 + Bzz*t24
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t21 = fit*wp_z
-            F_x += -X_y*t21 + X_z*fit*wp_y
-            F_y += X_x*t21 - X_z*fit*wp_x
+            t25 = fit*wp_z
+            F_x += -X_y*t25 + X_z*fit*wp_y
+            F_y += X_x*t25 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -246,10 +283,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pxd_x, pxd_y, pxd_z = pd[i3], pd[i3 + 1], pd[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             alpha = alphas[i]
-            t22 = fit*wp_z
-            t23 = X_z*fit
-            h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t22 + f_x + pxd_x - t23*wp_y
-            h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x - X_x*t22 + f_y + pxd_y + t23*wp_x
+            t26 = fit*wp_z
+            t27 = X_z*fit
+            h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t26 + f_x + pxd_x - t27*wp_y
+            h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x - X_x*t26 + f_y + pxd_y + t27*wp_x
             h[i3 + 2] = (F_z*alpha + Om0_x*px_y - Om0_y*px_x + X_x*fit*wp_y - X_y*fit*wp_x + f_z +
                 pxd_z)
         # force on the nodes
@@ -270,6 +307,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
+            # energies
+            gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+            d_x, d_y, d_z = d[0], d[1], d[2]
+            mass = masses[0]
+            mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+            potential = (-gamma_x*(d_x + mc_x) - gamma_y*(d_y + mc_y) - gamma_z*(d_z + mc_z) -
+                mass*(gamma_x*(R0_xx*x0_x + R0_yx*x0_y + R0_zx*x0_z) + gamma_y*(R0_xy*x0_x +
+                R0_yy*x0_y + R0_zy*x0_z) + gamma_z*(R0_xz*x0_x + R0_yz*x0_y + R0_zz*x0_z)))
+            strain += (0.5)*d_x*gamma_x + (0.5)*d_y*gamma_y + (0.5)*d_z*gamma_z
             # momentum and its moment about the origin: positions
             P_x = P_y = P_z = 0.0
             H_x = H_y = H_z = 0.0
@@ -288,6 +334,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     px_z*(-R0_xz*x_y + R0_yz*x_x))
             energies[0] += kinetic
             energies[1] += strain
+            energies[9] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[4] += P_z
@@ -338,12 +385,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t24 = -dx0_z + dx_z
-                    t25 = -dx0_y + dx_y
-                    t26 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t24 - X_z*t25)
-                    rhs_y += -fit*(-X_x*t24 + X_z*t26)
-                    rhs_z += -fit*(X_x*t25 - X_y*t26)
+                    t28 = -dx0_z + dx_z
+                    t29 = -dx0_y + dx_y
+                    t30 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t28 - X_z*t29)
+                    rhs_y += -fit*(-X_x*t28 + X_z*t30)
+                    rhs_z += -fit*(X_x*t29 - X_y*t30)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -353,18 +400,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t27 = X_y + u_y
-                    t28 = X_z + u_z
-                    t29 = X_x + u_x
-                    dy[i3] = -dth0_y*t28 + dth0_z*t27 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t28 - dth0_z*t29 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t27 + dth0_y*t29 - dx0_z + dx_z
+                    t31 = X_y + u_y
+                    t32 = X_z + u_z
+                    t33 = X_x + u_x
+                    dy[i3] = -dth0_y*t32 + dth0_z*t31 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t32 - dth0_z*t33 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t31 + dth0_y*t33 - dx0_z + dx_z
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # differential: elastic force, s = Sbar y
-                columns_times(S, dy, ds, n)
+                columns_times(S, dy, ds, n, n)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
@@ -372,6 +419,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dth0_x *= c_geo
                 dth0_y *= c_geo
                 dth0_z *= c_geo
+                # differential: gravity in frame axes
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
+                dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
+                dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
+                # differential: first moment of mass of the deformation, d = r^T Mbar y
+                columns_times(mass_rows, dy, dd, 3, n)
+                # differential: weight conjugate to y, Mbar r gamma
+                columns_times(mass_columns, dgamma, dweight, n, 3)
+                # force conjugate to y, elastic and gravity
+                for i in range(n):
+                    ds[i] -= dweight[i]
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -402,12 +461,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t30 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t31 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t32 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t30 - X_z*t31)
-                    rhs_y += -fit*(-X_x*t30 + X_z*t32)
-                    rhs_z += -fit*(X_x*t31 - X_y*t32)
+                    t34 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t35 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t36 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t34 - X_z*t35)
+                    rhs_y += -fit*(-X_x*t34 + X_z*t36)
+                    rhs_z += -fit*(X_x*t35 - X_y*t36)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -429,9 +488,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: momentum, p = Mbar ydot
-                columns_times(M, dyd, dp, n)
+                columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot
-                columns_times(M, dydd, dpd, n)
+                columns_times(M, dydd, dpd, n, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -442,22 +501,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                     vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
+                    mass = masses[0]
+                    alpha = alphas[i]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
+                    dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t33 = X_z + u_z
-                    t34 = X_y + u_y
-                    t35 = X_x + u_x
-                    dF_x += -df_x
-                    dF_y += -df_y
-                    dF_z += -df_z
-                    dW_x += (df_y*t33 - df_z*t34 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                    t37 = alpha*mass
+                    t38 = X_z + u_z
+                    t39 = X_y + u_y
+                    t40 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t37
+                    dF_y += -df_y - dgamma_y*t37
+                    dF_z += -df_z - dgamma_z*t37
+                    dW_x += (df_y*t38 - df_z*t39 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                         dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t33 + df_z*t35 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
+                    dW_y += (-df_x*t38 + df_z*t40 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
                         - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t34 - df_y*t35 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                    dW_z += (df_x*t39 - df_y*t40 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                         dvs_x*px_y - dvs_y*px_x)
+                # differential: moment of gravity on the frame
+                gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
+                d_x, d_y, d_z = d[0], d[1], d[2]
+                mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
+                dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
+                dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
+                t41 = d_y + mc_y
+                t42 = d_z + mc_z
+                t43 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t42 - dgamma_z*t41
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t42 + dgamma_z*t43
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t41 - dgamma_y*t43
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -465,26 +540,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t36 = X_x*wp_y - X_y*wp_x
-                    t37 = -X_x*wp_z + X_z*wp_x
-                    t38 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t36 - du_z*t37)
-                    rhs_y += -fit*(-du_x*t36 + du_z*t38)
-                    rhs_z += -fit*(du_x*t37 - du_y*t38)
-                t39 = dW_x + rhs_x
-                t40 = dW_y + rhs_y
-                t41 = dW_z + rhs_z
-                dwp_x = Bxx*t39 + Byx*t40 + Bzx*t41
-                dwp_y = Bxy*t39 + Byy*t40 + Bzy*t41
-                dwp_z = Bxz*t39 + Byz*t40 + Bzz*t41
+                    t44 = X_x*wp_y - X_y*wp_x
+                    t45 = -X_x*wp_z + X_z*wp_x
+                    t46 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t44 - du_z*t45)
+                    rhs_y += -fit*(-du_x*t44 + du_z*t46)
+                    rhs_z += -fit*(du_x*t45 - du_y*t46)
+                t47 = dW_x + rhs_x
+                t48 = dW_y + rhs_y
+                t49 = dW_z + rhs_z
+                dwp_x = Bxx*t47 + Byx*t48 + Bzx*t49
+                dwp_y = Bxy*t47 + Byy*t48 + Bzy*t49
+                dwp_z = Bxz*t47 + Byz*t48 + Bzz*t49
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t42 = dwp_z*fit
-                    dF_x += -X_y*t42 + X_z*dwp_y*fit
-                    dF_y += X_x*t42 - X_z*dwp_x*fit
+                    t50 = dwp_z*fit
+                    dF_x += -X_y*t50 + X_z*dwp_y*fit
+                    dF_y += X_x*t50 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -496,12 +571,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
                     dpxd_x, dpxd_y, dpxd_z = dpd[i3], dpd[i3 + 1], dpd[i3 + 2]
-                    t43 = dwp_z*fit
-                    t44 = X_z*fit
-                    dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t43 + alpha*dF_x + dOm0_y*px_z -
-                        dOm0_z*px_y + df_x + dpxd_x - dwp_y*t44)
-                    dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t43 + alpha*dF_y - dOm0_x*px_z
-                        + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t44)
+                    t51 = dwp_z*fit
+                    t52 = X_z*fit
+                    dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t51 + alpha*dF_x + dOm0_y*px_z -
+                        dOm0_z*px_y + df_x + dpxd_x - dwp_y*t52)
+                    dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t51 + alpha*dF_y - dOm0_x*px_z
+                        + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t52)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + X_x*dwp_y*fit - X_y*dwp_x*fit +
                         alpha*dF_z + dOm0_x*px_y - dOm0_y*px_x + df_z + dpxd_z)
                 # differential: force on the nodes
@@ -509,12 +584,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t45 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t46 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t47 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t45 + R0_xy*t46 + R0_xz*t47
-                    dg[i3 + 1] = R0_yx*t45 + R0_yy*t46 + R0_yz*t47
-                    dg[i3 + 2] = R0_zx*t45 + R0_zy*t46 + R0_zz*t47
+                    t53 = dh_x + dth0_y*h_z - dth0_z*h_y
+                    t54 = dh_y - dth0_x*h_z + dth0_z*h_x
+                    t55 = dh_z + dth0_x*h_y - dth0_y*h_x
+                    dg[i3] = R0_xx*t53 + R0_xy*t54 + R0_xz*t55
+                    dg[i3 + 1] = R0_yx*t53 + R0_yy*t54 + R0_yz*t55
+                    dg[i3 + 2] = R0_zx*t53 + R0_zy*t54 + R0_zz*t55
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -18,10 +18,11 @@ reference        frames of the last converged step, (frames, 9)
 frames           frames of the current iterate, (frames, 9); superelements write theirs
 T                tangent operators of the step increments of rotations, (rotations, 9)
 loads            load amplitudes at the current time
-coefficients     c_mass, c_rate, c_place, c_geo, c_constraint of the matrix
+coefficients     c_mass, c_rate, c_place, c_geo, c_constraint of the matrix; gravity (3)
 g, J             element blocks: forces (count, n), matrices (count, n, n)
 work             scratch memory, WORK_ROWS padded rows
-energy           sums: kinetic, strain, momentum (3), moment of momentum (3), power of the loads
+energy           sums: kinetic, strain, momentum (3), moment of momentum (3), power of the loads,
+                 potential of gravity
 ===============  =================================================================================
 
 ``J = c_mass dG/da + c_rate dG/dv + c_place dG/dq T``: rotations vary multiplicatively, and T
@@ -36,7 +37,7 @@ from numba.extending import intrinsic
 RESIDUAL, TANGENT, ENERGY, ACCELERATION = range(4)
 HEADER = 3          # integers of an index row before the ids
 LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
-ENERGIES = 9
+ENERGIES, POWER_OF_LOADS, POTENTIAL = 10, 8, 9
 
 
 @njit(cache=True)

@@ -10,6 +10,7 @@ from .dense import padded_columns
 from .errors import InputError
 from .kernels import element_kernel
 from .model import Model, Superelement, Triplet
+from .reduction import ReducedBody
 
 DENSE_LIMIT = 150       # above this many unknowns a sparse factorization is faster
 
@@ -201,7 +202,15 @@ def _body_constants(body: Superelement) -> NDArray:
     local = points - body.alpha @ points
     fit = np.full(len(points), 1.0 / len(points))
     return np.concatenate([body.alpha, fit, body.alpha_r, local.ravel(),
-                           padded_columns(reduced.stiffness), padded_columns(reduced.mass)])
+                           padded_columns(reduced.stiffness), padded_columns(reduced.mass),
+                           *mass_constants(reduced, body.alpha @ points)])
+
+
+def mass_constants(body: ReducedBody, origin: NDArray) -> list[NDArray]:
+    """``Mbar r`` by columns and by rows, first moment of mass about the frame's origin, mass."""
+    of_translations = body.mass @ body.rigid_modes[:, :len(origin)]
+    return [padded_columns(of_translations), padded_columns(of_translations.T),
+            body.total_mass * (body.centre_of_mass - origin), np.array([body.total_mass])]
 
 
 def _joint_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 import sebody.generated
 
-from .abi import ACCELERATION, ENERGIES, ENERGY, RESIDUAL, TANGENT, call_kernel, padded
+from .abi import ACCELERATION, ENERGIES, ENERGY, POTENTIAL, RESIDUAL, TANGENT, call_kernel, padded
 from .dense import padded_columns
 from .errors import InputError
 from .kernels import load, user_directory
@@ -54,6 +54,7 @@ class Case(NamedTuple):
     a: NDArray
     reference: NDArray
     frames: NDArray
+    field: NDArray = np.zeros(3)
 
     @property
     def planar(self) -> bool:
@@ -84,7 +85,8 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
     T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
     status = _call(module.kernel.address, task, len(case.index), n, case.index, case.constants,
                    case.q, case.R, case.v, case.a, case.reference, case.frames.copy(), T,
-                   np.array([1.7]), np.array(coefficients, dtype=float), g, J, work, energy)
+                   np.array([1.7]), np.array([*coefficients, *case.field], dtype=float), g, J, work,
+                   energy)
     if status:
         raise InputError(f"kernel {module.__name__} refuses the check's state (status {status})")
     return g, J.reshape(n, n), energy
@@ -142,25 +144,27 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     about = np.array([0.0, 0.0, beta]) if planar else beta * random.normal(size=3) / 1.8
     frame = (base * Rotation.from_rotvec(about)).as_matrix().ravel()
     index = np.array([0, 0, n, *range(nrot), *range(n)])
-    constants = np.concatenate([alpha, np.full(npos, 1 / npos), alpha_r, X.ravel(),
-                                padded_columns(S), padded_columns(M)])
+    of_translations, moment = random.normal(size=(n, d)), random.normal(size=d)
+    constants = np.concatenate([
+        alpha, np.full(npos, 1 / npos), alpha_r, X.ravel(), padded_columns(S), padded_columns(M),
+        padded_columns(of_translations), padded_columns(of_translations.T), moment, [1.3]])
     return Case(module, n, index, constants, q, R, random.normal(size=n), random.normal(size=n),
-                frame, frame.copy())
+                frame, frame.copy(), random.normal(size=3))
 
 
 def without(case: Case, what: str) -> Case:
-    """The case with no stiffness or no inertia."""
-    constants = case.constants.copy()
-    size = case.n * padded(case.n)
-    end = len(constants) - size
-    constants[slice(end - size, end) if what == "stiffness" else slice(end, None)] = 0.0
-    return case._replace(constants=constants)
+    """The case with no stiffness and no gravity, or no inertia."""
+    constants, size = case.constants.copy(), case.n * padded(case.n)
+    first = _ends(case)[3] + (0 if what == "stiffness" else size)
+    constants[first:first + size] = 0.0
+    return case._replace(constants=constants,
+                         field=0 * case.field if what == "stiffness" else case.field)
 
 
 def elastic_force(case: Case) -> float:
-    """Force at rest against the derivative of the strain energy."""
+    """Force at rest against the derivative of the strain energy and the potential of gravity."""
     rest = case._replace(v=0 * case.v, a=0 * case.a)
-    exact = gradient(rest, lambda c: evaluate(c, ENERGY)[2][1], 0.01)
+    exact = gradient(rest, lambda c: evaluate(c, ENERGY)[2][[1, POTENTIAL]].sum(), 0.01)
     return difference(evaluate(rest, RESIDUAL)[0], exact)
 
 
@@ -256,16 +260,25 @@ def local_velocities(case: Case) -> NDArray:
     return v
 
 
+def _ends(case: Case) -> NDArray:
+    """Where the constants of a superelement end: weights, nodes, matrices, first moments, mass."""
+    module, n, d = case.module, case.n, 2 if case.planar else 3
+    npos, matrix = module.N_POSITIONS, n * padded(n)
+    return np.cumsum([npos, npos, module.N_ROTATIONS, module.ROTATIONS, matrix, matrix,
+                      d * padded(n), n * padded(d), d, 1])
+
+
 class _Weights:
-    """Weights, nodes and matrices among the constants of a superelement."""
+    """What the constants of a superelement mean."""
 
     def __init__(self, case: Case):
-        npos, nrot, n = case.module.N_POSITIONS, case.module.N_ROTATIONS, case.n
-        column = padded(n)
-        ends = np.cumsum([npos, npos, nrot, case.module.ROTATIONS, n * column, n * column])
-        self.alpha, self.fit, self.alpha_r, X, S, M = np.split(case.constants, ends[:-1])
-        self.X = X.reshape(npos, -1)
-        self.S, self.M = (A.reshape(n, column)[:, :n].T for A in (S, M))
+        n, column = case.n, padded(case.n)
+        (self.alpha, self.fit, self.alpha_r, X, S, M, of_translations, _, self.moment, mass
+         ) = np.split(case.constants, _ends(case)[:-1])
+        self.X = X.reshape(case.module.N_POSITIONS, -1)
+        self.S, self.M, self.of_translations = (A.reshape(-1, column)[:, :n].T
+                                                for A in (S, M, of_translations))
+        self.mass = mass[0]
 
 
 def frame_rotation(case: Case) -> Rotation:
@@ -289,11 +302,16 @@ def frame_rotation(case: Case) -> Rotation:
 
 
 def energies(case: Case) -> float:
-    """Strain (24) and kinetic energy (34) against those of coordinates found by other means."""
+    """Strain (24), kinetic energy (34) and potential against coordinates found by other means."""
     weights, y, yd = _Weights(case), local_coordinates(case), local_velocities(case)
-    kinetic, strain = evaluate(case, ENERGY)[2][:2]
-    return max(abs(kinetic / (yd @ weights.M @ yd / 2) - 1),
-               abs(strain / (y @ weights.S @ y / 2) - 1))
+    computed = evaluate(case, ENERGY)[2]
+    d = 2 if case.planar else 3
+    moment = weights.moment + weights.of_translations.T @ y
+    x = case.q[:case.module.ROTATIONS].reshape(-1, d)
+    place = weights.mass * weights.alpha @ x + frame_rotation(case).as_matrix()[:d, :d] @ moment
+    return max(abs(computed[0] / (yd @ weights.M @ yd / 2) - 1),
+               abs(computed[1] / (y @ weights.S @ y / 2) - 1),
+               abs(computed[POTENTIAL] / -(case.field[:d] @ place) - 1))
 
 
 def total_momentum(case: Case) -> float:

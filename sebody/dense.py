@@ -13,31 +13,31 @@ _UNROLLED = 2       # columns at a time: hides the latency of one sum
 
 
 def padded_columns(matrix: NDArray) -> NDArray:
-    """Columns of a square matrix one after the other, each filled with zeros to whole vectors."""
-    n = len(matrix)
-    columns = np.zeros((n, padded(n)))
-    columns[:, :n] = matrix.T
+    """Columns of a matrix one after the other, each filled with zeros to whole vectors."""
+    height, width = matrix.shape
+    columns = np.zeros((width, padded(height)))
+    columns[:, :height] = matrix.T
     return columns.ravel()
 
 
 @intrinsic
-def columns_times(typingctx, A, x, out, n):
-    """``out = A x`` of an n x n matrix in padded columns; `out` is written to its padding.
+def columns_times(typingctx, A, x, out, rows, columns):
+    """``out = A x`` of a matrix in padded columns; `out` is written to its padding.
 
     Written in vector operations: Numba's pipeline finds none where sums stay in registers, and
     this product is a third of a kernel's time otherwise.
     """
     floats = types.CPointer(types.float64)
-    return types.void(floats, floats, floats, types.int64), _columns_times
+    return types.void(floats, floats, floats, types.int64, types.int64), _columns_times
 
 
 def _columns_times(context, builder, sig, args):
-    A, x, out, n = args
+    A, x, out, rows, columns = args
     word = ir.IntType(64)
     vector = ir.VectorType(ir.DoubleType(), LANES)
-    height = builder.and_(builder.add(n, word(LANES - 1)), word(-LANES))
+    height = builder.and_(builder.add(rows, word(LANES - 1)), word(-LANES))
     sums = [cgutils.alloca_once(builder, vector) for _ in range(_UNROLLED)]
-    paired = builder.sub(n, builder.srem(n, word(_UNROLLED)))
+    paired = builder.sub(columns, builder.srem(columns, word(_UNROLLED)))
 
     def add_column(total, row, column):
         place = builder.gep(A, [builder.add(row, builder.mul(column, height))])
@@ -56,7 +56,7 @@ def _columns_times(context, builder, sig, args):
         with cgutils.for_range_slice(builder, word(0), paired, word(_UNROLLED)) as (column, _):
             for k, total in enumerate(sums):
                 add_column(total, row, builder.add(column, word(k)))
-        with cgutils.for_range_slice(builder, paired, n, word(1)) as (column, _):
+        with cgutils.for_range_slice(builder, paired, columns, word(1)) as (column, _):
             add_column(sums[0], row, column)
         result = builder.load(sums[0])
         for total in sums[1:]:

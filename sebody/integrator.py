@@ -198,11 +198,13 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
     clock[loop.STEP] = clock[loop.CURRENT_STEP] = h
     clock[loop.CONTRACTION] = 0.95
     control[loop.WANTED] = 1
+    coefficients = zeros(8)
+    coefficients[5:5 + model.dimension] = model.gravity_field
     return State(
         now, *[now[parts[name]] for name in ("q", "R", "v", "a", "frames", "frames_old")],
         aux=zeros(total), q_old=q.copy(), R_old=R.copy(), v_old=v.copy(), a_old=zeros(total),
         aux_old=zeros(total), dq=zeros(total), T=R.copy(),
-        loads=zeros(max(len(model.loads), 1)), coefficients=zeros(5),
+        loads=zeros(max(len(model.loads), 1)), coefficients=coefficients,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])), residual=zeros(total),
         correction=zeros(padded(total)), matrix=zeros(system.rows.size + 1), scale=zeros(total),
         weight=zeros(total), inverse=zeros((n, padded(n)) if dense else (1, 1)),
@@ -214,7 +216,7 @@ def _start(system: System, numbering: Numbering, state: State) -> None:
     n = numbering.free
     loop.set_loads(system, state, 0.0)
     _check_start(system, numbering, state)
-    state.coefficients[:] = (1.0, 0.0, 0.0, 1.0, 1.0)
+    state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
     _evaluate(system, state, TANGENT)
     matrix = csc_matrix((state.matrix[:-1], (system.rows, system.columns)), shape=(n, n))
     _evaluate(system, state, ACCELERATION)
@@ -269,7 +271,7 @@ def _check_start(system: System, numbering: Numbering, state: State) -> None:
     multipliers = np.flatnonzero(system.is_multiplier)
     if not multipliers.size:
         return
-    state.coefficients[:] = (0.0, 0.0, 0.0, 1.0, 1.0)
+    state.coefficients[:5] = (0.0, 0.0, 0.0, 1.0, 1.0)
     _evaluate(system, state, TANGENT)
     gap = state.residual[multipliers]
     n = numbering.free

@@ -15,7 +15,16 @@ from numba import njit, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from .abi import ENERGIES, ENERGY, RESIDUAL, TANGENT, at, borrowed, call_kernel, pointer_to
+from .abi import (
+    ENERGY,
+    POWER_OF_LOADS,
+    RESIDUAL,
+    TANGENT,
+    at,
+    borrowed,
+    call_kernel,
+    pointer_to,
+)
 from .dense import columns_times
 from .rotations import tangent_operator, turn
 
@@ -50,7 +59,7 @@ class State(NamedTuple):
     dq: NDArray             # increment of the step
     T: NDArray              # tangent operators of the rotation increments
     loads: NDArray          # load amplitudes now
-    coefficients: NDArray   # (5,) of the matrix, see sebody.abi
+    coefficients: NDArray   # (8,) of the matrix, then gravity: see sebody.abi
     g: NDArray              # element forces
     J: NDArray              # element matrices
     residual: NDArray       # in body axes
@@ -398,9 +407,9 @@ def load_power(system, state):
     """Rate of work of the loads in the current state."""
     if system.load_function.size == 0:
         return 0.0
-    state.energy[ENERGIES - 1] = 0.0
+    state.energy[POWER_OF_LOADS] = 0.0
     run_kernels(ENERGY, system.first_load[0], system.address.size, system, state)
-    return state.energy[ENERGIES - 1]
+    return state.energy[POWER_OF_LOADS]
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -505,7 +514,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             if not dense:
                 return SOLVE
             columns_times(pointer_to(state.inverse), pointer_to(state.residual),
-                          pointer_to(state.correction), n)
+                          pointer_to(state.correction), n, n)
         verdict = apply_correction(system, state, scheme)
         control[PHASE] = ITERATE
         if verdict == 1:

@@ -103,6 +103,11 @@ class Model:
     bodies: dict[str, Superelement] = field(default_factory=dict)
     joints: list[Joint] = field(default_factory=list)
     loads: list[Load] = field(default_factory=list)
+    gravity_field: NDArray | None = None
+
+    def __post_init__(self) -> None:
+        self.gravity(np.zeros(self.dimension) if self.gravity_field is None
+                     else self.gravity_field)
 
     @property
     def dimension(self) -> int:
@@ -280,6 +285,21 @@ class Model:
                              f"{self.rotation_size} finite number(s)")
         self.loads.append(Load(f"torque on {triplet.name}", self._kind("torque"), triplet, vector,
                                history(amplitude)))
+
+    def gravity(self, field: ArrayLike) -> None:
+        """Uniform gravity on every superelement, through its reduced mass.
+
+        Parameters
+        ----------
+        field : (3,), planar (2,)
+            Acceleration of free fall [length/time^2].
+
+        Raises
+        ------
+        InputError
+            Not so many finite numbers.
+        """
+        self.gravity_field = self._vector(field, "gravity")
 
     def initial_velocity(self, node: Node | str, linear: ArrayLike | None = None,
                          angular: ArrayLike | None = None) -> None:

@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from . import loop
-from .abi import ENERGIES, ENERGY
+from .abi import ENERGIES, ENERGY, POTENTIAL
 from .assembly import Numbering, System
 from .errors import InputError
 from .loop import State
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 NODE_QUANTITIES = ("position", "rotation", "velocity", "angular_velocity", "acceleration")
 SYSTEM_QUANTITIES = {"energy.kinetic": 0, "energy.strain": 1, "momentum": slice(2, 5),
-                     "angular_momentum": slice(5, 8)}
+                     "angular_momentum": slice(5, 8), "energy.potential": POTENTIAL}
 
 
 @dataclass(eq=False)
@@ -29,7 +29,7 @@ class Result:
 
     Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
     angular_velocity (n, 3), all in global axes; in a plane (n, 2) and (n,). Of the model:
-    energy.kinetic, energy.strain, energy.external_work (n,), momentum and angular_momentum
+    energy.kinetic, energy.strain, energy.potential, energy.external_work (n,), momentum and angular_momentum
     about the origin (n, 3), `<superelement>.modes` (n, m).
     """
 
@@ -133,10 +133,11 @@ class Result:
         return self._energies
 
     def energy_balance(self) -> float:
-        """Largest drift of kinetic + strain - work, relative to the largest energy."""
-        total = self["energy.kinetic"] + self["energy.strain"]
+        """Largest drift of kinetic + strain + potential - work, relative to the largest energy."""
+        inner = self["energy.kinetic"] + self["energy.strain"]
+        total = inner + self["energy.potential"]
         drift = np.abs(total - total[0] - self["energy.external_work"]).max()
-        return float(drift / max(np.abs(total).max(), 1e-300))
+        return float(drift / max(np.abs(inner).max(), 1e-300))
 
     def arrays(self) -> dict[str, NDArray]:
         """All named histories, as they are saved."""
@@ -147,7 +148,8 @@ class Result:
                 triplet = node.rotation if turning else node.position
                 if triplet is not None and id(triplet) in self.numbering.triplets:
                     out[f"{name}.{quantity}"] = self[f"{name}.{quantity}"]
-        for name in ("energy.kinetic", "energy.strain", "energy.external_work", "momentum",
+        for name in ("energy.kinetic", "energy.strain", "energy.potential",
+                     "energy.external_work", "momentum",
                      "angular_momentum"):
             out[name] = self[name]
         return out
