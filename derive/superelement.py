@@ -24,6 +24,7 @@ from .kinematics import (
 from .layouts import Layout, LayoutError
 from .quantities import Quantities
 from .stages import Linearizer, Product, Space, Stage, Step, Text, along_own, cross
+from .variation import check_same, differential
 
 
 class Superelement(NamedTuple):
@@ -90,6 +91,7 @@ def _derived(planar: bool, frame: str, inertia: str):
     return q, chosen, option, (residual, _energy(q, option, weight), tangent)
 
 
+NODE_FORCE = "force on the nodes"
 PRODUCTS = (Product("elastic force, s = Sbar y", "S", "y", "s"),
             Product("momentum, p = Mbar ydot", "M", "yd", "p"),
             Product("inertia force, pd = Mbar yddot", "M", "ydd", "pd"))
@@ -123,8 +125,7 @@ def _forces(q: Quantities, frame: Frame, option: Inertia, work: VirtualWork,
         Stage("force on the nodes in frame axes, (30), (57)", "position",
               sets=((q.h, work.position + option.position + frame.position
                      + alpha * q.F.symbols),)),
-        Stage("force on the nodes", "position", sets=((q.gx, R0 * h),),
-              short=(R0 * (q.space.d(q.h).symbols + cross(q.dth0.symbols, h)),)),
+        Stage(NODE_FORCE, "position", sets=((q.gx, R0 * h),)),
         Stage("moment on the nodes, (30), (57)", "rotation",
               sets=((q.gt, work.rotation + option.rotation + frame.rotation + of_mean),)),
         Stage("force of the internal modes", "mode",
@@ -159,8 +160,20 @@ def _tangent(q: Quantities, frame: Frame, varied, before, after, weight) -> list
     for quantity in (q.px, q.pw, q.pxd, q.pwd, q.pmd):
         chain.move(quantity)
     for step in after:
-        steps.append(chain.solve(step) if hasattr(step, "unknown") else chain.stage(step))
+        steps.append(chain.solve(step) if hasattr(step, "unknown") else
+                     _in_frame_axes(q, chain, step) if step.title == NODE_FORCE else
+                     chain.stage(step))
     return steps
+
+
+def _in_frame_axes(q: Quantities, chain: Linearizer, step: Stage) -> Stage:
+    """Differential of the force on the nodes, turned into frame axes: what the matrix holds."""
+    R0, h = q.R0.symbols, q.h.symbols
+    short = q.space.d(q.h).symbols + cross(q.dth0.symbols, h)
+    check_same("force on the nodes in frame axes", short,
+               R0.T * differential(step.sets[0][1], chain.rules), [R0])
+    return Stage("differential: force on the nodes, left in frame axes", "position",
+                 sets=((q.space.d(q.gx), short),))
 
 
 def _geometric_switch(q: Quantities) -> Text:

@@ -87,41 +87,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     return 0
 '''
 
+# position rows and columns of a matrix are in the axes of the frame, where it hardly changes
 SEEDS_SPATIAL = '''
-if column < ROTATIONS:      # a position, turned into frame axes
-    i = column//3
-    k = column - 3*i
-    for r in range(3):
-        value = frame[3*k + r]
-        dqe[3*i + r] = c_place*value
-        dve[3*i + r] = c_rate*value
-        dae[3*i + r] = c_mass*value
-elif column < MODES:        # a rotation: its unknown is the step's increment, varied through T
+if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
     j = (column - ROTATIONS)//3
     k = column - ROTATIONS - 3*j
     for r in range(3):
         dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
-    dve[column] = c_rate
-    dae[column] = c_mass
 else:
     dqe[column] = c_place
-    dve[column] = c_rate
-    dae[column] = c_mass
+dve[column] = c_rate
+dae[column] = c_mass
 '''
 
 SEEDS_PLANAR = '''
-if column < ROTATIONS:      # a position, turned into frame axes
-    i = column//2
-    k = column - 2*i
-    for r in range(2):
-        value = frame[3*k + r]
-        dqe[2*i + r] = c_place*value
-        dve[2*i + r] = c_rate*value
-        dae[2*i + r] = c_mass*value
-else:
-    dqe[column] = c_place
-    dve[column] = c_rate
-    dae[column] = c_mass
+dqe[column] = c_place
+dve[column] = c_rate
+dae[column] = c_mass
 '''
 
 ENERGY_OUTPUTS = {

@@ -27,7 +27,7 @@ N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 32
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (1322, 3),
-              "column": (2845, 3)}
+              "column": (2815, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_columns_times": "bb899bc4d9a4",
@@ -443,25 +443,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if column < ROTATIONS:      # a position, turned into frame axes
-                    i = column//3
-                    k = column - 3*i
-                    for r in range(3):
-                        value = frame[3*k + r]
-                        dqe[3*i + r] = c_place*value
-                        dve[3*i + r] = c_rate*value
-                        dae[3*i + r] = c_mass*value
-                elif column < MODES:        # a rotation: its unknown is the step's increment, varied through T
+                if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
                         dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
-                    dve[column] = c_rate
-                    dae[column] = c_mass
                 else:
                     dqe[column] = c_place
-                    dve[column] = c_rate
-                    dae[column] = c_mass
+                dve[column] = c_rate
+                dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0
                 for i in range(N_POSITIONS):
@@ -817,17 +807,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         dOm0_z*px_x + df_y + dpxd_y)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + alpha*dF_z + dOm0_x*px_y -
                         dOm0_y*px_x + df_z + dpxd_z)
-                # differential: force on the nodes
+                # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t140 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t141 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t142 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t140 + R0_xy*t141 + R0_xz*t142
-                    dg[i3 + 1] = R0_yx*t140 + R0_yy*t141 + R0_yz*t142
-                    dg[i3 + 2] = R0_zx*t140 + R0_zy*t141 + R0_zz*t142
+                    dg[i3] = dh_x + dth0_y*h_z - dth0_z*h_y
+                    dg[i3 + 1] = dh_y - dth0_x*h_z + dth0_z*h_x
+                    dg[i3 + 2] = dh_z + dth0_x*h_y - dth0_y*h_x
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -848,77 +835,77 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t143 = dm_y*psi_z
-                    t144 = dpsi_z*m_y
-                    t145 = -m_x*psi_y + m_y*psi_x
-                    t146 = dpsi_y*e0
-                    t147 = m_x*psi_z - m_z*psi_x
-                    t148 = dpsi_z*e0
-                    t149 = dm_x*psi_y
-                    t150 = dpsi_y*m_x
-                    t151 = dm_y*psi_x + dpsi_x*m_y - t149 - t150
-                    t152 = e0*psi_y
-                    t153 = dm_x*psi_z
-                    t154 = dpsi_z*m_x
-                    t155 = dm_z*psi_x
-                    t156 = dpsi_x*m_z
-                    t157 = t153 + t154 - t155 - t156
-                    t158 = e0*psi_z
-                    t159 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t160 = psi_y*t159
-                    t161 = psi_z*t159
-                    t162 = (Om0_y*dpw_z - Om0_z*dpw_y + dOm0_y*pw_z - dOm0_z*pw_y + dpw_y*w_z -
+                    t140 = dm_y*psi_z
+                    t141 = dpsi_z*m_y
+                    t142 = -m_x*psi_y + m_y*psi_x
+                    t143 = dpsi_y*e0
+                    t144 = m_x*psi_z - m_z*psi_x
+                    t145 = dpsi_z*e0
+                    t146 = dm_x*psi_y
+                    t147 = dpsi_y*m_x
+                    t148 = dm_y*psi_x + dpsi_x*m_y - t146 - t147
+                    t149 = e0*psi_y
+                    t150 = dm_x*psi_z
+                    t151 = dpsi_z*m_x
+                    t152 = dm_z*psi_x
+                    t153 = dpsi_x*m_z
+                    t154 = t150 + t151 - t152 - t153
+                    t155 = e0*psi_z
+                    t156 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t157 = psi_y*t156
+                    t158 = psi_z*t156
+                    t159 = (Om0_y*dpw_z - Om0_z*dpw_y + dOm0_y*pw_z - dOm0_z*pw_y + dpw_y*w_z -
                         dpw_z*w_y + dpwd_x - dw_y*pw_z + dw_z*pw_y)
-                    t163 = (-Om0_x*dpw_z + Om0_z*dpw_x - dOm0_x*pw_z + dOm0_z*pw_x - dpw_x*w_z +
+                    t160 = (-Om0_x*dpw_z + Om0_z*dpw_x - dOm0_x*pw_z + dOm0_z*pw_x - dpw_x*w_z +
                         dpw_z*w_x + dpwd_y + dw_x*pw_z - dw_z*pw_x)
-                    t164 = (Om0_x*dpw_y - Om0_y*dpw_x + dOm0_x*pw_y - dOm0_y*pw_x + dpw_x*w_y -
+                    t161 = (Om0_x*dpw_y - Om0_y*dpw_x + dOm0_x*pw_y - dOm0_y*pw_x + dpw_x*w_y -
                         dpw_y*w_x + dpwd_z - dw_x*pw_y + dw_y*pw_x)
-                    t165 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
-                    t166 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
-                    t167 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
-                    t168 = dpsi_y*wp_z
-                    t169 = dpsi_z*wp_y
-                    t170 = dwp_y*psi_z
-                    t171 = dwp_z*psi_y
-                    t172 = psi_x*wp_y - psi_y*wp_x
-                    t173 = -psi_x*wp_z + psi_z*wp_x
-                    t174 = dpsi_x*wp_y
-                    t175 = dwp_y*psi_x
-                    t176 = dpsi_y*wp_x
-                    t177 = dwp_x*psi_y
-                    t178 = t174 + t175 - t176 - t177
-                    t179 = dpsi_x*wp_z
-                    t180 = dwp_z*psi_x
-                    t181 = dpsi_z*wp_x + dwp_x*psi_z - t179 - t180
-                    t182 = -m_y*psi_z + m_z*psi_y
-                    t183 = dpsi_x*e0
-                    t184 = dm_z*psi_y + dpsi_y*m_z - t143 - t144
-                    t185 = e0*psi_x
-                    t186 = psi_x*t159
-                    t187 = psi_y*wp_z - psi_z*wp_y
-                    t188 = t168 - t169 - t170 + t171
-                    dg[j3] = (Q_xx*t162 + Q_yx*t163 + Q_zx*t164 + alpha_r*(dwp_x + t146*t172 -
-                        t148*t173 + t152*t178 - t158*t181 + t160*t172 - t161*t173 - 0.5*t168 +
-                        (0.5)*t169 + (0.5)*t170 - 0.5*t171) + dm_x - 0.5*dm_z*psi_y -
-                        0.5*dpsi_y*m_z + (0.5)*t143 + (0.5)*t144 + t145*t146 + t145*t160 -
-                        t147*t148 - t147*t161 + t151*t152 - t157*t158 + t165*(Q_xx*dth0_y -
-                        Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y) + t166*(-Q_xx*dth0_z + Q_yy*dth_z -
-                        Q_yz*dth_y + Q_zx*dth0_x) + t167*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
+                    t162 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
+                    t163 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
+                    t164 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
+                    t165 = dpsi_y*wp_z
+                    t166 = dpsi_z*wp_y
+                    t167 = dwp_y*psi_z
+                    t168 = dwp_z*psi_y
+                    t169 = psi_x*wp_y - psi_y*wp_x
+                    t170 = -psi_x*wp_z + psi_z*wp_x
+                    t171 = dpsi_x*wp_y
+                    t172 = dwp_y*psi_x
+                    t173 = dpsi_y*wp_x
+                    t174 = dwp_x*psi_y
+                    t175 = t171 + t172 - t173 - t174
+                    t176 = dpsi_x*wp_z
+                    t177 = dwp_z*psi_x
+                    t178 = dpsi_z*wp_x + dwp_x*psi_z - t176 - t177
+                    t179 = -m_y*psi_z + m_z*psi_y
+                    t180 = dpsi_x*e0
+                    t181 = dm_z*psi_y + dpsi_y*m_z - t140 - t141
+                    t182 = e0*psi_x
+                    t183 = psi_x*t156
+                    t184 = psi_y*wp_z - psi_z*wp_y
+                    t185 = t165 - t166 - t167 + t168
+                    dg[j3] = (Q_xx*t159 + Q_yx*t160 + Q_zx*t161 + alpha_r*(dwp_x + t143*t169 -
+                        t145*t170 + t149*t175 - t155*t178 + t157*t169 - t158*t170 - 0.5*t165 +
+                        (0.5)*t166 + (0.5)*t167 - 0.5*t168) + dm_x - 0.5*dm_z*psi_y -
+                        0.5*dpsi_y*m_z + (0.5)*t140 + (0.5)*t141 + t142*t143 + t142*t157 -
+                        t144*t145 - t144*t158 + t148*t149 - t154*t155 + t162*(Q_xx*dth0_y -
+                        Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y) + t163*(-Q_xx*dth0_z + Q_yy*dth_z -
+                        Q_yz*dth_y + Q_zx*dth0_x) + t164*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
                         Q_zx*dth0_y))
-                    dg[j3 + 1] = (Q_xy*t162 + Q_yy*t163 + Q_zy*t164 + alpha_r*(-0.5*dpsi_z*wp_x -
-                        0.5*dwp_x*psi_z + dwp_y + t148*t187 + t158*t188 + t161*t187 - t172*t183 -
-                        t172*t186 - t178*t185 + (0.5)*t179 + (0.5)*t180) + dm_y - t145*t183 -
-                        t145*t186 + t148*t182 - t151*t185 - 0.5*t153 - 0.5*t154 + (0.5)*t155 +
-                        (0.5)*t156 + t158*t184 + t161*t182 + t165*(Q_xy*dth0_y - Q_yy*dth0_x -
-                        Q_zx*dth_z + Q_zz*dth_x) + t166*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                        Q_zy*dth0_x) + t167*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y))
-                    dg[j3 + 2] = (Q_xz*t162 + Q_yz*t163 + Q_zz*t164 + alpha_r*(dwp_z - t146*t187 -
-                        t152*t188 - t160*t187 + t173*t183 + t173*t186 - 0.5*t174 - 0.5*t175 +
-                        (0.5)*t176 + (0.5)*t177 + t181*t185) - 0.5*dm_y*psi_x + dm_z -
-                        0.5*dpsi_x*m_y - t146*t182 + t147*t183 + t147*t186 + (0.5)*t149 +
-                        (0.5)*t150 - t152*t184 + t157*t185 - t160*t182 + t165*(Q_xz*dth0_y -
-                        Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x) + t166*(-Q_xz*dth0_z + Q_yx*dth_y -
-                        Q_yy*dth_x + Q_zz*dth0_x) + t167*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z -
+                    dg[j3 + 1] = (Q_xy*t159 + Q_yy*t160 + Q_zy*t161 + alpha_r*(-0.5*dpsi_z*wp_x -
+                        0.5*dwp_x*psi_z + dwp_y + t145*t184 + t155*t185 + t158*t184 - t169*t180 -
+                        t169*t183 - t175*t182 + (0.5)*t176 + (0.5)*t177) + dm_y - t142*t180 -
+                        t142*t183 + t145*t179 - t148*t182 - 0.5*t150 - 0.5*t151 + (0.5)*t152 +
+                        (0.5)*t153 + t155*t181 + t158*t179 + t162*(Q_xy*dth0_y - Q_yy*dth0_x -
+                        Q_zx*dth_z + Q_zz*dth_x) + t163*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
+                        Q_zy*dth0_x) + t164*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y))
+                    dg[j3 + 2] = (Q_xz*t159 + Q_yz*t160 + Q_zz*t161 + alpha_r*(dwp_z - t143*t184 -
+                        t149*t185 - t157*t184 + t170*t180 + t170*t183 - 0.5*t171 - 0.5*t172 +
+                        (0.5)*t173 + (0.5)*t174 + t178*t182) - 0.5*dm_y*psi_x + dm_z -
+                        0.5*dpsi_x*m_y - t143*t179 + t144*t180 + t144*t183 + (0.5)*t146 +
+                        (0.5)*t147 - t149*t181 + t154*t182 - t157*t179 + t162*(Q_xz*dth0_y -
+                        Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x) + t163*(-Q_xz*dth0_z + Q_yx*dth_y -
+                        Q_yy*dth_x + Q_zz*dth0_x) + t164*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z -
                         Q_zz*dth0_y))
                 # differential: force of the internal modes
                 for k in range(MODES, n):

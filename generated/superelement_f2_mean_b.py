@@ -27,7 +27,7 @@ N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 35
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (1191, 3),
-              "column": (2129, 3)}
+              "column": (2099, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_columns_times": "bb899bc4d9a4",
@@ -425,25 +425,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if column < ROTATIONS:      # a position, turned into frame axes
-                    i = column//3
-                    k = column - 3*i
-                    for r in range(3):
-                        value = frame[3*k + r]
-                        dqe[3*i + r] = c_place*value
-                        dve[3*i + r] = c_rate*value
-                        dae[3*i + r] = c_mass*value
-                elif column < MODES:        # a rotation: its unknown is the step's increment, varied through T
+                if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
                         dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
-                    dve[column] = c_rate
-                    dae[column] = c_mass
                 else:
                     dqe[column] = c_place
-                    dve[column] = c_rate
-                    dae[column] = c_mass
+                dve[column] = c_rate
+                dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0
                 for i in range(N_POSITIONS):
@@ -852,17 +842,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         dOm0_z*px_x + df_y + dpxd_y)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + alpha*dF_z + dOm0_x*px_y -
                         dOm0_y*px_x + df_z + dpxd_z)
-                # differential: force on the nodes
+                # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t216 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t217 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t218 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t216 + R0_xy*t217 + R0_xz*t218
-                    dg[i3 + 1] = R0_yx*t216 + R0_yy*t217 + R0_yz*t218
-                    dg[i3 + 2] = R0_zx*t216 + R0_zy*t217 + R0_zz*t218
+                    dg[i3] = dh_x + dth0_y*h_z - dth0_z*h_y
+                    dg[i3 + 1] = dh_y - dth0_x*h_z + dth0_z*h_x
+                    dg[i3 + 2] = dh_z + dth0_x*h_y - dth0_y*h_x
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -882,64 +869,64 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e1 = e1s[j]
                     b0 = b0s[j]
                     b1 = b1s[j]
-                    t219 = dm_y*psi_z
-                    t220 = dpsi_z*m_y
-                    t221 = -m_x*psi_y + m_y*psi_x
-                    t222 = e0*t221
-                    t223 = m_x*psi_z - m_z*psi_x
-                    t224 = dpsi_z*e0
-                    t225 = dm_x*psi_y
-                    t226 = dpsi_y*m_x
-                    t227 = e0*(dm_y*psi_x + dpsi_x*m_y - t225 - t226)
-                    t228 = dm_x*psi_z
-                    t229 = dpsi_z*m_x
-                    t230 = dm_z*psi_x
-                    t231 = dpsi_x*m_z
-                    t232 = t228 + t229 - t230 - t231
-                    t233 = e0*psi_z
-                    t234 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t235 = t221*t234
-                    t236 = psi_z*t234
-                    t237 = beta_y*dwp_z
-                    t238 = beta_z*dwp_y
-                    t239 = dbeta_y*wp_z
-                    t240 = dbeta_z*wp_y
-                    t241 = beta_x*wp_y - beta_y*wp_x
-                    t242 = b0*t241
-                    t243 = -beta_x*wp_z + beta_z*wp_x
-                    t244 = b0*dbeta_z
-                    t245 = beta_x*dwp_y
-                    t246 = dbeta_x*wp_y
-                    t247 = beta_y*dwp_x
-                    t248 = dbeta_y*wp_x
-                    t249 = b0*(t245 + t246 - t247 - t248)
-                    t250 = beta_x*dwp_z
-                    t251 = dbeta_x*wp_z
-                    t252 = beta_z*dwp_x + dbeta_z*wp_x - t250 - t251
-                    t253 = b0*beta_z
-                    t254 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
-                    t255 = t241*t254
-                    t256 = beta_z*t254
-                    t257 = -m_y*psi_z + m_z*psi_y
-                    t258 = dm_z*psi_y + dpsi_y*m_z - t219 - t220
-                    t259 = beta_y*wp_z - beta_z*wp_y
-                    t260 = t237 - t238 + t239 - t240
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(beta_y*t249 + beta_y*t255 +
-                        dbeta_y*t242 + dwp_x - 0.5*t237 + (0.5)*t238 - 0.5*t239 + (0.5)*t240 -
-                        t243*t244 - t243*t256 - t252*t253) + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t222 + dpwd_x + psi_y*t227 +
-                        psi_y*t235 + (0.5)*t219 + (0.5)*t220 - t223*t224 - t223*t236 - t232*t233)
-                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-beta_x*t249 - beta_x*t255 -
-                        0.5*beta_z*dwp_x - dbeta_x*t242 - 0.5*dbeta_z*wp_x + dwp_y + t244*t259 +
-                        (0.5)*t250 + (0.5)*t251 + t253*t260 + t256*t259) - dOm_x*pw_z + dOm_z*pw_x
-                        + dm_y - dpsi_x*t222 + dpwd_y - psi_x*t227 - psi_x*t235 + t224*t257 -
-                        0.5*t228 - 0.5*t229 + (0.5)*t230 + (0.5)*t231 + t233*t258 + t236*t257)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(b0*beta_x*t252 -
-                        b0*beta_y*t260 + b0*dbeta_x*t243 - b0*dbeta_y*t259 + beta_x*t243*t254 -
-                        beta_y*t254*t259 + dwp_z - 0.5*t245 - 0.5*t246 + (0.5)*t247 + (0.5)*t248)
-                        + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t223 -
-                        0.5*dpsi_x*m_y - dpsi_y*e0*t257 + dpwd_z + e0*psi_x*t232 - e0*psi_y*t258 +
-                        psi_x*t223*t234 - psi_y*t234*t257 + (0.5)*t225 + (0.5)*t226)
+                    t216 = dm_y*psi_z
+                    t217 = dpsi_z*m_y
+                    t218 = -m_x*psi_y + m_y*psi_x
+                    t219 = e0*t218
+                    t220 = m_x*psi_z - m_z*psi_x
+                    t221 = dpsi_z*e0
+                    t222 = dm_x*psi_y
+                    t223 = dpsi_y*m_x
+                    t224 = e0*(dm_y*psi_x + dpsi_x*m_y - t222 - t223)
+                    t225 = dm_x*psi_z
+                    t226 = dpsi_z*m_x
+                    t227 = dm_z*psi_x
+                    t228 = dpsi_x*m_z
+                    t229 = t225 + t226 - t227 - t228
+                    t230 = e0*psi_z
+                    t231 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t232 = t218*t231
+                    t233 = psi_z*t231
+                    t234 = beta_y*dwp_z
+                    t235 = beta_z*dwp_y
+                    t236 = dbeta_y*wp_z
+                    t237 = dbeta_z*wp_y
+                    t238 = beta_x*wp_y - beta_y*wp_x
+                    t239 = b0*t238
+                    t240 = -beta_x*wp_z + beta_z*wp_x
+                    t241 = b0*dbeta_z
+                    t242 = beta_x*dwp_y
+                    t243 = dbeta_x*wp_y
+                    t244 = beta_y*dwp_x
+                    t245 = dbeta_y*wp_x
+                    t246 = b0*(t242 + t243 - t244 - t245)
+                    t247 = beta_x*dwp_z
+                    t248 = dbeta_x*wp_z
+                    t249 = beta_z*dwp_x + dbeta_z*wp_x - t247 - t248
+                    t250 = b0*beta_z
+                    t251 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
+                    t252 = t238*t251
+                    t253 = beta_z*t251
+                    t254 = -m_y*psi_z + m_z*psi_y
+                    t255 = dm_z*psi_y + dpsi_y*m_z - t216 - t217
+                    t256 = beta_y*wp_z - beta_z*wp_y
+                    t257 = t234 - t235 + t236 - t237
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(beta_y*t246 + beta_y*t252 +
+                        dbeta_y*t239 + dwp_x - 0.5*t234 + (0.5)*t235 - 0.5*t236 + (0.5)*t237 -
+                        t240*t241 - t240*t253 - t249*t250) + dOm_y*pw_z - dOm_z*pw_y + dm_x -
+                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t219 + dpwd_x + psi_y*t224 +
+                        psi_y*t232 + (0.5)*t216 + (0.5)*t217 - t220*t221 - t220*t233 - t229*t230)
+                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-beta_x*t246 - beta_x*t252 -
+                        0.5*beta_z*dwp_x - dbeta_x*t239 - 0.5*dbeta_z*wp_x + dwp_y + t241*t256 +
+                        (0.5)*t247 + (0.5)*t248 + t250*t257 + t253*t256) - dOm_x*pw_z + dOm_z*pw_x
+                        + dm_y - dpsi_x*t219 + dpwd_y - psi_x*t224 - psi_x*t232 + t221*t254 -
+                        0.5*t225 - 0.5*t226 + (0.5)*t227 + (0.5)*t228 + t230*t255 + t233*t254)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(b0*beta_x*t249 -
+                        b0*beta_y*t257 + b0*dbeta_x*t240 - b0*dbeta_y*t256 + beta_x*t240*t251 -
+                        beta_y*t251*t256 + dwp_z - 0.5*t242 - 0.5*t243 + (0.5)*t244 + (0.5)*t245)
+                        + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t220 -
+                        0.5*dpsi_x*m_y - dpsi_y*e0*t254 + dpwd_z + e0*psi_x*t229 - e0*psi_y*t255 +
+                        psi_x*t220*t231 - psi_y*t231*t254 + (0.5)*t222 + (0.5)*t223)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

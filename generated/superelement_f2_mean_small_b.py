@@ -27,7 +27,7 @@ N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 35
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (915, 3),
-              "column": (1175, 3)}
+              "column": (1145, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_columns_times": "bb899bc4d9a4",
@@ -377,25 +377,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if column < ROTATIONS:      # a position, turned into frame axes
-                    i = column//3
-                    k = column - 3*i
-                    for r in range(3):
-                        value = frame[3*k + r]
-                        dqe[3*i + r] = c_place*value
-                        dve[3*i + r] = c_rate*value
-                        dae[3*i + r] = c_mass*value
-                elif column < MODES:        # a rotation: its unknown is the step's increment, varied through T
+                if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
                         dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
-                    dve[column] = c_rate
-                    dae[column] = c_mass
                 else:
                     dqe[column] = c_place
-                    dve[column] = c_rate
-                    dae[column] = c_mass
+                dve[column] = c_rate
+                dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0
                 for i in range(N_POSITIONS):
@@ -690,17 +680,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         dOm0_z*px_x + df_y + dpxd_y)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + alpha*dF_z + dOm0_x*px_y -
                         dOm0_y*px_x + df_z + dpxd_z)
-                # differential: force on the nodes
+                # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t85 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t86 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t87 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t85 + R0_xy*t86 + R0_xz*t87
-                    dg[i3 + 1] = R0_yx*t85 + R0_yy*t86 + R0_yz*t87
-                    dg[i3 + 2] = R0_zx*t85 + R0_zy*t86 + R0_zz*t87
+                    dg[i3] = dh_x + dth0_y*h_z - dth0_z*h_y
+                    dg[i3 + 1] = dh_y - dth0_x*h_z + dth0_z*h_x
+                    dg[i3 + 2] = dh_z + dth0_x*h_y - dth0_y*h_x
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -714,21 +701,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     dpw_x, dpw_y, dpw_z = dp[j3], dp[j3 + 1], dp[j3 + 2]
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
-                    t88 = (0.5)*psi_z
-                    t89 = (0.5)*psi_y
-                    t90 = (0.5)*dpsi_y
-                    t91 = (0.5)*dpsi_z
-                    t92 = (0.5)*psi_x
-                    t93 = (0.5)*dpsi_x
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*dMs_x + alpha_r*(W_y*t91 - W_z*t90
-                        + dW_x + dW_y*t88 - dW_z*t89) + dOm_y*pw_z - dOm_z*pw_y + dm_x + dm_y*t88
-                        - dm_z*t89 + dpwd_x + m_y*t91 - m_z*t90)
-                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*dMs_y + alpha_r*(-W_x*t91 +
-                        W_z*t93 - dW_x*t88 + dW_y + dW_z*t92) - dOm_x*pw_z + dOm_z*pw_x - dm_x*t88
-                        + dm_y + dm_z*t92 + dpwd_y - m_x*t91 + m_z*t93)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*dMs_z + alpha_r*(W_x*t90 -
-                        W_y*t93 + dW_x*t89 - dW_y*t92 + dW_z) + dOm_x*pw_y - dOm_y*pw_x + dm_x*t89
-                        - dm_y*t92 + dm_z + dpwd_z + m_x*t90 - m_y*t93)
+                    t85 = (0.5)*psi_z
+                    t86 = (0.5)*psi_y
+                    t87 = (0.5)*dpsi_y
+                    t88 = (0.5)*dpsi_z
+                    t89 = (0.5)*psi_x
+                    t90 = (0.5)*dpsi_x
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*dMs_x + alpha_r*(W_y*t88 - W_z*t87
+                        + dW_x + dW_y*t85 - dW_z*t86) + dOm_y*pw_z - dOm_z*pw_y + dm_x + dm_y*t85
+                        - dm_z*t86 + dpwd_x + m_y*t88 - m_z*t87)
+                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*dMs_y + alpha_r*(-W_x*t88 +
+                        W_z*t90 - dW_x*t85 + dW_y + dW_z*t89) - dOm_x*pw_z + dOm_z*pw_x - dm_x*t85
+                        + dm_y + dm_z*t89 + dpwd_y - m_x*t88 + m_z*t90)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*dMs_z + alpha_r*(W_x*t87 -
+                        W_y*t90 + dW_x*t86 - dW_y*t89 + dW_z) + dOm_x*pw_y - dOm_y*pw_x + dm_x*t86
+                        - dm_y*t89 + dm_z + dpwd_z + m_x*t87 - m_y*t90)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

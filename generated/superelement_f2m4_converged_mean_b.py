@@ -27,7 +27,7 @@ N_MODES = 4        # their number, None where it is read at run time
 WORK_ROWS = 31
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (1070, 3),
-              "column": (2077, 3)}
+              "column": (2047, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_columns_times": "bb899bc4d9a4",
@@ -407,25 +407,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if column < ROTATIONS:      # a position, turned into frame axes
-                    i = column//3
-                    k = column - 3*i
-                    for r in range(3):
-                        value = frame[3*k + r]
-                        dqe[3*i + r] = c_place*value
-                        dve[3*i + r] = c_rate*value
-                        dae[3*i + r] = c_mass*value
-                elif column < MODES:        # a rotation: its unknown is the step's increment, varied through T
+                if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
                         dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
-                    dve[column] = c_rate
-                    dae[column] = c_mass
                 else:
                     dqe[column] = c_place
-                    dve[column] = c_rate
-                    dae[column] = c_mass
+                dve[column] = c_rate
+                dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0
                 for i in range(N_POSITIONS):
@@ -744,17 +734,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         dOm0_z*px_x + df_y + dpxd_y)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + alpha*dF_z + dOm0_x*px_y -
                         dOm0_y*px_x + df_z + dpxd_z)
-                # differential: force on the nodes
+                # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t134 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t135 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t136 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t134 + R0_xy*t135 + R0_xz*t136
-                    dg[i3 + 1] = R0_yx*t134 + R0_yy*t135 + R0_yz*t136
-                    dg[i3 + 2] = R0_zx*t134 + R0_zy*t135 + R0_zz*t136
+                    dg[i3] = dh_x + dth0_y*h_z - dth0_z*h_y
+                    dg[i3 + 1] = dh_y - dth0_x*h_z + dth0_z*h_x
+                    dg[i3 + 2] = dh_z + dth0_x*h_y - dth0_y*h_x
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -770,61 +757,61 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t137 = dm_y*psi_z
-                    t138 = dpsi_z*m_y
-                    t139 = -m_x*psi_y + m_y*psi_x
-                    t140 = dpsi_y*e0
-                    t141 = m_x*psi_z - m_z*psi_x
-                    t142 = dpsi_z*e0
-                    t143 = dm_x*psi_y
-                    t144 = dpsi_y*m_x
-                    t145 = dm_y*psi_x + dpsi_x*m_y - t143 - t144
-                    t146 = e0*psi_y
-                    t147 = dm_x*psi_z
-                    t148 = dpsi_z*m_x
-                    t149 = dm_z*psi_x
-                    t150 = dpsi_x*m_z
-                    t151 = t147 + t148 - t149 - t150
-                    t152 = e0*psi_z
-                    t153 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t154 = psi_y*t153
-                    t155 = psi_z*t153
-                    t156 = dpsi_y*wp_z
-                    t157 = dpsi_z*wp_y
-                    t158 = dwp_y*psi_z
-                    t159 = dwp_z*psi_y
-                    t160 = psi_x*wp_y - psi_y*wp_x
-                    t161 = -psi_x*wp_z + psi_z*wp_x
-                    t162 = dpsi_x*wp_y
-                    t163 = dwp_y*psi_x
-                    t164 = dpsi_y*wp_x
-                    t165 = dwp_x*psi_y
-                    t166 = t162 + t163 - t164 - t165
-                    t167 = dpsi_x*wp_z
-                    t168 = dwp_z*psi_x
-                    t169 = dpsi_z*wp_x + dwp_x*psi_z - t167 - t168
-                    t170 = -m_y*psi_z + m_z*psi_y
-                    t171 = dpsi_x*e0
-                    t172 = dm_z*psi_y + dpsi_y*m_z - t137 - t138
-                    t173 = e0*psi_x
-                    t174 = psi_x*t153
-                    t175 = psi_y*wp_z - psi_z*wp_y
-                    t176 = t156 - t157 - t158 + t159
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(dwp_x + t140*t160 - t142*t161 +
-                        t146*t166 - t152*t169 + t154*t160 - t155*t161 - 0.5*t156 + (0.5)*t157 +
-                        (0.5)*t158 - 0.5*t159) + dOm_y*pw_z - dOm_z*pw_y + dm_x - 0.5*dm_z*psi_y -
-                        0.5*dpsi_y*m_z + dpwd_x + (0.5)*t137 + (0.5)*t138 + t139*t140 + t139*t154
-                        - t141*t142 - t141*t155 + t145*t146 - t151*t152)
+                    t134 = dm_y*psi_z
+                    t135 = dpsi_z*m_y
+                    t136 = -m_x*psi_y + m_y*psi_x
+                    t137 = dpsi_y*e0
+                    t138 = m_x*psi_z - m_z*psi_x
+                    t139 = dpsi_z*e0
+                    t140 = dm_x*psi_y
+                    t141 = dpsi_y*m_x
+                    t142 = dm_y*psi_x + dpsi_x*m_y - t140 - t141
+                    t143 = e0*psi_y
+                    t144 = dm_x*psi_z
+                    t145 = dpsi_z*m_x
+                    t146 = dm_z*psi_x
+                    t147 = dpsi_x*m_z
+                    t148 = t144 + t145 - t146 - t147
+                    t149 = e0*psi_z
+                    t150 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t151 = psi_y*t150
+                    t152 = psi_z*t150
+                    t153 = dpsi_y*wp_z
+                    t154 = dpsi_z*wp_y
+                    t155 = dwp_y*psi_z
+                    t156 = dwp_z*psi_y
+                    t157 = psi_x*wp_y - psi_y*wp_x
+                    t158 = -psi_x*wp_z + psi_z*wp_x
+                    t159 = dpsi_x*wp_y
+                    t160 = dwp_y*psi_x
+                    t161 = dpsi_y*wp_x
+                    t162 = dwp_x*psi_y
+                    t163 = t159 + t160 - t161 - t162
+                    t164 = dpsi_x*wp_z
+                    t165 = dwp_z*psi_x
+                    t166 = dpsi_z*wp_x + dwp_x*psi_z - t164 - t165
+                    t167 = -m_y*psi_z + m_z*psi_y
+                    t168 = dpsi_x*e0
+                    t169 = dm_z*psi_y + dpsi_y*m_z - t134 - t135
+                    t170 = e0*psi_x
+                    t171 = psi_x*t150
+                    t172 = psi_y*wp_z - psi_z*wp_y
+                    t173 = t153 - t154 - t155 + t156
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(dwp_x + t137*t157 - t139*t158 +
+                        t143*t163 - t149*t166 + t151*t157 - t152*t158 - 0.5*t153 + (0.5)*t154 +
+                        (0.5)*t155 - 0.5*t156) + dOm_y*pw_z - dOm_z*pw_y + dm_x - 0.5*dm_z*psi_y -
+                        0.5*dpsi_y*m_z + dpwd_x + (0.5)*t134 + (0.5)*t135 + t136*t137 + t136*t151
+                        - t138*t139 - t138*t152 + t142*t143 - t148*t149)
                     dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-0.5*dpsi_z*wp_x -
-                        0.5*dwp_x*psi_z + dwp_y + t142*t175 + t152*t176 + t155*t175 - t160*t171 -
-                        t160*t174 - t166*t173 + (0.5)*t167 + (0.5)*t168) - dOm_x*pw_z + dOm_z*pw_x
-                        + dm_y + dpwd_y - t139*t171 - t139*t174 + t142*t170 - t145*t173 - 0.5*t147
-                        - 0.5*t148 + (0.5)*t149 + (0.5)*t150 + t152*t172 + t155*t170)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(dwp_z - t140*t175 - t146*t176
-                        - t154*t175 + t161*t171 + t161*t174 - 0.5*t162 - 0.5*t163 + (0.5)*t164 +
-                        (0.5)*t165 + t169*t173) + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z
-                        - 0.5*dpsi_x*m_y + dpwd_z - t140*t170 + t141*t171 + t141*t174 + (0.5)*t143
-                        + (0.5)*t144 - t146*t172 + t151*t173 - t154*t170)
+                        0.5*dwp_x*psi_z + dwp_y + t139*t172 + t149*t173 + t152*t172 - t157*t168 -
+                        t157*t171 - t163*t170 + (0.5)*t164 + (0.5)*t165) - dOm_x*pw_z + dOm_z*pw_x
+                        + dm_y + dpwd_y - t136*t168 - t136*t171 + t139*t167 - t142*t170 - 0.5*t144
+                        - 0.5*t145 + (0.5)*t146 + (0.5)*t147 + t149*t169 + t152*t167)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(dwp_z - t137*t172 - t143*t173
+                        - t151*t172 + t158*t168 + t158*t171 - 0.5*t159 - 0.5*t160 + (0.5)*t161 +
+                        (0.5)*t162 + t166*t170) + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z
+                        - 0.5*dpsi_x*m_y + dpwd_z - t137*t167 + t138*t168 + t138*t171 + (0.5)*t140
+                        + (0.5)*t141 - t143*t169 + t148*t170 - t151*t167)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

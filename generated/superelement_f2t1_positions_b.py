@@ -27,7 +27,7 @@ N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 31
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (1367, 3),
-              "column": (1661, 3)}
+              "column": (1616, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_columns_times": "bb899bc4d9a4",
@@ -420,25 +420,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if column < ROTATIONS:      # a position, turned into frame axes
-                    i = column//3
-                    k = column - 3*i
-                    for r in range(3):
-                        value = frame[3*k + r]
-                        dqe[3*i + r] = c_place*value
-                        dve[3*i + r] = c_rate*value
-                        dae[3*i + r] = c_mass*value
-                elif column < MODES:        # a rotation: its unknown is the step's increment, varied through T
+                if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
                         dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
-                    dve[column] = c_rate
-                    dae[column] = c_mass
                 else:
                     dqe[column] = c_place
-                    dve[column] = c_rate
-                    dae[column] = c_mass
+                dve[column] = c_rate
+                dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0
                 for i in range(N_POSITIONS):
@@ -720,17 +710,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t91)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + X_x*dwp_y*fit - X_y*dwp_x*fit +
                         alpha*dF_z + dOm0_x*px_y - dOm0_y*px_x + df_z + dpxd_z)
-                # differential: force on the nodes
+                # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t92 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t93 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t94 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t92 + R0_xy*t93 + R0_xz*t94
-                    dg[i3 + 1] = R0_yx*t92 + R0_yy*t93 + R0_yz*t94
-                    dg[i3 + 2] = R0_zx*t92 + R0_zy*t93 + R0_zz*t94
+                    dg[i3] = dh_x + dth0_y*h_z - dth0_z*h_y
+                    dg[i3 + 1] = dh_y - dth0_x*h_z + dth0_z*h_x
+                    dg[i3 + 2] = dh_z + dth0_x*h_y - dth0_y*h_x
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -745,36 +732,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t95 = dm_y*psi_z
-                    t96 = dpsi_z*m_y
-                    t97 = -m_x*psi_y + m_y*psi_x
-                    t98 = e0*t97
-                    t99 = m_x*psi_z - m_z*psi_x
-                    t100 = dpsi_z*e0
-                    t101 = dm_x*psi_y
-                    t102 = dpsi_y*m_x
-                    t103 = e0*(dm_y*psi_x + dpsi_x*m_y - t101 - t102)
-                    t104 = dm_x*psi_z
-                    t105 = dpsi_z*m_x
-                    t106 = dm_z*psi_x
-                    t107 = dpsi_x*m_z
-                    t108 = t104 + t105 - t106 - t107
-                    t109 = e0*psi_z
-                    t110 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t111 = t110*t97
-                    t112 = psi_z*t110
-                    t113 = -m_y*psi_z + m_z*psi_y
-                    t114 = dm_z*psi_y + dpsi_y*m_z - t95 - t96
+                    t92 = dm_y*psi_z
+                    t93 = dpsi_z*m_y
+                    t94 = -m_x*psi_y + m_y*psi_x
+                    t95 = e0*t94
+                    t96 = m_x*psi_z - m_z*psi_x
+                    t97 = dpsi_z*e0
+                    t98 = dm_x*psi_y
+                    t99 = dpsi_y*m_x
+                    t100 = e0*(dm_y*psi_x + dpsi_x*m_y - t98 - t99)
+                    t101 = dm_x*psi_z
+                    t102 = dpsi_z*m_x
+                    t103 = dm_z*psi_x
+                    t104 = dpsi_x*m_z
+                    t105 = t101 + t102 - t103 - t104
+                    t106 = e0*psi_z
+                    t107 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t108 = t107*t94
+                    t109 = psi_z*t107
+                    t110 = -m_y*psi_z + m_z*psi_y
+                    t111 = dm_z*psi_y + dpsi_y*m_z - t92 - t93
                     dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t98 + dpwd_x + psi_y*t103 +
-                        psi_y*t111 - t100*t99 - t108*t109 - t112*t99 + (0.5)*t95 + (0.5)*t96)
+                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t95 + dpwd_x + psi_y*t100 +
+                        psi_y*t108 - t105*t106 - t109*t96 + (0.5)*t92 + (0.5)*t93 - t96*t97)
                     dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x + dm_y -
-                        dpsi_x*t98 + dpwd_y - psi_x*t103 - psi_x*t111 + t100*t113 - 0.5*t104 -
-                        0.5*t105 + (0.5)*t106 + (0.5)*t107 + t109*t114 + t112*t113)
+                        dpsi_x*t95 + dpwd_y - psi_x*t100 - psi_x*t108 - 0.5*t101 - 0.5*t102 +
+                        (0.5)*t103 + (0.5)*t104 + t106*t111 + t109*t110 + t110*t97)
                     dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x -
-                        0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t99 - 0.5*dpsi_x*m_y - dpsi_y*e0*t113 +
-                        dpwd_z + e0*psi_x*t108 - e0*psi_y*t114 + psi_x*t110*t99 - psi_y*t110*t113
-                        + (0.5)*t101 + (0.5)*t102)
+                        0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t96 - 0.5*dpsi_x*m_y - dpsi_y*e0*t110 +
+                        dpwd_z + e0*psi_x*t105 - e0*psi_y*t111 + psi_x*t107*t96 - psi_y*t107*t110
+                        + (0.5)*t98 + (0.5)*t99)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -26,7 +26,7 @@ N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 29
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (590, 3),
-              "column": (248, 3)}
+              "column": (236, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_columns_times": "bb899bc4d9a4",
@@ -302,18 +302,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if column < ROTATIONS:      # a position, turned into frame axes
-                    i = column//2
-                    k = column - 2*i
-                    for r in range(2):
-                        value = frame[3*k + r]
-                        dqe[2*i + r] = c_place*value
-                        dve[2*i + r] = c_rate*value
-                        dae[2*i + r] = c_mass*value
-                else:
-                    dqe[column] = c_place
-                    dve[column] = c_rate
-                    dae[column] = c_mass
+                dqe[column] = c_place
+                dve[column] = c_rate
+                dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = 0.0
                 for i in range(N_POSITIONS):
@@ -490,15 +481,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     t7 = dwp_z*fit
                     dh[i3] = -Om0_z*dpx_y + X_y*t7 + alpha*dF_x - dOm0_z*px_y + df_x + dpxd_x
                     dh[i3 + 1] = Om0_z*dpx_x - X_x*t7 + alpha*dF_y + dOm0_z*px_x + df_y + dpxd_y
-                # differential: force on the nodes
+                # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 2*i
                     h_x, h_y = h[i3], h[i3 + 1]
                     dh_x, dh_y = dh[i3], dh[i3 + 1]
-                    t8 = dh_x - dth0_z*h_y
-                    t9 = dh_y + dth0_z*h_x
-                    dg[i3] = R0_cos*t8 - R0_sin*t9
-                    dg[i3 + 1] = R0_cos*t9 + R0_sin*t8
+                    dg[i3] = dh_x - dth0_z*h_y
+                    dg[i3 + 1] = dh_y + dth0_z*h_x
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j

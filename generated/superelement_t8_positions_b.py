@@ -27,7 +27,7 @@ N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 29
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
 OPERATIONS = {"residual": (2196, 3),
-              "column": (2417, 3)}
+              "column": (2297, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_columns_times": "bb899bc4d9a4",
@@ -350,25 +350,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if column < ROTATIONS:      # a position, turned into frame axes
-                    i = column//3
-                    k = column - 3*i
-                    for r in range(3):
-                        value = frame[3*k + r]
-                        dqe[3*i + r] = c_place*value
-                        dve[3*i + r] = c_rate*value
-                        dae[3*i + r] = c_mass*value
-                elif column < MODES:        # a rotation: its unknown is the step's increment, varied through T
+                if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
                         dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
-                    dve[column] = c_rate
-                    dae[column] = c_mass
                 else:
                     dqe[column] = c_place
-                    dve[column] = c_rate
-                    dae[column] = c_mass
+                dve[column] = c_rate
+                dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0
                 for i in range(N_POSITIONS):
@@ -579,17 +569,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t52)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + X_x*dwp_y*fit - X_y*dwp_x*fit +
                         alpha*dF_z + dOm0_x*px_y - dOm0_y*px_x + df_z + dpxd_z)
-                # differential: force on the nodes
+                # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    t53 = dh_x + dth0_y*h_z - dth0_z*h_y
-                    t54 = dh_y - dth0_x*h_z + dth0_z*h_x
-                    t55 = dh_z + dth0_x*h_y - dth0_y*h_x
-                    dg[i3] = R0_xx*t53 + R0_xy*t54 + R0_xz*t55
-                    dg[i3 + 1] = R0_yx*t53 + R0_yy*t54 + R0_yz*t55
-                    dg[i3 + 2] = R0_zx*t53 + R0_zy*t54 + R0_zz*t55
+                    dg[i3] = dh_x + dth0_y*h_z - dth0_z*h_y
+                    dg[i3 + 1] = dh_y - dth0_x*h_z + dth0_z*h_x
+                    dg[i3 + 2] = dh_z + dth0_x*h_y - dth0_y*h_x
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -83,13 +83,23 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
     g, J, energy = np.zeros(n), np.zeros(n * n), np.zeros(ENERGIES)
     work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
     T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
+    frame = case.frames.copy()
     status = _call(module.kernel.address, task, len(case.index), n, case.index, case.constants,
-                   case.q, case.R, case.v, case.a, case.reference, case.frames.copy(), T,
+                   case.q, case.R, case.v, case.a, case.reference, frame, T,
                    np.array([1.7]), np.array([*coefficients, *case.field], dtype=float), g, J, work,
                    energy)
     if status:
         raise InputError(f"kernel {module.__name__} refuses the check's state (status {status})")
-    return g, J.reshape(n, n), energy
+    return g, _in_global_axes(J.reshape(n, n), frame, module), energy
+
+
+def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:
+    """Matrix with positions in global axes: superelements leave them in those of the frame."""
+    turn, d = np.eye(len(J)), 2 if "planar" in getattr(module, "LAYOUT", "") else 3
+    R0 = frame.reshape(3, 3)[:d, :d]
+    for i in range(0, getattr(module, "ROTATIONS", 0), d):
+        turn[i:i + d, i:i + d] = R0
+    return turn @ J @ turn.T
 
 
 def moved(case: Case, direction: NDArray, size: float) -> Case:
