@@ -12,7 +12,7 @@ from .kernels import element_kernel
 from .model import Model, Superelement, Triplet
 from .reduction import ReducedBody
 
-DENSE_LIMIT = 150       # above this many unknowns a sparse factorization is faster
+DENSE_LIMIT = 40        # above this many unknowns elimination on a sparse pattern is faster
 
 
 class System(NamedTuple):
@@ -27,18 +27,22 @@ class System(NamedTuple):
     at_index: NDArray
     at_g: NDArray
     at_J: NDArray
+    first_joint: NDArray    # (1,) first batch of joints
     first_load: NDArray     # (1,) first batch of loads
     index: NDArray
     constants: NDArray
     g_unknown: NDArray      # unknown of every entry of the element forces
     J_entry: NDArray        # entry of the matrix of every entry of the element matrices
-    rows: NDArray           # row and column of every entry of the matrix (n x n or sparse, CSC)
-    columns: NDArray
+    rows: NDArray           # row and column of every entry of the matrix, column by column: n x n,
+    columns: NDArray        # or with the fill of an elimination in the order of the unknowns
+    starts: NDArray         # (n + 1,) first entry of each column
     diagonal: NDArray       # entry on the diagonal of each unknown
     is_multiplier: NDArray  # 1.0 for multipliers, by unknown, fixed coordinates included
     rotation_at: NDArray    # first unknown of each rotation
     turned: NDArray         # (k, 2) first unknown and frame of free positions solved in body axes
-    turned_blocks: NDArray  # (k, 4) the same in element matrices: start, width, row, frame
+    turned_blocks: NDArray  # (k, 5) positions whose rows and columns in an element matrix are in
+                            # other axes: start, width, row, frame of the unknown, of the matrix
+    linked: NDArray         # (1,) 1 where bodies that turn against each other are coupled
     dimension: NDArray      # (1,) coordinates of a position
     magnitude: NDArray      # size of each coordinate, for the rounding floor
     load_at: NDArray        # (loads + 1,) where each table starts
@@ -60,45 +64,51 @@ class Numbering(NamedTuple):
 
 
 def number(model: Model) -> Numbering:
-    """Number the unknowns body by body, each joint's multipliers as soon as its bodies are.
+    """Number the unknowns body by body; what bodies share waits for the last one that has it.
 
-    A sparse factorization then keeps its fill near the diagonal.
+    Multipliers follow the unknowns they act on. So an elimination in this order meets no zero
+    pivot, and keeps its fill close to the diagonal.
+
+    Raises
+    ------
+    InputError
+        A triplet that belongs to no superelement and is not fixed.
     """
-    seen, names, at, modes, multipliers = set(), [], {}, {}, {}
+    names, at, modes, multipliers = [], {}, {}, {}
     fixed: list[Triplet] = []
+    last = {id(t): body.name for body in model.bodies.values()
+            for t in (*body.positions, *body.rotations)}
 
     def place(triplet: Triplet) -> None:
-        if id(triplet) in seen:
-            return
-        seen.add(id(triplet))
-        if triplet.fixed:
+        if triplet.fixed and triplet not in fixed:
             fixed.append(triplet)
+        if triplet.fixed or id(triplet) in at:
             return
         at[id(triplet)] = len(names)
         names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
 
     def place_joints() -> None:
         for k, joint in enumerate(model.joints):
-            if k not in multipliers and all(id(t) in seen for t in joint.triplets):
+            if k not in multipliers and all(t.fixed or id(t) in at for t in joint.triplets):
                 multipliers[k] = len(names)
                 names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
 
-    for node in model.nodes.values():       # fixed nodes without a body stand for the ground
-        for triplet in (node.position, node.rotation):
-            if triplet is not None and triplet.fixed:
-                place(triplet)
     for body in model.bodies.values():
-        for triplet in (*body.positions, *body.rotations):
-            place(triplet)
         modes[body.name] = len(names)
         names.extend(f"mode {k} of {body.name}" for k in range(body.body.modes))
-        place_joints()
-    used = set(seen)
+        for triplets in (body.rotations, body.positions):
+            for triplet in triplets:
+                if last[id(triplet)] == body.name:
+                    place(triplet)
+            place_joints()
     for node in model.nodes.values():
         for triplet in (node.position, node.rotation):
-            if triplet is not None and not triplet.fixed and id(triplet) not in used:
+            if triplet is None or id(triplet) in at:
+                continue
+            if not triplet.fixed:
                 raise InputError(f"{triplet.name} belongs to no superelement, so nothing holds "
                                  "it: attach a body or fix it")
+            place(triplet)      # fixed nodes without a body stand for the ground
     free = len(names)
     for triplet in fixed:
         at[id(triplet)] = len(names)
@@ -133,11 +143,13 @@ def build(model: Model) -> tuple[System, Numbering]:
     numbering = number(model)
     constants: list[NDArray] = []
     batches = _body_batches(model, numbering, constants)
+    first_joint = len(batches)
     batches += _joint_batches(model, numbering, constants)
     first_load = len(batches)
     batches += _load_batches(model, numbering, constants)
     dense = numbering.free <= DENSE_LIMIT
-    entries, rows, columns, diagonal = _pattern(batches, numbering.free, dense)
+    pattern = _dense_pattern if dense else _sparse_pattern
+    entries, rows, columns, diagonal = pattern(*_places(batches), numbering.free)
     tables = _load_tables(model)
     widths = [b.width for b in batches]
     sizes = [len(b.rows) for b in batches]
@@ -152,12 +164,14 @@ def build(model: Model) -> tuple[System, Numbering]:
         at_index=_starts([len(b.rows) * len(b.rows[0]) for b in batches]),
         at_g=_starts([s * w for s, w in zip(sizes, widths, strict=True)]),
         at_J=_starts([s * w * w for s, w in zip(sizes, widths, strict=True)]),
-        first_load=integers([first_load]),
+        first_joint=integers([first_joint]), first_load=integers([first_load]),
         index=integers([i for b in batches for row in b.rows for i in row]),
         constants=np.concatenate(constants),
         g_unknown=integers([u for b in batches for row in b.unknowns for u in row]),
-        J_entry=entries, rows=rows, columns=columns, diagonal=diagonal, is_multiplier=multiplier,
-        rotation_at=_rotation_starts(model, numbering), **_body_axes(model, numbering, batches),
+        J_entry=entries, rows=rows, columns=columns, diagonal=diagonal,
+        starts=np.searchsorted(columns, np.arange(numbering.free + 1)), is_multiplier=multiplier,
+        rotation_at=_rotation_starts(model, numbering),
+        **_body_axes(model, numbering, batches, first_joint, first_load),
         dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering), **tables)
     return system, numbering
 
@@ -249,25 +263,49 @@ def _load_batches(model: Model, numbering: Numbering, constants: list) -> list[B
     return list(batches.values())
 
 
-def _pattern(batches: list[Batch], n: int, dense: bool) -> tuple[NDArray, ...]:
-    """Matrix entries: of each element entry, and row and column of each; fixed ones are dropped."""
+def _places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
+    """Row and column of every entry of the element matrices."""
     rows, columns = [], []
     for batch in batches:
         unknowns = np.array(batch.unknowns, dtype=np.int64)
         shape = (len(unknowns), batch.width, batch.width)
         rows.append(np.broadcast_to(unknowns[:, :, None], shape).ravel())
         columns.append(np.broadcast_to(unknowns[:, None, :], shape).ravel())
-    row, column = np.concatenate(rows), np.concatenate(columns)
+    return np.concatenate(rows), np.concatenate(columns)
+
+
+def _dense_pattern(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, ...]:
+    """Matrix entry of each element entry, row and column of each; fixed ones go behind the end."""
+    entries = np.where((row < n) & (column < n), column * n + row, n * n)
+    all_columns, all_rows = np.divmod(np.arange(n * n), n)
+    return entries, all_rows, all_columns, np.arange(n) * (n + 1)
+
+
+def _sparse_pattern(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, ...]:
+    """The same on the pattern that elimination without exchanges fills."""
     free = (row < n) & (column < n)
-    if dense:
-        entries = np.where(free, row * n + column, n * n)
-        all_rows, all_columns = np.divmod(np.arange(n * n), n)
-        return entries, all_rows, all_columns, np.arange(n) * (n + 1)
-    everything = np.concatenate([column[free] * n + row[free], np.arange(n) * (n + 1)])
-    unique = np.unique(everything)          # column by column: CSC order
-    entries = np.full(len(row), len(unique))
-    entries[free] = np.searchsorted(unique, column[free] * n + row[free])
-    return entries, unique % n, unique // n, np.searchsorted(unique, np.arange(n) * (n + 1))
+    keys = _filled(np.unique(column[free] * n + row[free]), n)
+    entries = np.full(len(row), len(keys))
+    entries[free] = np.searchsorted(keys, column[free] * n + row[free])
+    return entries, keys % n, keys // n, np.searchsorted(keys, np.arange(n) * (n + 1))
+
+
+def _filled(keys: NDArray, n: int) -> NDArray:
+    """Entries ``column n + row`` of a symmetric pattern and its fill, in order.
+
+    What column j has below the diagonal, its parent (the first of these rows) gets, too.
+    """
+    below: list[set[int]] = [set() for _ in range(n)]
+    for key in keys[keys % n > keys // n]:
+        below[key // n].add(int(key % n))
+    filled = []
+    for j in range(n):
+        rows = np.array(sorted(below[j]), dtype=np.int64)
+        if len(rows):
+            below[rows[0]].update(rows[1:].tolist())
+        filled += [j * n + rows, rows * n + j]
+        below[j] = set()
+    return np.unique(np.concatenate([*filled, np.arange(n) * (n + 1)]))
 
 
 def _rotation_starts(model: Model, numbering: Numbering) -> NDArray:
@@ -277,10 +315,12 @@ def _rotation_starts(model: Model, numbering: Numbering) -> NDArray:
     return starts
 
 
-def _body_axes(model: Model, numbering: Numbering, batches: list[Batch]) -> dict[str, NDArray]:
+def _body_axes(model: Model, numbering: Numbering, batches: list[Batch],
+               bodies: int, first_load: int) -> dict[str, NDArray]:
     """Free positions are solved for in the axes of the first body they belong to.
 
-    There the tangent of a body hardly changes, so one factorization serves many steps.
+    There the tangent of a body hardly changes, so one factorization serves many steps. Matrices of
+    superelements are in the axes of their own frame, those of joints and loads in global ones (-1).
     """
     frame_of: dict[int, int] = {}
     for k, body in enumerate(model.bodies.values()):
@@ -288,14 +328,19 @@ def _body_axes(model: Model, numbering: Numbering, batches: list[Batch]) -> dict
             if not triplet.fixed:
                 frame_of.setdefault(numbering.triplets[id(triplet)], k)
     blocks, start = [], 0
-    for batch in batches:
-        for unknowns in batch.unknowns:
+    for k, batch in enumerate(batches):
+        for row, unknowns in zip(batch.rows, batch.unknowns, strict=True):
+            own = row[1] if k < bodies else -1
             for local, unknown in enumerate(unknowns):
-                if unknown in frame_of:
-                    blocks.append((start, batch.width, local, frame_of[unknown]))
+                if frame_of.get(unknown, own) != own:
+                    blocks.append((start, batch.width, local, frame_of[unknown], own))
             start += batch.width ** 2
-    return {"turned": np.array(list(frame_of.items()), dtype=np.int64).reshape(-1, 2),
-            "turned_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 4)}
+    loads = sum(len(b.rows) * b.width ** 2 for b in batches[first_load:])
+    linked = (any(block[0] < start - loads for block in blocks)
+              or any(len(joint.triplets) > 1 for joint in model.joints))
+    return {"linked": np.array([int(linked)]),
+            "turned": np.array(list(frame_of.items()), dtype=np.int64).reshape(-1, 2),
+            "turned_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
 
 
 def _magnitude(model: Model, numbering: Numbering) -> NDArray:

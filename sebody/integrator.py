@@ -9,7 +9,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from . import loop
-from .abi import ACCELERATION, ENERGIES, TANGENT, padded
+from .abi import ENERGIES, padded
 from .assembly import DENSE_LIMIT, Numbering, System, build, work_size
 from .errors import InputError, SimulationError
 from .loop import Record, Scheme, State
@@ -154,11 +154,11 @@ class Simulation:
         return Result.of(self)
 
     def _factorize(self) -> None:
-        n, entries = self.numbering.free, self.system.rows.size
-        starts = np.searchsorted(self.system.columns, np.arange(n + 1))
-        matrix = csc_matrix((self.state.matrix[:entries], self.system.rows, starts), shape=(n, n))
-        self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01,
-                             options={"SymmetricMode": False})
+        """Factors with exchanges of rows, where elimination in order met a small pivot."""
+        n, scale = self.numbering.free, self.state.scale
+        entries = self.state.matrix[:-1] * scale[self.system.rows] * scale[self.system.columns]
+        matrix = csc_matrix((entries, self.system.rows, self.system.starts), shape=(n, n))
+        self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
 
     def _explain(self) -> str:
         reason = REASONS[int(self.state.control[loop.REASON])]
@@ -197,7 +197,7 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
     clock, control = zeros(loop.CLOCKS), np.zeros(loop.CONTROLS, dtype=np.int64)
     clock[loop.STEP] = clock[loop.CURRENT_STEP] = h
     clock[loop.CONTRACTION] = 0.95
-    control[loop.WANTED] = 1
+    control[loop.WANTED] = loop.RENEWED
     coefficients = zeros(8)
     coefficients[5:5 + model.dimension] = model.gravity_field
     return State(
@@ -205,9 +205,11 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         aux=zeros(total), q_old=q.copy(), R_old=R.copy(), v_old=v.copy(), a_old=zeros(total),
         aux_old=zeros(total), dq=zeros(total), T=R.copy(),
         loads=zeros(max(len(model.loads), 1)), coefficients=coefficients,
-        g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])), residual=zeros(total),
+        g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
+        turned=zeros(int(system.at_J[-1])), residual=zeros(total),
         correction=zeros(padded(total)), matrix=zeros(system.rows.size + 1), scale=zeros(total),
         weight=zeros(total), inverse=zeros((n, padded(n)) if dense else (1, 1)),
+        factors=zeros(1 if dense else system.rows.size), column=zeros(n),
         work=zeros(work_size(model)), energy=zeros(ENERGIES), clock=clock, control=control)
 
 
@@ -217,9 +219,9 @@ def _start(system: System, numbering: Numbering, state: State) -> None:
     loop.set_loads(system, state, 0.0)
     _check_start(system, numbering, state)
     state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
-    _evaluate(system, state, TANGENT)
+    _evaluate(system, state, loop.RENEWED)
     matrix = csc_matrix((state.matrix[:-1], (system.rows, system.columns)), shape=(n, n))
-    _evaluate(system, state, ACCELERATION)
+    _evaluate(system, state, loop.START)
     loop.to_body_axes(system, state.frames, state.residual, False)
     answer = _solve_start(matrix, state.residual[:n].copy(), numbering)
     full = np.zeros(numbering.total)
@@ -233,8 +235,8 @@ def _start(system: System, numbering: Numbering, state: State) -> None:
     state.clock[loop.POWER] = loop.load_power(system, state)
 
 
-def _evaluate(system: System, state: State, task: int) -> None:
-    status = loop.assemble(task, system, state, state.residual)
+def _evaluate(system: System, state: State, level: int) -> None:
+    status = loop.assemble(level, system, state, state.residual)
     if status:
         raise InputError(f"the initial state cannot be evaluated: {REASONS[status]}")
 
@@ -272,7 +274,7 @@ def _check_start(system: System, numbering: Numbering, state: State) -> None:
     if not multipliers.size:
         return
     state.coefficients[:5] = (0.0, 0.0, 0.0, 1.0, 1.0)
-    _evaluate(system, state, TANGENT)
+    _evaluate(system, state, loop.RENEWED)
     gap = state.residual[multipliers]
     n = numbering.free
     matrix = csc_matrix((state.matrix[:-1], (system.rows, system.columns)), shape=(n, n))

@@ -16,6 +16,7 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from .abi import (
+    ACCELERATION,
     ENERGY,
     POWER_OF_LOADS,
     RESIDUAL,
@@ -30,14 +31,18 @@ from .rotations import tangent_operator, turn
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
 BEGIN, ITERATE, FACTORED, SOLVED = range(4)             # where it goes on
+FORCES, TURNED, RENEWED, START = range(4)               # what is assembled, see assemble
 # why a step failed
 NO_REASON, HALF_TURN, NO_FRAME, NOT_FINITE, SLOW = range(5)
 FINEST = 4096           # a grid step is cut into at most this many parts
 MAX_ITERATIONS = 12
 YOUNG = 8               # steps with a new matrix that tell how many iterations are usual
-WORTH = 20.0            # a matrix costs about so many iterations
+WORTH = 20.0            # a new matrix costs about so many iterations,
+TURNED_WORTH = 4.0      # and one of the bodies' old ones
+SMALL_PIVOT = 1e-9      # of the scaled matrix: below it rows are exchanged, by SuperLU
+LONGEST_HABIT = 32      # steps that begin with a new matrix before reuse is tried again
 ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
-REFRESH = 0.3           # contraction slower than this asks for a new matrix
+MOST_MATRICES = 4       # of a step
 
 
 class State(NamedTuple):
@@ -61,13 +66,16 @@ class State(NamedTuple):
     loads: NDArray          # load amplitudes now
     coefficients: NDArray   # (8,) of the matrix, then gravity: see sebody.abi
     g: NDArray              # element forces
-    J: NDArray              # element matrices
+    J: NDArray              # element matrices, of superelements in the axes of their frame
+    turned: NDArray         # the same, positions in the axes they are solved for in
     residual: NDArray       # in body axes
     correction: NDArray
-    matrix: NDArray         # entries, dense (n x n) or CSC, in body axes, scaled
-    scale: NDArray          # of the unknowns: the matrix has a unit diagonal
+    matrix: NDArray         # entries by columns, dense or on the sparse pattern, in body axes
+    scale: NDArray          # of the unknowns: the scaled matrix has a unit diagonal
     weight: NDArray         # its inverse: corrections are measured in it, multipliers included
     inverse: NDArray        # of small systems, by padded columns, scales included
+    factors: NDArray        # of large ones, on the sparse pattern: U and its inverse pivots, L
+    column: NDArray         # scratch of the elimination
     work: NDArray
     energy: NDArray
     clock: NDArray          # see the CLOCK indices
@@ -80,8 +88,8 @@ class State(NamedTuple):
 CLOCKS = 11
 # State.control
 (PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
- RECORDED, AGE) = range(14)
-CONTROLS = 14
+ RECORDED, AGE, PIVOTED, EAGER, EAGER_LEFT) = range(17)
+CONTROLS = 17
 
 
 class Record(NamedTuple):
@@ -157,9 +165,19 @@ def set_loads(system, state, t):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def assemble(task, system, state, residual):
-    """Sum of the element forces in `residual` and, for TANGENT, of the element matrices."""
-    status = run_kernels(task, 0, system.address.size, system, state)
+def assemble(level, system, state, residual):
+    """Sum of the element forces in `residual`, and the matrix.
+
+    `level` is FORCES for these alone, TURNED for a matrix of the bodies' old ones in their new
+    places and of new ones of joints and loads, RENEWED for new ones of all, START for forces and
+    accelerations of the constraints.
+    """
+    bodies, batches = system.first_joint[0], system.address.size
+    status = run_kernels(TANGENT if level == RENEWED else RESIDUAL, 0, bodies, system, state)
+    if status != 0:
+        return status
+    task = RESIDUAL if level == FORCES else ACCELERATION if level == START else TANGENT
+    status = run_kernels(task, bodies, batches, system, state)
     if status != 0:
         return status
     for i in range(residual.size):
@@ -167,30 +185,44 @@ def assemble(task, system, state, residual):
     sums, unknowns = pointer_to(residual), pointer_to(system.g_unknown)
     for k in range(system.g_unknown.size):
         sums[unknowns[k]] += state.g[k]
-    if task == TANGENT:
-        for k in range(system.turned_blocks.shape[0]):
-            _turn_block(system.turned_blocks[k], system.dimension[0], state.J, state.frames)
-        state.matrix[:] = 0.0
-        matrix, entries = pointer_to(state.matrix), pointer_to(system.J_entry)
-        for k in range(system.J_entry.size):
-            matrix[entries[k]] += state.J[k]
+    if level == TURNED or level == RENEWED:
+        sum_matrices(system, state)
     return 0
 
 
 @njit(cache=True, error_model="numpy")
+def sum_matrices(system, state):
+    """The matrix from the element matrices, which stay as they are."""
+    for k in range(state.J.size):
+        state.turned[k] = state.J[k]
+    for k in range(system.turned_blocks.shape[0]):
+        _turn_block(system.turned_blocks[k], system.dimension[0], state.turned, state.frames)
+    for k in range(state.matrix.size):
+        state.matrix[k] = 0.0
+    matrix, entries = pointer_to(state.matrix), pointer_to(system.J_entry)
+    for k in range(system.J_entry.size):
+        matrix[entries[k]] += state.turned[k]
+
+
+@njit(cache=True, error_model="numpy")
 def _turn_block(block, dimension, J, frames):
-    """Rows and columns of a position in an element matrix, from global to body axes."""
-    start, width, row, frame = block[0], block[1], block[2], 9 * block[3]
+    """Rows and columns of a position in an element matrix, to the axes it is solved for in."""
+    start, width, row = block[0], block[1], block[2]
+    to, own = at(pointer_to(frames), 9 * block[3]), at(pointer_to(frames), 9 * block[4])
+    turn = np.empty(9)
+    for i in range(3):
+        for k in range(3):
+            turn[3 * i + k] = to[3 * k + i] if block[4] < 0 else (
+                to[i] * own[k] + to[3 + i] * own[3 + k] + to[6 + i] * own[6 + k])
     for across in range(2):
         first, next_line, step = ((start + row, width, 1) if across == 0 else
                                   (start + row * width, 1, width))
         for i in range(width):
-            at = first + i * next_line
-            x, y = J[at], J[at + step]
-            z = J[at + 2 * step] if dimension == 3 else 0.0
+            p = at(pointer_to(J), first + i * next_line)
+            x, y = p[0], p[step]
+            z = p[2 * step] if dimension == 3 else 0.0
             for k in range(dimension):
-                J[at + k * step] = (frames[frame + k] * x + frames[frame + 3 + k] * y
-                                    + frames[frame + 6 + k] * z)
+                p[k * step] = turn[3 * k] * x + turn[3 * k + 1] * y + turn[3 * k + 2] * z
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -218,7 +250,7 @@ def to_body_axes(system, frames, vector, back):
 
 @njit(cache=True, error_model="numpy")
 def equilibrate(system, state):
-    """Scale the matrix to a unit diagonal and unit constraint rows: free of units and of h."""
+    """Scales that give the matrix a unit diagonal and unit constraint rows: free of units and h."""
     n = system.diagonal.size
     for i in range(n):
         diagonal = abs(state.matrix[system.diagonal[i]])
@@ -239,28 +271,80 @@ def equilibrate(system, state):
         size = system.magnitude[i] * state.weight[i]
         floor += size * size
     state.clock[FLOOR] = 8.0 * 2.2e-16 * np.sqrt(floor)     # what rounding of positions leaves
-    for k in range(system.rows.size):
-        state.matrix[k] *= state.scale[system.rows[k]] * state.scale[system.columns[k]]
 
 
 @njit(cache=True, error_model="numpy")
-def invert_dense(state, n):
+def invert_dense(system, state, n):
     """Inverse of a small system, by columns, scales included; False if it is singular."""
-    dense = state.matrix[:n * n].reshape((n, n))
+    dense = np.empty((n, n))
     size = inverse_size = 0.0
-    for i in range(n * n):
-        size += abs(state.matrix[i])
+    for j in range(n):
+        for i in range(n):
+            dense[j, i] = state.scale[i] * state.matrix[j * n + i] * state.scale[j]
+            size += abs(dense[j, i])
     if not np.isfinite(size):
         return False
     try:
         inverse = np.linalg.inv(dense)
     except Exception:  # noqa: BLE001  (LAPACK met a zero pivot; compiled code has no other kind)
         return False
-    for i in range(n):
-        for j in range(n):
+    for j in range(n):
+        for i in range(n):
             inverse_size += abs(inverse[j, i])
-            state.inverse[i, j] = state.scale[j] * inverse[j, i] * state.scale[i]
+            state.inverse[j, i] = state.scale[i] * inverse[j, i] * state.scale[j]
     return size * inverse_size < 1e16 * n
+
+
+@njit(cache=True, error_model="numpy")
+def eliminate(system, state):
+    """Factors of the matrix in the order of the unknowns; False at a small pivot.
+
+    Numbers follow what they act on, so pivots are safe as a rule and none is exchanged; the
+    pattern is known beforehand, which leaves the arithmetic alone.
+    """
+    starts, rows, diagonal = (pointer_to(system.starts), pointer_to(system.rows),
+                              pointer_to(system.diagonal))
+    matrix, factors, column = (pointer_to(state.matrix), pointer_to(state.factors),
+                               pointer_to(state.column))
+    for j in range(system.diagonal.size):
+        first, middle, end = starts[j], diagonal[j], starts[j + 1]
+        for p in range(first, end):
+            column[rows[p]] = matrix[p]
+        for p in range(first, middle):
+            k = rows[p]
+            u = column[k]
+            factors[p] = u
+            for t in range(diagonal[k] + 1, starts[k + 1]):
+                column[rows[t]] -= factors[t] * u
+        pivot = column[j]
+        if not abs(pivot) * state.scale[j] * state.scale[j] > SMALL_PIVOT:
+            return False
+        inverse = 1.0 / pivot
+        factors[middle] = inverse
+        for p in range(middle + 1, end):
+            factors[p] = column[rows[p]] * inverse
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def substitute(system, state):
+    """Correction from the residual and the factors."""
+    n = system.diagonal.size
+    starts, rows, diagonal = (pointer_to(system.starts), pointer_to(system.rows),
+                              pointer_to(system.diagonal))
+    factors, x = pointer_to(state.factors), pointer_to(state.correction)
+    for i in range(n):
+        x[i] = state.residual[i]
+    for j in range(n):
+        y = x[j]
+        for p in range(diagonal[j] + 1, starts[j + 1]):
+            x[rows[p]] -= factors[p] * y
+    for i in range(n):
+        j = n - 1 - i
+        y = x[j] * factors[diagonal[j]]
+        x[j] = y
+        for p in range(starts[j], diagonal[j]):
+            x[rows[p]] -= factors[p] * y
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -355,10 +439,19 @@ def apply_correction(system, state, scheme):
     rate = min(max(rate, 1e-3), 0.95)
     if rate / (1.0 - rate) * norm <= target:
         return 1
-    if iteration + 1 >= MAX_ITERATIONS or (iteration > 2 and state.control[FRESH] == 1
-                                           and rate > 0.9):
+    left = MAX_ITERATIONS - iteration - 1
+    if left <= 0 or (iteration > 2 and state.control[FRESH] > 2 and rate > 0.9):
         return -2
-    return -1 if iteration > 0 and rate > REFRESH and state.control[FRESH] == 0 else 0
+    if iteration == 0 or state.control[FRESH] >= MOST_MATRICES:
+        return 0
+    price = WORTH if next_matrix(system, state) == RENEWED else TURNED_WORTH
+    return -1 if np.log(target / norm) / np.log(rate) > min(price, left) else 0
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def next_matrix(system, state):
+    """First the bodies' old matrices in their new places, where that helps, then new ones."""
+    return TURNED if system.linked[0] == 1 and state.control[FRESH] == 0 else RENEWED
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -373,6 +466,8 @@ def accept(system, state, record):
     clock[POWER] = load_power(system, state)
     clock[WORK] += 0.5 * h * clock[POWER]
     watch_age(state)
+    if control[FRESH] == 0:
+        control[EAGER] = 0
     control[STEPS] += 1
     control[UNIT] += FINEST >> control[LEVEL]
     if control[UNIT] >= FINEST:             # back on the output grid
@@ -399,7 +494,7 @@ def watch_age(state):
     else:
         clock[EXCESS] = max(clock[EXCESS] + iterations - clock[USUAL], 0.0)
         if clock[EXCESS] > WORTH:
-            control[WANTED] = 1
+            control[WANTED] = RENEWED
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -459,7 +554,7 @@ def cut_step(state, reason):
     if (1 << state.control[LEVEL]) > FINEST:
         return False
     state.clock[CURRENT_STEP] = state.clock[STEP] / (1 << state.control[LEVEL])
-    state.control[WANTED] = 1
+    state.control[WANTED] = RENEWED
     return True
 
 
@@ -486,42 +581,56 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             begin_step(system, state, scheme)
             control[FRESH] = 0
             if clock[FACTOR_STEP] != clock[CURRENT_STEP]:
-                control[WANTED] = 1
+                control[WANTED] = RENEWED
+            if control[WANTED] == FORCES and control[EAGER_LEFT] > 0:
+                control[EAGER_LEFT] -= 1
+                control[WANTED] = TURNED
             control[PHASE] = ITERATE
         if control[PHASE] == ITERATE:
-            task = RESIDUAL
-            if control[WANTED] == 1:
-                task = TANGENT
+            level = control[WANTED]
+            if level == RENEWED:
                 set_tangent_operators(system, state)
-            reason = assemble(task, system, state, state.residual)
+            reason = assemble(level, system, state, state.residual)
             if reason != NO_REASON:
                 continue
             to_body_axes(system, state.frames, state.residual, False)
             control[PHASE] = FACTORED
-            if control[WANTED] == 1:
-                equilibrate(system, state)
-                control[WANTED], control[FRESH] = 0, 1
+            if level != FORCES:
+                if level == RENEWED:
+                    equilibrate(system, state)
+                    control[AGE], clock[USUAL], clock[EXCESS] = 0, 0.0, 0.0
+                    clock[FACTOR_STEP] = clock[CURRENT_STEP]
+                control[WANTED] = FORCES
+                control[FRESH] += 1
                 control[MATRICES] += 1
-                control[AGE], clock[USUAL], clock[EXCESS] = 0, 0.0, 0.0
-                clock[FACTOR_STEP] = clock[CURRENT_STEP]
-                if not dense:
-                    return FACTOR
-                if not invert_dense(state, n):
-                    reason = np.int64(NOT_FINITE)
-                    continue
+                if dense:
+                    if not invert_dense(system, state, n):
+                        reason = np.int64(NOT_FINITE)
+                        continue
+                else:
+                    control[PIVOTED] = 0
+                    if not eliminate(system, state):
+                        control[PIVOTED] = 1
+                        return FACTOR
         if control[PHASE] == FACTORED:
             control[PHASE] = SOLVED
-            if not dense:
+            if dense:
+                columns_times(pointer_to(state.inverse), pointer_to(state.residual),
+                              pointer_to(state.correction), n, n)
+            elif control[PIVOTED] == 0:
+                substitute(system, state)
+            else:
                 return SOLVE
-            columns_times(pointer_to(state.inverse), pointer_to(state.residual),
-                          pointer_to(state.correction), n, n)
         verdict = apply_correction(system, state, scheme)
         control[PHASE] = ITERATE
         if verdict == 1:
             accept(system, state, record)
             control[PHASE] = BEGIN
         elif verdict == -1:
-            control[WANTED] = 1
+            control[WANTED] = next_matrix(system, state)
+            if control[WANTED] == TURNED:
+                control[EAGER] = min(2 * control[EAGER] + 1, LONGEST_HABIT)
+                control[EAGER_LEFT] = control[EAGER]
         elif verdict == -2:
             if control[FRESH] == 0 and np.isfinite(clock[LAST_NORM]):
                 # the old matrix may be to blame: the same step again with a new one

@@ -29,8 +29,8 @@ class Result:
 
     Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
     angular_velocity (n, 3), all in global axes; in a plane (n, 2) and (n,). Of the model:
-    energy.kinetic, energy.strain, energy.potential, energy.external_work (n,), momentum and angular_momentum
-    about the origin (n, 3), `<superelement>.modes` (n, m).
+    energy.kinetic, energy.strain, energy.potential, energy.external_work (n,), momentum and
+    angular_momentum about the origin (n, 3), `<superelement>.modes` (n, m).
     """
 
     model: Model
@@ -149,8 +149,7 @@ class Result:
                 if triplet is not None and id(triplet) in self.numbering.triplets:
                     out[f"{name}.{quantity}"] = self[f"{name}.{quantity}"]
         for name in ("energy.kinetic", "energy.strain", "energy.potential",
-                     "energy.external_work", "momentum",
-                     "angular_momentum"):
+                     "energy.external_work", "momentum", "angular_momentum"):
             out[name] = self[name]
         return out
 
