@@ -36,8 +36,8 @@ FORCES, TURNED, RENEWED, START = range(4)               # what is assembled, see
 NO_REASON, HALF_TURN, NO_FRAME, NOT_FINITE, SLOW = range(5)
 FINEST = 4096           # a grid step is cut into at most this many parts
 MAX_ITERATIONS = 12
-YOUNG = 8               # steps with a new matrix that tell how many iterations are usual
-WORTH = 20.0            # a new matrix costs about so many iterations,
+YOUNG = 3               # steps with new matrices that tell how fast the iteration can be
+WORTH = 15.0            # new matrices cost about so many iterations,
 TURNED_WORTH = 4.0      # and one of the bodies' old ones
 SMALL_PIVOT = 1e-9      # of the scaled matrix: below it rows are exchanged, by SuperLU
 LONGEST_HABIT = 32      # steps that begin with a new matrix before reuse is tried again
@@ -67,7 +67,7 @@ class State(NamedTuple):
     coefficients: NDArray   # (8,) of the matrix, then gravity: see sebody.abi
     g: NDArray              # element forces
     J: NDArray              # element matrices, of superelements in the axes of their frame
-    turned: NDArray         # the same, positions in the axes they are solved for in
+    turned: NDArray         # one of them, positions in the axes they are solved for in
     residual: NDArray       # in body axes
     correction: NDArray
     matrix: NDArray         # entries by columns, dense or on the sparse pattern, in body axes
@@ -83,9 +83,9 @@ class State(NamedTuple):
 
 
 # State.clock
-(TIME, STEP, CURRENT_STEP, WORK, POWER, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, USUAL,
- EXCESS) = range(11)
-CLOCKS = 11
+(TIME, STEP, CURRENT_STEP, WORK, POWER, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, SPAN,
+ YOUNG_RATE, EXCESS) = range(12)
+CLOCKS = 12
 # State.control
 (PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
  RECORDED, AGE, PIVOTED, EAGER, EAGER_LEFT) = range(17)
@@ -193,21 +193,28 @@ def assemble(level, system, state, residual):
 @njit(cache=True, error_model="numpy")
 def sum_matrices(system, state):
     """The matrix from the element matrices, which stay as they are."""
-    for k in range(state.J.size):
-        state.turned[k] = state.J[k]
-    for k in range(system.turned_blocks.shape[0]):
-        _turn_block(system.turned_blocks[k], system.dimension[0], state.turned, state.frames)
     for k in range(state.matrix.size):
         state.matrix[k] = 0.0
-    matrix, entries = pointer_to(state.matrix), pointer_to(system.J_entry)
-    for k in range(system.J_entry.size):
-        matrix[entries[k]] += state.turned[k]
+    matrix, J = pointer_to(state.matrix), pointer_to(state.turned)
+    block, blocks = 0, system.turned_blocks.shape[0]
+    for b in range(system.address.size):
+        width = system.width[b]
+        for element in range(system.count[b]):
+            start = system.at_J[b] + element * width * width
+            own, entries = at(pointer_to(state.J), start), at(pointer_to(system.J_entry), start)
+            for k in range(width * width):
+                J[k] = own[k]
+            while block < blocks and system.turned_blocks[block, 0] == start:
+                _turn_block(system.turned_blocks[block], system.dimension[0], J, state.frames)
+                block += 1
+            for k in range(width * width):
+                matrix[entries[k]] += J[k]
 
 
 @njit(cache=True, error_model="numpy")
 def _turn_block(block, dimension, J, frames):
     """Rows and columns of a position in an element matrix, to the axes it is solved for in."""
-    start, width, row = block[0], block[1], block[2]
+    width, row = block[1], block[2]
     to, own = at(pointer_to(frames), 9 * block[3]), at(pointer_to(frames), 9 * block[4])
     turn = np.empty(9)
     for i in range(3):
@@ -215,10 +222,9 @@ def _turn_block(block, dimension, J, frames):
             turn[3 * i + k] = to[3 * k + i] if block[4] < 0 else (
                 to[i] * own[k] + to[3 + i] * own[3 + k] + to[6 + i] * own[6 + k])
     for across in range(2):
-        first, next_line, step = ((start + row, width, 1) if across == 0 else
-                                  (start + row * width, 1, width))
+        first, next_line, step = (row, width, 1) if across == 0 else (row * width, 1, width)
         for i in range(width):
-            p = at(pointer_to(J), first + i * next_line)
+            p = at(J, first + i * next_line)
             x, y = p[0], p[step]
             z = p[2 * step] if dimension == 3 else 0.0
             for k in range(dimension):
@@ -430,6 +436,8 @@ def apply_correction(system, state, scheme):
     iteration, last = state.control[ITERATION], state.clock[LAST_NORM]
     rate = state.clock[CONTRACTION]
     target = scheme.tolerance * size + state.clock[FLOOR]
+    if iteration == 0:
+        state.clock[SPAN] = np.log(norm / target)
     if iteration > 0 and last > 0.0:
         rate = norm / last
         state.clock[CONTRACTION] = rate
@@ -485,16 +493,21 @@ def accept(system, state, record):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def watch_age(state):
-    """Ask for a new matrix once the old one has cost as many extra iterations as a new one does."""
+    """Ask for new matrices once the old ones have cost as many extra iterations as these would.
+
+    Extra is what exceeds the iterations that the contraction of their youth would have needed.
+    """
     clock, control = state.clock, state.control
-    iterations = float(control[ITERATION])
     control[AGE] += 1
+    if control[ITERATION] < 2:
+        return
     if control[AGE] <= YOUNG:
-        clock[USUAL] += iterations / YOUNG
-    else:
-        clock[EXCESS] = max(clock[EXCESS] + iterations - clock[USUAL], 0.0)
-        if clock[EXCESS] > WORTH:
-            control[WANTED] = RENEWED
+        clock[YOUNG_RATE] = min(clock[YOUNG_RATE], max(clock[CONTRACTION], 1e-3))
+        return
+    needed = 1.0 + max(clock[SPAN], 0.0) / -np.log(clock[YOUNG_RATE])
+    clock[EXCESS] += max(control[ITERATION] - np.ceil(needed), 0.0)
+    if clock[EXCESS] > WORTH:
+        control[WANTED] = RENEWED
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -598,7 +611,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             if level != FORCES:
                 if level == RENEWED:
                     equilibrate(system, state)
-                    control[AGE], clock[USUAL], clock[EXCESS] = 0, 0.0, 0.0
+                    control[AGE], clock[YOUNG_RATE], clock[EXCESS] = 0, 0.5, 0.0
                     clock[FACTOR_STEP] = clock[CURRENT_STEP]
                 control[WANTED] = FORCES
                 control[FRESH] += 1
