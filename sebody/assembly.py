@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .abi import padded
+from . import elimination
+from .abi import LANES, padded
 from .dense import padded_columns
 from .errors import InputError
 from .kernels import element_kernel
@@ -33,11 +34,14 @@ class System(NamedTuple):
     constants: NDArray
     g_unknown: NDArray      # unknown of every entry of the element forces
     J_entry: NDArray        # entry of the matrix of every entry of the element matrices
-    rows: NDArray           # row and column of every entry of the matrix, column by column: n x n,
-    columns: NDArray        # or with the fill of an elimination in the order of the unknowns
-    starts: NDArray         # (n + 1,) first entry of each column
+    rows: NDArray           # row and column of every entry of the matrix, dense by columns or in
+    columns: NDArray        # the blocks of a sparse elimination
     diagonal: NDArray       # entry on the diagonal of each unknown
-    is_multiplier: NDArray  # 1.0 for multipliers, by unknown, fixed coordinates included
+    padding: NDArray        # entries that fill the last block up with ones
+    block_starts: NDArray   # pattern of the elimination, see sebody.elimination
+    block_rows: NDArray
+    block_diagonal: NDArray
+    is_multiplier: NDArray  # 1.0 for multipliers, by coordinate, and zeros for padding
     rotation_at: NDArray    # first unknown of each rotation
     turned: NDArray         # (k, 2) first unknown and frame of free positions solved in body axes
     turned_blocks: NDArray  # (k, 5) positions whose rows and columns in an element matrix are in
@@ -148,13 +152,13 @@ def build(model: Model) -> tuple[System, Numbering]:
     first_load = len(batches)
     batches += _load_batches(model, numbering, constants)
     dense = numbering.free <= DENSE_LIMIT
-    pattern = _dense_pattern if dense else _sparse_pattern
-    entries, rows, columns, diagonal = pattern(*_places(batches), numbering.free)
+    places = _dense_places if dense else _sparse_places
+    entries, rows, columns, diagonal, pattern = places(*_element_places(batches), numbering.free)
     tables = _load_tables(model)
     widths = [b.width for b in batches]
     sizes = [len(b.rows) for b in batches]
     integers = np.array
-    multiplier = np.zeros(numbering.total)
+    multiplier = np.zeros(numbering.total + LANES)
     for k, first in numbering.multipliers.items():
         multiplier[first:first + model.joints[k].multipliers] = 1.0
     system = System(
@@ -169,8 +173,10 @@ def build(model: Model) -> tuple[System, Numbering]:
         constants=np.concatenate(constants),
         g_unknown=integers([u for b in batches for row in b.unknowns for u in row]),
         J_entry=entries.astype(np.int32), rows=rows.astype(np.int32),
-        columns=columns.astype(np.int32), diagonal=diagonal,
-        starts=np.searchsorted(columns, np.arange(numbering.free + 1)), is_multiplier=multiplier,
+        columns=columns.astype(np.int32), diagonal=diagonal[:numbering.free],
+        padding=diagonal[numbering.free:],
+        block_starts=pattern.starts, block_rows=pattern.rows, block_diagonal=pattern.diagonal,
+        is_multiplier=multiplier,
         rotation_at=_rotation_starts(model, numbering),
         **_body_axes(model, numbering, batches, first_joint, first_load),
         dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering), **tables)
@@ -264,7 +270,7 @@ def _load_batches(model: Model, numbering: Numbering, constants: list) -> list[B
     return list(batches.values())
 
 
-def _places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
+def _element_places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
     """Row and column of every entry of the element matrices."""
     rows, columns = [], []
     for batch in batches:
@@ -275,38 +281,23 @@ def _places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
     return np.concatenate(rows), np.concatenate(columns)
 
 
-def _dense_pattern(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, ...]:
+def _dense_places(row: NDArray, column: NDArray, n: int) -> tuple:
     """Matrix entry of each element entry, row and column of each; fixed ones go behind the end."""
-    entries = np.where((row < n) & (column < n), column * n + row, n * n)
+    places = np.where((row < n) & (column < n), column * n + row, n * n)
     all_columns, all_rows = np.divmod(np.arange(n * n), n)
-    return entries, all_rows, all_columns, np.arange(n) * (n + 1)
+    none = elimination.Pattern(*[np.zeros(1, dtype=np.int64)] * 3)
+    return places, all_rows, all_columns, np.arange(n) * (n + 1), none
 
 
-def _sparse_pattern(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, ...]:
-    """The same on the pattern that elimination without exchanges fills."""
+def _sparse_places(row: NDArray, column: NDArray, n: int) -> tuple:
+    """The same in the blocks of an elimination."""
     free = (row < n) & (column < n)
-    keys = _filled(np.unique(column[free] * n + row[free]), n)
-    entries = np.full(len(row), len(keys))
-    entries[free] = np.searchsorted(keys, column[free] * n + row[free])
-    return entries, keys % n, keys // n, np.searchsorted(keys, np.arange(n) * (n + 1))
-
-
-def _filled(keys: NDArray, n: int) -> NDArray:
-    """Entries ``column n + row`` of a symmetric pattern and its fill, in order.
-
-    What column j has below the diagonal, its parent (the first of these rows) gets, too.
-    """
-    below: list[set[int]] = [set() for _ in range(n)]
-    for key in keys[keys % n > keys // n]:
-        below[key // n].add(int(key % n))
-    filled = []
-    for j in range(n):
-        rows = np.array(sorted(below[j]), dtype=np.int64)
-        if len(rows):
-            below[rows[0]].update(rows[1:].tolist())
-        filled += [j * n + rows, rows * n + j]
-        below[j] = set()
-    return np.unique(np.concatenate([*filled, np.arange(n) * (n + 1)]))
+    pattern = elimination.block_pattern(row[free], column[free], n)
+    rows, columns = elimination.places(pattern)
+    places = np.full(len(row), len(rows))
+    places[free] = elimination.entries(pattern, row[free], column[free])
+    all_ = np.arange(LANES * len(pattern.diagonal))
+    return places, rows, columns, elimination.entries(pattern, all_, all_), pattern
 
 
 def _rotation_starts(model: Model, numbering: Numbering) -> NDArray:

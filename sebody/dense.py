@@ -40,13 +40,8 @@ def _columns_times(context, builder, sig, args):
     paired = builder.sub(columns, builder.srem(columns, word(_UNROLLED)))
 
     def add_column(total, row, column):
-        place = builder.gep(A, [builder.add(row, builder.mul(column, height))])
-        entries = builder.load(builder.bitcast(place, vector.as_pointer()))
-        entries.align = 8
-        lane = builder.insert_element(ir.Constant(vector, ir.Undefined),
-                                      builder.load(builder.gep(x, [column])), ir.IntType(32)(0))
-        factor = builder.shuffle_vector(lane, ir.Constant(vector, ir.Undefined), ir.Constant(
-            ir.VectorType(ir.IntType(32), LANES), [0] * LANES))
+        entries = _load(builder, A, builder.add(row, builder.mul(column, height)), vector)
+        factor = _broadcast(builder, builder.load(builder.gep(x, [column])), vector)
         product = builder.fmul(entries, factor, flags=("contract",))
         builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
 
@@ -61,9 +56,69 @@ def _columns_times(context, builder, sig, args):
         result = builder.load(sums[0])
         for total in sums[1:]:
             result = builder.fadd(result, builder.load(total))
-        place = builder.bitcast(builder.gep(out, [row]), vector.as_pointer())
-        builder.store(result, place).align = 8
+        _store(builder, result, out, row)
     return context.get_dummy_value()
+
+
+@intrinsic
+def subtract_product(typingctx, C, A, B):
+    """``C -= A B`` of square blocks of `LANES` rows, stored by columns."""
+    floats = types.CPointer(types.float64)
+    return types.void(floats, floats, floats), _subtract_product
+
+
+def _subtract_product(context, builder, sig, args):
+    C, A, B = args
+    word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
+    columns = [_load(builder, A, word(LANES * k), vector) for k in range(LANES)]
+    for j in range(LANES):
+        total = _load(builder, C, word(LANES * j), vector)
+        for k, column in enumerate(columns):
+            number = builder.load(builder.gep(B, [word(LANES * j + k)]))
+            product = builder.fmul(column, _broadcast(builder, number, vector),
+                                   flags=("contract",))
+            total = builder.fsub(total, product, flags=("contract",))
+        _store(builder, total, C, word(LANES * j))
+    return context.get_dummy_value()
+
+
+@intrinsic
+def subtract_block_times(typingctx, y, A, x):
+    """``y -= A x`` of a square block of `LANES` rows, stored by columns."""
+    floats = types.CPointer(types.float64)
+    return types.void(floats, floats, floats), _subtract_block_times
+
+
+def _subtract_block_times(context, builder, sig, args):
+    y, A, x = args
+    word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
+    total = _load(builder, y, word(0), vector)
+    for k in range(LANES):
+        number = builder.load(builder.gep(x, [word(k)]))
+        product = builder.fmul(_load(builder, A, word(LANES * k), vector),
+                               _broadcast(builder, number, vector), flags=("contract",))
+        total = builder.fsub(total, product, flags=("contract",))
+    _store(builder, total, y, word(0))
+    return context.get_dummy_value()
+
+
+def _load(builder, pointer, first, vector):
+    place = builder.bitcast(builder.gep(pointer, [first]), vector.as_pointer())
+    value = builder.load(place)
+    value.align = 8
+    return value
+
+
+def _store(builder, value, pointer, first):
+    place = builder.bitcast(builder.gep(pointer, [first]), value.type.as_pointer())
+    builder.store(value, place).align = 8
+
+
+def _broadcast(builder, number, vector):
+    undefined = ir.Constant(vector, ir.Undefined)
+    lane = builder.insert_element(undefined, number, ir.IntType(32)(0))
+    lanes = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+    return builder.shuffle_vector(lane, undefined, lanes)
 
 
 @njit(cache=True, error_model="numpy")

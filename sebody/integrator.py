@@ -5,11 +5,11 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
 from . import loop
-from .abi import ENERGIES, padded
+from .abi import ENERGIES, LANES, padded
 from .assembly import DENSE_LIMIT, Numbering, System, build, work_size
 from .errors import InputError, SimulationError
 from .loop import Record, Scheme, State
@@ -155,9 +155,8 @@ class Simulation:
 
     def _factorize(self) -> None:
         """Factors with exchanges of rows, where elimination in order met a small pivot."""
-        n, scale = self.numbering.free, self.state.scale
-        entries = self.state.matrix[:-1] * scale[self.system.rows] * scale[self.system.columns]
-        matrix = csc_matrix((entries, self.system.rows, self.system.starts), shape=(n, n))
+        scale = diags_array(self.state.scale[:self.numbering.free])
+        matrix = csc_matrix(scale @ _sparse(self.system, self.state) @ scale)
         self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
 
     def _explain(self) -> str:
@@ -207,9 +206,9 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         loads=zeros(max(len(model.loads), 1)), coefficients=coefficients,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
         turned=zeros(int(system.width.max()) ** 2), residual=zeros(total),
-        correction=zeros(padded(total)), matrix=zeros(system.rows.size + 1), scale=zeros(total),
-        weight=zeros(total), inverse=zeros((n, padded(n)) if dense else (1, 1)),
-        factors=zeros(1 if dense else system.rows.size), column=zeros(n),
+        correction=zeros(padded(total) + LANES), matrix=zeros(system.rows.size + 1),
+        scale=np.ones(total + LANES), weight=zeros(total), inverse=zeros((n, padded(n)) if dense else (1, 1)),
+        factors=zeros(1 if dense else system.rows.size), column=zeros(LANES * system.block_diagonal.size * LANES),
         work=zeros(work_size(model)), energy=zeros(ENERGIES), clock=clock, control=control)
 
 
@@ -220,19 +219,26 @@ def _start(system: System, numbering: Numbering, state: State) -> None:
     _check_start(system, numbering, state)
     state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
     _evaluate(system, state, loop.RENEWED)
-    matrix = csc_matrix((state.matrix[:-1], (system.rows, system.columns)), shape=(n, n))
+    matrix = _sparse(system, state)
     _evaluate(system, state, loop.START)
     loop.to_body_axes(system, state.frames, state.residual, False)
     answer = _solve_start(matrix, state.residual[:n].copy(), numbering)
     full = np.zeros(numbering.total)
     full[:n] = -answer
     loop.to_body_axes(system, state.frames, full, True)
-    multiplier = system.is_multiplier > 0
+    multiplier = system.is_multiplier[:numbering.total] > 0
     state.a[:] = np.where(multiplier, 0.0, full)
     state.q[multiplier] = full[multiplier]
     state.aux[:] = state.a
     state.frames_old[:] = state.frames
     state.clock[loop.POWER] = loop.load_power(system, state)
+
+
+def _sparse(system: System, state: State) -> csc_matrix:
+    """The assembled matrix, without padding."""
+    n, entries = system.diagonal.size, state.matrix[:-1]
+    kept = np.flatnonzero((entries != 0.0) & (system.rows < n))
+    return csc_matrix((entries[kept], (system.rows[kept], system.columns[kept])), shape=(n, n))
 
 
 def _evaluate(system: System, state: State, level: int) -> None:
@@ -277,7 +283,7 @@ def _check_start(system: System, numbering: Numbering, state: State) -> None:
     _evaluate(system, state, loop.RENEWED)
     gap = state.residual[multipliers]
     n = numbering.free
-    matrix = csc_matrix((state.matrix[:-1], (system.rows, system.columns)), shape=(n, n))
+    matrix = _sparse(system, state)
     velocity = state.v.copy()
     loop.to_body_axes(system, state.frames, velocity, False)
     velocity[multipliers] = 0.0

@@ -15,6 +15,7 @@ from numba import njit, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from . import elimination
 from .abi import (
     ACCELERATION,
     ENERGY,
@@ -39,7 +40,6 @@ MAX_ITERATIONS = 12
 YOUNG = 3               # steps with new matrices that tell how fast the iteration can be
 WORTH = 15.0            # new matrices cost about so many iterations,
 TURNED_WORTH = 4.0      # and one of the bodies' old ones
-SMALL_PIVOT = 1e-9      # of the scaled matrix: below it rows are exchanged, by SuperLU
 LONGEST_HABIT = 32      # steps that begin with a new matrix before reuse is tried again
 ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
 MOST_MATRICES = 4       # of a step
@@ -74,7 +74,7 @@ class State(NamedTuple):
     scale: NDArray          # of the unknowns: the scaled matrix has a unit diagonal
     weight: NDArray         # its inverse: corrections are measured in it, multipliers included
     inverse: NDArray        # of small systems, by padded columns, scales included
-    factors: NDArray        # of large ones, on the sparse pattern: U and its inverse pivots, L
+    factors: NDArray        # of large ones, in blocks, see sebody.elimination
     column: NDArray         # scratch of the elimination
     work: NDArray
     energy: NDArray
@@ -195,6 +195,8 @@ def sum_matrices(system, state):
     """The matrix from the element matrices, which stay as they are."""
     for k in range(state.matrix.size):
         state.matrix[k] = 0.0
+    for k in range(system.padding.size):
+        state.matrix[system.padding[k]] = 1.0
     matrix, J = pointer_to(state.matrix), pointer_to(state.turned)
     block, blocks = 0, system.turned_blocks.shape[0]
     for b in range(system.address.size):
@@ -301,56 +303,29 @@ def invert_dense(system, state, n):
     return size * inverse_size < 1e16 * n
 
 
-@njit(cache=True, error_model="numpy")
-def eliminate(system, state):
-    """Factors of the matrix in the order of the unknowns; False at a small pivot.
-
-    Numbers follow what they act on, so pivots are safe as a rule and none is exchanged; the
-    pattern is known beforehand, which leaves the arithmetic alone.
-    """
-    starts, rows, diagonal = (pointer_to(system.starts), pointer_to(system.rows),
-                              pointer_to(system.diagonal))
-    matrix, factors, column = (pointer_to(state.matrix), pointer_to(state.factors),
-                               pointer_to(state.column))
-    for j in range(system.diagonal.size):
-        first, middle, end = starts[j], diagonal[j], starts[j + 1]
-        for p in range(first, end):
-            column[rows[p]] = matrix[p]
-        for p in range(first, middle):
-            k = rows[p]
-            u = column[k]
-            factors[p] = u
-            for t in range(diagonal[k] + 1, starts[k + 1]):
-                column[rows[t]] -= factors[t] * u
-        pivot = column[j]
-        if not abs(pivot) * state.scale[j] * state.scale[j] > SMALL_PIVOT:
-            return False
-        inverse = 1.0 / pivot
-        factors[middle] = inverse
-        for p in range(middle + 1, end):
-            factors[p] = column[rows[p]] * inverse
-    return True
+@njit(cache=True, error_model="numpy", forceinline=True)
+def factorize(system, state):
+    """Factors of a large system; False at a small pivot."""
+    return elimination.eliminate(
+        system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
+        pointer_to(system.block_diagonal), pointer_to(state.matrix), pointer_to(state.factors),
+        pointer_to(state.column), pointer_to(state.scale))
 
 
-@njit(cache=True, error_model="numpy")
-def substitute(system, state):
-    """Correction from the residual and the factors."""
-    n = system.diagonal.size
-    starts, rows, diagonal = (pointer_to(system.starts), pointer_to(system.rows),
-                              pointer_to(system.diagonal))
-    factors, x = pointer_to(state.factors), pointer_to(state.correction)
+@njit(cache=True, error_model="numpy", forceinline=True)
+def solve(system, state, dense):
+    """Correction from the residual."""
+    n, x = system.diagonal.size, pointer_to(state.correction)
+    if dense:
+        columns_times(pointer_to(state.inverse), pointer_to(state.residual), x, n, n)
+        return
     for i in range(n):
         x[i] = state.residual[i]
-    for j in range(n):
-        y = x[j]
-        for p in range(diagonal[j] + 1, starts[j + 1]):
-            x[rows[p]] -= factors[p] * y
-    for i in range(n):
-        j = n - 1 - i
-        y = x[j] * factors[diagonal[j]]
-        x[j] = y
-        for p in range(starts[j], diagonal[j]):
-            x[rows[p]] -= factors[p] * y
+    for i in range(system.padding.size):
+        x[n + i] = 0.0
+    elimination.substitute(system.block_diagonal.size, pointer_to(system.block_starts),
+                           pointer_to(system.block_rows), pointer_to(system.block_diagonal),
+                           pointer_to(state.factors), x)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -622,18 +597,14 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                         continue
                 else:
                     control[PIVOTED] = 0
-                    if not eliminate(system, state):
+                    if not factorize(system, state):
                         control[PIVOTED] = 1
                         return FACTOR
         if control[PHASE] == FACTORED:
             control[PHASE] = SOLVED
-            if dense:
-                columns_times(pointer_to(state.inverse), pointer_to(state.residual),
-                              pointer_to(state.correction), n, n)
-            elif control[PIVOTED] == 0:
-                substitute(system, state)
-            else:
+            if control[PIVOTED] == 1:
                 return SOLVE
+            solve(system, state, dense)
         verdict = apply_correction(system, state, scheme)
         control[PHASE] = ITERATE
         if verdict == 1:

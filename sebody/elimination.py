@@ -1,0 +1,146 @@
+"""Elimination of large sparse systems inside the loop, block by block in the order of the unknowns.
+
+The numbering puts unknowns behind what they act on, so no rows are exchanged across blocks and the
+pattern of the factors is known beforehand: what is left is arithmetic on small full blocks, linear
+in the number of bodies of a chain. Where a pivot is small all the same, the loop asks for a
+factorization with exchanges (SuperLU).
+
+Blocks have `LANES` rows and columns, stored by columns; the last ones are filled up with ones on
+the diagonal.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from .abi import LANES, at
+from .dense import subtract_block_times, subtract_product
+
+BLOCK = LANES * LANES
+SMALL_PIVOT = 1e-9      # of the scaled matrix
+
+
+class Pattern(NamedTuple):
+    """Blocks of the matrix and of its factors, column by column."""
+
+    starts: NDArray         # (blocks across + 1,) first block of each column
+    rows: NDArray           # block row of each block, ascending in a column
+    diagonal: NDArray       # (blocks across,) the block on the diagonal
+
+
+def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
+    """Pattern of a structurally symmetric n x n matrix with its fill.
+
+    What a column has below the diagonal, its parent (the first of these rows) gets, too.
+    """
+    across = -(-n // LANES)
+    below: list[set[int]] = [set() for _ in range(across)]
+    for key in np.unique(column // LANES * across + row // LANES):
+        i, j = key % across, key // across
+        if i > j:
+            below[j].add(int(i))
+    keys = [np.arange(across) * (across + 1)]
+    for j in range(across):
+        rows = np.array(sorted(below[j]), dtype=np.int64)
+        if len(rows):
+            below[rows[0]].update(rows[1:].tolist())
+        keys += [j * across + rows, rows * across + j]
+    keys = np.unique(np.concatenate(keys))
+    return Pattern(np.searchsorted(keys // across, np.arange(across + 1)), keys % across,
+                   np.searchsorted(keys, np.arange(across) * (across + 1)))
+
+
+def entries(pattern: Pattern, row: NDArray, column: NDArray) -> NDArray:
+    """Where entries of the matrix are stored."""
+    across = len(pattern.diagonal)
+    columns = np.repeat(np.arange(across), np.diff(pattern.starts))
+    block = np.searchsorted(columns * across + pattern.rows,
+                            column // LANES * across + row // LANES)
+    return block * BLOCK + column % LANES * LANES + row % LANES
+
+
+def places(pattern: Pattern) -> tuple[NDArray, NDArray]:
+    """Row and column of every stored entry."""
+    across = len(pattern.diagonal)
+    columns = np.repeat(np.arange(across), np.diff(pattern.starts))
+    inner_column, inner_row = np.divmod(np.arange(BLOCK), LANES)
+    return ((LANES * pattern.rows[:, None] + inner_row).ravel(),
+            (LANES * columns[:, None] + inner_column).ravel())
+
+
+@njit(cache=True, error_model="numpy")
+def eliminate(across, starts, rows, diagonal, matrix, factors, column, scale):
+    """Factors L (unit diagonal blocks) and U (inverted diagonal blocks); False at a small pivot.
+
+    Pointers; `column` is scratch for one block column, `scale` the scales of the unknowns.
+    """
+    for j in range(across):
+        first, middle, end = starts[j], diagonal[j], starts[j + 1]
+        for p in range(first, end):
+            source, target = at(matrix, BLOCK * p), at(column, BLOCK * rows[p])
+            for i in range(BLOCK):
+                target[i] = source[i]
+        for p in range(first, middle):
+            k = rows[p]
+            u, target = at(column, BLOCK * k), at(factors, BLOCK * p)
+            for i in range(BLOCK):
+                target[i] = u[i]
+            for t in range(diagonal[k] + 1, starts[k + 1]):
+                subtract_product(at(column, BLOCK * rows[t]), at(factors, BLOCK * t), target)
+        inverse = at(factors, BLOCK * middle)
+        if not _invert_block(at(column, BLOCK * j), inverse, at(scale, LANES * j)):
+            return False
+        for p in range(middle + 1, end):
+            target = at(factors, BLOCK * p)
+            for i in range(BLOCK):
+                target[i] = 0.0
+            _subtract_negative(target, at(column, BLOCK * rows[p]), inverse)
+    return True
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _subtract_negative(C, A, B):
+    """``C = A B`` for C zero at the start."""
+    subtract_product(C, A, B)
+    for i in range(BLOCK):
+        C[i] = -C[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _invert_block(D, inverse, scale):
+    """Inverse of a block by Gauss and Jordan in order; False at a small pivot."""
+    for i in range(BLOCK):
+        inverse[i] = D[i]
+    for k in range(LANES):
+        pivot = inverse[LANES * k + k]
+        if not abs(pivot) * scale[k] * scale[k] > SMALL_PIVOT:
+            return False
+        r = 1.0 / pivot
+        inverse[LANES * k + k] = 1.0
+        for j in range(LANES):
+            inverse[LANES * j + k] *= r
+        for i in range(LANES):
+            if i != k:
+                f = inverse[LANES * k + i]
+                inverse[LANES * k + i] = 0.0
+                for j in range(LANES):
+                    inverse[LANES * j + i] -= f * inverse[LANES * j + k]
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def substitute(across, starts, rows, diagonal, factors, x):
+    """Solve in place with the factors; x is filled up to whole blocks."""
+    for j in range(across):
+        for p in range(diagonal[j] + 1, starts[j + 1]):
+            subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), at(x, LANES * j))
+    for k in range(across):
+        j = across - 1 - k
+        y, inverse = at(x, LANES * j), at(factors, BLOCK * diagonal[j])
+        a, b, c, d = y[0], y[1], y[2], y[3]
+        for i in range(LANES):
+            y[i] = inverse[i] * a + inverse[4 + i] * b + inverse[8 + i] * c + inverse[12 + i] * d
+        for p in range(starts[j], diagonal[j]):
+            subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), y)
