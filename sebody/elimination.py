@@ -71,8 +71,8 @@ def places(pattern: Pattern) -> tuple[NDArray, NDArray]:
 
 
 @njit(cache=True, error_model="numpy")
-def eliminate(across, starts, rows, diagonal, matrix, factors, column, scale):
-    """Factors L (unit diagonal blocks) and U (inverted diagonal blocks); False at a small pivot.
+def eliminate(across, starts, rows, diagonal, matrix, column, scale):
+    """Factors L (unit diagonal blocks) and U (inverted ones) in place; False at a small pivot.
 
     Pointers; `column` is scratch for one block column, `scale` the scales of the unknowns.
     """
@@ -84,16 +84,16 @@ def eliminate(across, starts, rows, diagonal, matrix, factors, column, scale):
                 target[i] = source[i]
         for p in range(first, middle):
             k = rows[p]
-            u, target = at(column, BLOCK * k), at(factors, BLOCK * p)
+            u, target = at(column, BLOCK * k), at(matrix, BLOCK * p)
             for i in range(BLOCK):
                 target[i] = u[i]
             for t in range(diagonal[k] + 1, starts[k + 1]):
-                subtract_product(at(column, BLOCK * rows[t]), at(factors, BLOCK * t), target)
-        inverse = at(factors, BLOCK * middle)
+                subtract_product(at(column, BLOCK * rows[t]), at(matrix, BLOCK * t), target)
+        inverse = at(matrix, BLOCK * middle)
         if not _invert_block(at(column, BLOCK * j), inverse, at(scale, LANES * j)):
             return False
         for p in range(middle + 1, end):
-            target = at(factors, BLOCK * p)
+            target = at(matrix, BLOCK * p)
             for i in range(BLOCK):
                 target[i] = 0.0
             _subtract_negative(target, at(column, BLOCK * rows[p]), inverse)

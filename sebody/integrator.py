@@ -207,9 +207,10 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
         turned=zeros(int(system.width.max()) ** 2), residual=zeros(total),
         correction=zeros(padded(total) + LANES), matrix=zeros(system.rows.size + 1),
-        scale=np.ones(total + LANES), weight=zeros(total), inverse=zeros((n, padded(n)) if dense else (1, 1)),
-        factors=zeros(1 if dense else system.rows.size), column=zeros(LANES * system.block_diagonal.size * LANES),
-        work=zeros(work_size(model)), energy=zeros(ENERGIES), clock=clock, control=control)
+        scale=np.ones(total + LANES), weight=zeros(total),
+        inverse=zeros((n, padded(n)) if dense else (1, 1)),
+        column=zeros(LANES * LANES * system.block_diagonal.size), work=zeros(work_size(model)),
+        energy=zeros(ENERGIES), clock=clock, control=control)
 
 
 def _start(system: System, numbering: Numbering, state: State) -> None:

@@ -70,11 +70,10 @@ class State(NamedTuple):
     turned: NDArray         # one of them, positions in the axes they are solved for in
     residual: NDArray       # in body axes
     correction: NDArray
-    matrix: NDArray         # entries by columns, dense or on the sparse pattern, in body axes
+    matrix: NDArray         # entries by columns or in blocks, there its factors; in body axes
     scale: NDArray          # of the unknowns: the scaled matrix has a unit diagonal
     weight: NDArray         # its inverse: corrections are measured in it, multipliers included
     inverse: NDArray        # of small systems, by padded columns, scales included
-    factors: NDArray        # of large ones, in blocks, see sebody.elimination
     column: NDArray         # scratch of the elimination
     work: NDArray
     energy: NDArray
@@ -305,11 +304,14 @@ def invert_dense(system, state, n):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def factorize(system, state):
-    """Factors of a large system; False at a small pivot."""
-    return elimination.eliminate(
+    """Factors of a large system in place of its matrix; False, and the matrix, at a small pivot."""
+    done = elimination.eliminate(
         system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
-        pointer_to(system.block_diagonal), pointer_to(state.matrix), pointer_to(state.factors),
-        pointer_to(state.column), pointer_to(state.scale))
+        pointer_to(system.block_diagonal), pointer_to(state.matrix), pointer_to(state.column),
+        pointer_to(state.scale))
+    if not done:
+        sum_matrices(system, state)
+    return done
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -325,7 +327,7 @@ def solve(system, state, dense):
         x[n + i] = 0.0
     elimination.substitute(system.block_diagonal.size, pointer_to(system.block_starts),
                            pointer_to(system.block_rows), pointer_to(system.block_diagonal),
-                           pointer_to(state.factors), x)
+                           pointer_to(state.matrix), x)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
