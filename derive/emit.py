@@ -13,8 +13,8 @@ from .superelement import Superelement
 
 VERSION = "1.0"
 ROWS = ("qe", "ve", "ae", "y", "yd", "ydd", "acc", "s", "p", "pd", "h", "beta", "Q", "e0s", "e1s",
-        "b0s", "b1s", "gamma", "d", "weight", "dqe", "dve", "dae", "dy", "dyd", "dydd", "dacc", "ds", "dp", "dpd", "dh",
-        "dbeta", "dgamma", "dd", "dweight", "dg")
+        "b0s", "b1s", "gamma", "d", "weight", "dqe", "dve", "dae", "dy", "dyd", "dydd", "dacc",
+        "ds", "dp", "dpd", "dh", "dbeta", "dgamma", "dd", "dweight", "dg")
 
 
 def leaf_table(names: set[str]) -> dict[str, str]:
@@ -82,7 +82,8 @@ def superelement_text(kernel: Superelement) -> str:
         version=VERSION, sympy=sympy.__version__, imports=imports,
         modes="any number of" if layout.modes is None else layout.modes, n_modes=layout.modes,
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
-        axes_count=layout.position_size, first_rotation=layout.first_rotation, first_mode=layout.first_mode, work_rows=len(rows),
+        axes_count=layout.position_size, first_rotation=layout.first_rotation,
+        first_mode=layout.first_mode, work_rows=len(rows),
         residual_operations=counted[0], residual_products=counted[1],
         column_operations=printer.operations, column_products=printer.products, leaves=leaves,
         rows=indented(row_lines, 1), residual_before=indented(before, 2),

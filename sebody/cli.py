@@ -1,4 +1,4 @@
-"""Command line: ``sebody run``, ``list``, ``check`` and ``warm``."""
+"""Command line: ``sebody run``, ``list``, ``check``, ``bench`` and ``warm``."""
 
 import argparse
 import ast
@@ -74,6 +74,11 @@ def _parser() -> argparse.ArgumentParser:
     check = commands.add_parser("check", help="test the consistency of kernels")
     check.set_defaults(command=_check)
     check.add_argument("kernels", nargs="*", metavar="KERNEL", help="all of them by default")
+    bench = commands.add_parser(
+        "bench", help="cost and error of scenes, beside Exudyn where it is installed")
+    bench.set_defaults(command=_bench)
+    bench.add_argument("scenes", nargs="*", metavar="SCENE", help="all that have one by default")
+    bench.add_argument("--json", action="store_true", help="print JSON in place of a table")
     warm = commands.add_parser("warm", help="compile everything that is shipped")
     warm.set_defaults(command=_warm)
     return parser
@@ -251,6 +256,15 @@ def _check(options: argparse.Namespace) -> int:
     rows = check_kernels(options.kernels or None)
     print(format_table(rows))
     return 0 if all(row.passed for row in rows) else 1
+
+
+def _bench(options: argparse.Namespace) -> int:
+    from . import bench
+
+    rate = bench.machine_rate()
+    found = bench.measure(options.scenes)
+    print(bench.to_json(found, rate) if options.json else bench.report(found, rate))
+    return 0
 
 
 def _warm(options: argparse.Namespace) -> int:
