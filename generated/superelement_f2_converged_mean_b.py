@@ -30,9 +30,12 @@ OPERATIONS = {"residual": (1070, 3),
               "column": (2047, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "bb899bc4d9a4",
+    "_broadcast": "f8dde8dac8a7",
+    "_columns_times": "62b791ebe5aa",
+    "_load": "007540f2adf5",
     "_mean_of_two": "88b125f57ecf",
     "_mean_step": "a6f51f310f53",
+    "_store": "83dc4085b78e",
     "columns_times": "d7f377e75edd",
     "converged_mean": "1e2dcc61ffa6",
     "exp_map": "833cbc6b09c9",

@@ -30,8 +30,11 @@ OPERATIONS = {"residual": (1367, 3),
               "column": (1616, 3)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
-    "_columns_times": "bb899bc4d9a4",
+    "_broadcast": "f8dde8dac8a7",
+    "_columns_times": "62b791ebe5aa",
     "_fit_step": "a1cc712721a0",
+    "_load": "007540f2adf5",
+    "_store": "83dc4085b78e",
     "best_fit": "a0b054ff9264",
     "columns_times": "d7f377e75edd",
     "exp_map": "833cbc6b09c9",
