@@ -33,7 +33,7 @@ LEAVES = {
     "_broadcast": "f8dde8dac8a7",
     "_columns_times": "62b791ebe5aa",
     "_load": "007540f2adf5",
-    "_mean_of_two": "88b125f57ecf",
+    "_mean_of_two": "c6e24b27eb85",
     "_mean_step": "a6f51f310f53",
     "_store": "83dc4085b78e",
     "columns_times": "d7f377e75edd",

@@ -127,7 +127,8 @@ def difference(a: NDArray, b: NDArray) -> float:
     return float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-300))
 
 
-def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3) -> Case:
+def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3,
+                      gravity: float = 0.0) -> Case:
     """A generic state of a superelement kernel."""
     random = np.random.default_rng(seed)
     planar = module.LAYOUT.startswith("planar")
@@ -154,18 +155,25 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     about = np.array([0.0, 0.0, beta]) if planar else beta * random.normal(size=3) / 1.8
     frame = (base * Rotation.from_rotvec(about)).as_matrix().ravel()
     index = np.array([0, 0, n, *range(nrot), *range(n)])
+    v, a = random.normal(size=n), random.normal(size=n)
     of_translations, moment = random.normal(size=(n, d)), random.normal(size=d)
-    constants = np.concatenate([
-        alpha, np.full(npos, 1 / npos), alpha_r, X.ravel(), padded_columns(S), padded_columns(M),
-        padded_columns(of_translations), padded_columns(of_translations.T), moment, [1.3]])
-    return Case(module, n, index, constants, q, R, random.normal(size=n), random.normal(size=n),
-                frame, frame.copy(), random.normal(size=3))
+    constants = constants_row(alpha, np.full(npos, 1 / npos), alpha_r, X, S, M, of_translations,
+                              moment, 1.3)
+    return Case(module, n, index, constants, q, R, v, a, frame, frame.copy(),
+                gravity * random.normal(size=3))
+
+
+def constants_row(alpha, fit, alpha_r, X, S, M, of_translations, moment, mass) -> NDArray:
+    """Constants of a superelement as its kernel reads them; see `Constants`."""
+    return np.concatenate([alpha, fit, alpha_r, X.ravel(), padded_columns(S), padded_columns(M),
+                           padded_columns(of_translations), padded_columns(of_translations.T),
+                           moment, [mass]])
 
 
 def without(case: Case, what: str) -> Case:
     """The case with no stiffness and no gravity, or no inertia."""
     constants, size = case.constants.copy(), case.n * padded(case.n)
-    first = _ends(case)[3] + (0 if what == "stiffness" else size)
+    first = constant_ends(case)[3] + (0 if what == "stiffness" else size)
     constants[first:first + size] = 0.0
     return case._replace(constants=constants,
                          field=0 * case.field if what == "stiffness" else case.field)
@@ -243,7 +251,7 @@ def asymmetry(case: Case) -> float:
 
 def local_coordinates(case: Case) -> NDArray:
     """``y``, (11), by other means than the kernels: SciPy's rotations, an SVD for the best fit."""
-    module, weights = case.module, _Weights(case)
+    module, weights = case.module, Constants(case)
     x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
     R0 = frame_rotation(case).as_matrix()[:x.shape[1], :x.shape[1]]
     u = (x - weights.alpha @ x) @ R0 - weights.X
@@ -270,7 +278,7 @@ def local_velocities(case: Case) -> NDArray:
     return v
 
 
-def _ends(case: Case) -> NDArray:
+def constant_ends(case: Case) -> NDArray:
     """Where the constants of a superelement end: weights, nodes, matrices, first moments, mass."""
     module, n, d = case.module, case.n, 2 if case.planar else 3
     npos, matrix = module.N_POSITIONS, n * padded(n)
@@ -278,13 +286,13 @@ def _ends(case: Case) -> NDArray:
                       d * padded(n), n * padded(d), d, 1])
 
 
-class _Weights:
+class Constants:
     """What the constants of a superelement mean."""
 
     def __init__(self, case: Case):
         n, column = case.n, padded(case.n)
         (self.alpha, self.fit, self.alpha_r, X, S, M, of_translations, _, self.moment, mass
-         ) = np.split(case.constants, _ends(case)[:-1])
+         ) = np.split(case.constants, constant_ends(case)[:-1])
         self.X = X.reshape(case.module.N_POSITIONS, -1)
         self.S, self.M, self.of_translations = (A.reshape(-1, column)[:, :n].T
                                                 for A in (S, M, of_translations))
@@ -293,7 +301,7 @@ class _Weights:
 
 def frame_rotation(case: Case) -> Rotation:
     """``R0`` from its definition, (14)-(16) or the best fit, without the search of the kernels."""
-    module, weights = case.module, _Weights(case)
+    module, weights = case.module, Constants(case)
     if module.FRAME == "positions":
         x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
         arms = x - weights.alpha @ x
@@ -313,15 +321,16 @@ def frame_rotation(case: Case) -> Rotation:
 
 def energies(case: Case) -> float:
     """Strain (24), kinetic energy (34) and potential against coordinates found by other means."""
-    weights, y, yd = _Weights(case), local_coordinates(case), local_velocities(case)
+    weights, y, yd = Constants(case), local_coordinates(case), local_velocities(case)
     computed = evaluate(case, ENERGY)[2]
     d = 2 if case.planar else 3
     moment = weights.moment + weights.of_translations.T @ y
     x = case.q[:case.module.ROTATIONS].reshape(-1, d)
     place = weights.mass * weights.alpha @ x + frame_rotation(case).as_matrix()[:d, :d] @ moment
+    potential = -(case.field[:d] @ place)
     return max(abs(computed[0] / (yd @ weights.M @ yd / 2) - 1),
                abs(computed[1] / (y @ weights.S @ y / 2) - 1),
-               abs(computed[POTENTIAL] / -(case.field[:d] @ place) - 1))
+               abs(computed[POTENTIAL] - potential) / max(abs(potential), 1e-300))
 
 
 def total_momentum(case: Case) -> float:
@@ -346,7 +355,7 @@ def paper_tangent(case: Case) -> float:
     rest = case._replace(v=0 * case.v, a=0 * case.a)
     upsilon = gradient(rest, local_coordinates, 0.01)
     paper = evaluate(rest, TANGENT, (0, 0, 1, 0, 1))[1]
-    return difference(paper, upsilon.T @ _Weights(case).S @ upsilon)
+    return difference(paper, upsilon.T @ Constants(case).S @ upsilon)
 
 
 def geometric_term(case: Case) -> float:
@@ -376,7 +385,7 @@ def small_increment_slope(module: ModuleType, seed: int) -> tuple[float, float]:
 
 def _mean_rotation(case: Case) -> NDArray:
     """Frame in which the weighted rotation vectors of the nodes vanish, by fixed-point search."""
-    weights = _Weights(case).alpha_r
+    weights = Constants(case).alpha_r
     nodes = Rotation.from_matrix(case.R.reshape(-1, 3, 3))
     frame = nodes[0]
     for _ in range(60):
@@ -392,7 +401,7 @@ def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
     rows = []
     small = module.FRAME.endswith("_small")
     for seed in range(STATES):
-        case = superelement_case(module, seed)
+        case = superelement_case(module, seed, gravity=1.0)
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
         for criterion, measure in criteria.items():
             error = measure(case)

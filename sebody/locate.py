@@ -48,11 +48,11 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
 def _mean_of_two(nodes, alpha, R, frame, psi):
     """Mean of two rotations: a point of the shortest way between them, in closed form.
 
-    False, and nothing done, where that is not the mean close to the last frame: two nodes may be
-    turned against each other by more than half a turn.
+    False, and nothing done, for more than a quarter turn between them, or from the last frame: two
+    nodes may be turned against each other by more than half a turn.
     """
     x, y, z, cosine = relative_log(R, 9 * nodes[0], R, 9 * nodes[1])
-    if not cosine > NEAR_PI:
+    if not cosine > 0.0:
         return False
     p, q, r = alpha[1] * x, alpha[1] * y, alpha[1] * z
     a, b, c, d, e, f, g, h, i = turned(R, 9 * nodes[0], p, q, r)

@@ -42,6 +42,7 @@ WORTH = 30.0            # new matrices cost about so many iterations,
 TURNED_WORTH = 4.0      # and one of the bodies' old ones
 LONGEST_HABIT = 32      # steps that begin with a new matrix before reuse is tried again
 ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
+POOR = 0.3              # contraction so slow asks for a new matrix at once
 MOST_MATRICES = 4       # of a step
 
 
@@ -430,7 +431,7 @@ def apply_correction(system, state, scheme):
     if iteration == 0 or state.control[FRESH] >= MOST_MATRICES:
         return 0
     price = WORTH if next_matrix(system, state) == RENEWED else TURNED_WORTH
-    return -1 if np.log(target / norm) / np.log(rate) > min(price, left) else 0
+    return -1 if rate > POOR or np.log(target / norm) / np.log(rate) > min(price, left) else 0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -545,6 +546,7 @@ def cut_step(state, reason):
         return False
     state.clock[CURRENT_STEP] = state.clock[STEP] / (1 << state.control[LEVEL])
     state.control[WANTED] = RENEWED
+    state.clock[CONTRACTION] = 0.95     # nothing is known of the shorter step
     return True
 
 

@@ -118,7 +118,7 @@ def test_check_notices_a_kernel_that_is_not_what_it_says(name, claim):
 
 def test_asymmetric_stiffness_has_no_potential():
     case = check.superelement_case(load("superelement_f2_converged_mean_b"), 0)
-    first = len(case.constants) - 2 * case.n**2
+    first = check.constant_ends(case)[3]
     case.constants[first + 1] *= 1.01
     assert check.elastic_force(case) > check.LIMIT
     assert check.asymmetry(case) > check.LIMIT
@@ -140,7 +140,8 @@ def test_paper_tangent_lacks_a_term_that_falls_with_the_deformation(name):
     terms = []
     for psi in sizes:
         case = check.superelement_case(module, 2, psi)
-        case = case._replace(v=0 * case.v, a=0 * case.a, q=np.r_[case.q[:module.MODES], [0] * 3])
+        case = case._replace(v=0 * case.v, a=0 * case.a,
+                             q=np.r_[case.q[:module.MODES], 0 * case.q[module.MODES:]])
         terms.append(check.geometric_term(case))
         K = check.evaluate(case, 1, (0, 0, 1, 0, 1))[1]
         symmetric = not module.FRAME.endswith("_small")
@@ -152,21 +153,22 @@ def test_planar_kernel_equals_the_spatial_one_on_planar_states():
     """Positions, angles and matrices embedded in space; equal to rounding."""
     planar = load("superelement_planar_f2_converged_mean_b")
     spatial = load("superelement_f2_converged_mean_b")
-    flat = check.superelement_case(planar, 5)
+    flat = check.superelement_case(planar, 5, gravity=1.0)
     keep = [0, 1, 3, 4, 8, 11, 12, 13, 14]      # of x, y, z; x, y, z; rotations; modes
-    n, end = 15, len(flat.constants) - 2 * 81
-    S, M = np.eye(15), np.eye(15)
-    S[np.ix_(keep, keep)] = flat.constants[end:end + 81].reshape(9, 9)
-    M[np.ix_(keep, keep)] = flat.constants[end + 81:].reshape(9, 9)
+    n, given = 15, check.Constants(flat)
+    S, M, of_translations = np.eye(15), np.eye(15), np.zeros((15, 3))
+    S[np.ix_(keep, keep)], M[np.ix_(keep, keep)] = given.S, given.M
+    of_translations[keep, :2] = given.of_translations
     X = np.zeros((2, 3))
-    X[:, :2] = flat.constants[6:10].reshape(2, 2)
-    constants = np.concatenate([flat.constants[:6], X.ravel(), S.ravel(), M.ravel()])
+    X[:, :2] = given.X
+    constants = check.constants_row(given.alpha, given.fit, given.alpha_r, X, S, M,
+                                    of_translations, [*given.moment, 0.0], given.mass)
     q, v, a = np.zeros((3, n))
     q[keep], v[keep], a[keep] = flat.q, flat.v, flat.a
     R = np.concatenate([[np.cos(t), -np.sin(t), 0, np.sin(t), np.cos(t), 0, 0, 0, 1]
                         for t in flat.q[4:6]])
     case = check.Case(spatial, n, np.array([0, 0, n, 0, 1, *range(n)]), constants, q, R, v, a,
-                      flat.reference, flat.frames)
+                      flat.reference, flat.frames, flat.field * [1, 1, 0])
     for coefficients in ((1.0, 0.3, 2.0, 1, 1), (0, 0, 1, 0, 1)):
         forces, matrices = zip(*[check.evaluate(c, 1, coefficients)[:2] for c in (flat, case)],
                                strict=True)

@@ -79,11 +79,11 @@ def struck(height, h=0.01):
 
 
 def test_cut_steps_rejoin_the_grid():
-    run = struck(3e6).run_to(0.3)
+    run = struck(1e6).run_to(0.3)
     result = run.result()
     assert result.cuts > 0
     assert np.allclose(result.t, np.arange(31) * 0.01, atol=1e-12)
-    fine = struck(3e6, 0.000625).run_to(0.3).result()["tip.position"][::16]
+    fine = struck(1e6, 0.000625).run_to(0.3).result()["tip.position"][::16]
     assert np.abs(result["tip.position"][:10] - fine[:10]).max() < 1e-3
 
 

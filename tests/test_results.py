@@ -28,7 +28,8 @@ def planar():
 
 
 SPATIAL = {
-    "t": (51,), "energy.kinetic": (51,), "energy.strain": (51,), "energy.external_work": (51,),
+    "t": (51,), "energy.kinetic": (51,), "energy.strain": (51,), "energy.potential": (51,),
+    "energy.external_work": (51,),
     "momentum": (51, 3), "angular_momentum": (51, 3), "beam.modes": (51, 2),
     **{f"{node}.{quantity}": shape for node in ("base", "tip") for quantity, shape in (
         ("position", (51, 3)), ("rotation", (51, 3, 3)), ("velocity", (51, 3)),

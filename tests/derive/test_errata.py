@@ -35,7 +35,7 @@ class PaperMatrices:
     def __init__(self, case, option="b"):
         n = case.n
         alpha = case.constants[4:6]
-        self.M = case.constants[-n * n:].reshape(n, n)
+        self.M = check.Constants(case).M
         nodes = Rotation.from_matrix(case.R.reshape(2, 3, 3))
         R0 = check._mean_rotation(case).reshape(3, 3)
         psi = (Rotation.from_matrix(R0).inv() * nodes).as_rotvec()

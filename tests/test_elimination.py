@@ -1,0 +1,95 @@
+"""Elimination by blocks against SciPy, and the loop with it against the loop with SuperLU."""
+
+import numpy as np
+import pytest
+from numba import njit
+from scipy.sparse import coo_array
+from scipy.sparse.linalg import spsolve
+
+from sebody import Simulation, assembly, elimination, loop
+from sebody.abi import LANES, pointer_to
+from sebody.scenes import chain
+
+
+@njit
+def factorized(pattern, matrix, column, scale):
+    return elimination.eliminate(
+        pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
+        pointer_to(pattern.diagonal), pointer_to(matrix), pointer_to(column), pointer_to(scale))
+
+
+@njit
+def substituted(pattern, factors, x):
+    elimination.substitute(pattern.diagonal.size, pointer_to(pattern.starts),
+                           pointer_to(pattern.rows), pointer_to(pattern.diagonal),
+                           pointer_to(factors), pointer_to(x))
+
+
+def system(n, seed, links):
+    """A random matrix with a dominant diagonal and a structurally symmetric pattern."""
+    random = np.random.default_rng(seed)
+    row, column = random.integers(0, n, (2, links))
+    row, column = np.r_[row, column, np.arange(n)], np.r_[column, row, np.arange(n)]
+    value = random.normal(size=len(row))
+    value[-n:] += 20.0 * np.sign(value[-n:])
+    return row, column, value
+
+
+@pytest.mark.parametrize("n, links", [(4, 3), (17, 30), (63, 100), (200, 500)])
+def test_solves_what_scipy_solves(n, links):
+    row, column, value = system(n, n, links)
+    pattern = elimination.block_pattern(row, column, n)
+    matrix = np.zeros(len(pattern.rows) * LANES**2)
+    np.add.at(matrix, elimination.entries(pattern, row, column), value)
+    padding = np.arange(n, LANES * len(pattern.diagonal))
+    matrix[elimination.entries(pattern, padding, padding)] = 1.0
+    scratch, scale = np.zeros(LANES**2 * len(pattern.diagonal)), np.ones(n + LANES)
+    assert factorized(pattern, matrix, scratch, scale)
+    b = np.random.default_rng(0).normal(size=n)
+    x = np.r_[b, np.zeros(LANES * len(pattern.diagonal) - n)]
+    substituted(pattern, matrix, x)
+    exact = spsolve(coo_array((value, (row, column)), shape=(n, n)).tocsc(), b)
+    assert np.abs(x[:n] - exact).max() < 1e-12 * np.abs(exact).max()
+    assert not x[n:].any()
+
+
+def test_a_small_pivot_is_noticed():
+    row = column = np.arange(5)
+    pattern = elimination.block_pattern(row, column, 5)
+    matrix = np.zeros(len(pattern.rows) * LANES**2)
+    matrix[elimination.entries(pattern, row, column)] = [1.0, 1.0, 1e-12, 1.0, 1.0]
+    assert not factorized(pattern, matrix, np.zeros(2 * LANES**2), np.ones(8))
+
+
+def test_every_entry_has_its_place():
+    row, column, _ = system(30, 1, 50)
+    pattern = elimination.block_pattern(row, column, 30)
+    rows, columns = elimination.places(pattern)
+    place = elimination.entries(pattern, row, column)
+    assert np.array_equal(rows[place], row) and np.array_equal(columns[place], column)
+
+
+def multipliers_first(number):
+    """The same numbering, but multipliers before what they act on: their pivots are zero."""
+    def changed(model):
+        old = number(model)
+        order = sorted(range(old.total),
+                       key=lambda i: (i >= old.free, not old.names[i].startswith("multiplier")))
+        place = {i: k for k, i in enumerate(order)}
+
+        def moved(firsts):
+            return {key: place.get(first, first) for key, first in firsts.items()}
+        return old._replace(triplets=moved(old.triplets), modes=moved(old.modes),
+                            multipliers=moved(old.multipliers),
+                            names=[old.names[i] for i in order])
+    return changed
+
+
+def test_superlu_takes_over_at_small_pivots(monkeypatch):
+    own = Simulation(chain.build(links=8).model, 0.01).run_to(0.3)
+    monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
+    exchanged = Simulation(chain.build(links=8).model, 0.01).run_to(0.3)
+    assert own.state.control[loop.PIVOTED] == 0 and exchanged.state.control[loop.PIVOTED] == 1
+    for name in ("tip.position", "energy.strain", "energy.kinetic"):
+        a, b = own.result()[name], exchanged.result()[name]
+        assert np.abs(a - b).max() < 1e-9 * np.abs(a).max(), name
