@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from sebody import Model, assembly, generalized_alpha, integrator, simulate
+from sebody import model as model_module
 from sebody.fem import planar_beam, straight_beam
+from sebody.kernels import superelement_kernel
 from sebody.reduction import craig_bampton
 from sebody.scenes import box, right_angle_frame, shaft
 from sebody.scenes.hinged_beam import SECTION, TORQUE, build
@@ -111,3 +113,22 @@ def test_sparse_solver_gives_the_motion_of_the_dense_one(monkeypatch):
         monkeypatch.setattr(module, "DENSE_LIMIT", 1000)
     dense = simulate(divided_beam(20), 0.005, 0.5)
     assert np.abs(sparse["tip.position"] - dense["tip.position"]).max() < 1e-10
+
+
+@pytest.mark.parametrize("pinned, modes, make", [
+    ("f2m4", 4, lambda modes: build(modes=modes).model),
+    ("f2m8", 8, lambda modes: build(modes=modes).model),
+    ("planar_f2m2", 2, planar_hinged_beam), ("planar_f2m4", 4, planar_hinged_beam)])
+def test_pinned_number_of_modes_changes_speed_alone(monkeypatch, pinned, modes, make):
+    """Same text with a constant in place of a number read at run time."""
+    own = make(modes)
+    body, = own.bodies.values()
+    assert body.kernel.__name__.endswith(f"superelement_{pinned}_converged_mean_b")
+    fast = simulate(own, 0.01, 1.0)
+    monkeypatch.setattr(model_module, "superelement_kernel",
+                        lambda layout, frame, inertia, _: superelement_kernel(
+                            layout, frame, inertia, -1))
+    free = make(modes)
+    body, = free.bodies.values()
+    assert body.kernel.N_MODES is None
+    assert np.abs(fast["tip.position"] - simulate(free, 0.01, 1.0)["tip.position"]).max() < 1e-9

@@ -15,12 +15,10 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from sebody import Model, Simulation, check, simulate
-from sebody.abi import RESIDUAL, TANGENT, call_kernel, padded
-from sebody.fem import planar_beam
+from sebody import check, simulate
+from sebody.abi import ENERGIES, RESIDUAL, TANGENT, call_kernel, padded
 from sebody.kernels import load
-from sebody.reduction import craig_bampton
-from sebody.scenes.hinged_beam import SECTION, TORQUE, build
+from sebody.scenes import hinged_beam, planar_hinged_beam
 
 LAYOUTS = ("f2_converged_mean_b", "f2t1_converged_mean_b", "t8_positions_b",
            "planar_f2_converged_mean_b")
@@ -45,8 +43,8 @@ def nanoseconds(module, case, task, times=20000):
         began = time.perf_counter()
         repeat(times, module.kernel.address, task, len(case.index), n, case.index,
                case.constants, case.q, case.R, case.v, case.a, case.reference,
-               case.frames.copy(), T, np.array(counts, dtype=float), np.ones(5), np.zeros(n),
-               np.zeros(n * n), work, np.zeros(9))
+               case.frames.copy(), T, np.array(counts, dtype=float), np.ones(8), np.zeros(n),
+               np.zeros(n * n), work, np.zeros(ENERGIES))
         samples.append((time.perf_counter() - began) / times * 1e9)
     return statistics.median(samples)
 
@@ -55,9 +53,8 @@ def generic(module, folder):
     """The kernel's text with the counts read at run time."""
     text = Path(module.__file__).read_text().replace("    n = width\n", (
         "    n = width\n"
-        "    counts = carray(loads_, (HUGE,))\n"
-        "    N_POSITIONS, N_ROTATIONS = int(counts[0]), int(counts[1])\n"
-        "    ROTATIONS, MODES = int(counts[2]), int(counts[3])\n"))
+        "    N_POSITIONS, N_ROTATIONS = int(loads[0]), int(loads[1])\n"
+        "    ROTATIONS, MODES = int(loads[2]), int(loads[3])\n"))
     path = Path(folder) / (module.__name__.rpartition(".")[2] + "_generic.py")
     path.write_text(text)
     spec = importlib.util.spec_from_file_location(path.stem, path)
@@ -67,24 +64,11 @@ def generic(module, folder):
     return made
 
 
-def planar_model():
-    """The hinged beam in the plane."""
-    body = craig_bampton(planar_beam((0, 0), (100.0, 100.0), SECTION, 20),
-                         [(0, "full"), (20, "full")], 4)
-    model = Model(planar=True)
-    base, tip = model.node("base", (0.0, 0.0)), model.node("tip", (100.0, 100.0))
-    model.superelement("beam", body, [base, tip])
-    model.revolute(base)
-    model.torque(base, 1.0, TORQUE)
-    return model
-
-
 def step_times():
     """Microseconds a step of the hinged beam, spatial and planar, and their tip errors."""
     reference = np.load(Path(__file__).parents[1] / "data" / "hinged_beam.npz")["tip_position"]
-    for name, make in (("spatial", lambda: build().model), ("planar", planar_model)):
-        Simulation(make(), 0.01)
-        runs = [simulate(make(), 0.01, 30.0) for _ in range(7)]
+    for name, scene in (("spatial", hinged_beam), ("planar", planar_hinged_beam)):
+        runs = [simulate(scene.build().model, 0.01, 30.0) for _ in range(7)]
         tip = runs[0]["tip.position"]
         exact = reference[:, :tip.shape[1]]
         error = np.linalg.norm(tip - exact) / np.linalg.norm(exact)
