@@ -13,7 +13,7 @@ from .kernels import element_kernel
 from .model import Model, Superelement, Triplet
 from .reduction import ReducedBody
 
-DENSE_LIMIT = 40        # above this many unknowns elimination on a sparse pattern is faster
+DENSE_LIMIT = 24        # above this many unknowns elimination by blocks is faster than an inverse
 
 
 class System(NamedTuple):
