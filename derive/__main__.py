@@ -14,13 +14,12 @@ from pathlib import Path
 import sebody.generated
 from sebody.kernels import user_directory
 
-from .elements import ELEMENTS
+from .catalogue import ELEMENTS
 from .emit import superelement_text
 from .emit_element import element_text
 from .frames import FRAMES
 from .inertia import OPTIONS
 from .layouts import Layout, LayoutError
-from .manifest import ELEMENTS as SHIPPED_ELEMENTS
 from .manifest import SUPERELEMENTS
 from .superelement import superelement
 
@@ -32,7 +31,7 @@ def shipped() -> dict[str, str]:
     files = {}
     for layout, frame, inertia in SUPERELEMENTS:
         files |= variant_file(layout, frame, inertia)
-    for name in SHIPPED_ELEMENTS:
+    for name in ELEMENTS:
         files[f"element_{name}.py"] = element_text(ELEMENTS[name]())
     return files
 

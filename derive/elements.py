@@ -1,159 +1,174 @@
-"""Joints and loads: small elements written out in components.
+"""Small elements written out in components: what joints, bodies and forces are derived with.
 
-A constraint adds ``lambda . phi`` to the Lagrangian: its force is the coefficient of the unknowns'
-variation in ``lambda . delta phi``, its tangent the differential of that force (the exact
-second-order term), and ``phi`` differentiated twice in time starts the simulation.
+An element acts on blocks, positions and rotations, and is given by a few scalars: kinetic energy,
+strain energy, potential, dissipation, constraints, virtual work of a load. Forces, tangents and
+balances follow, once for all of them:
+
+    force = d/dt dT/dv - dT/dq + dV/dq + dD/dv + lambda . dphi/dq - load
+
+with Hamel's term ``Omega x dT/dOmega`` on rotations, whose variations do not commute.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import sympy as sp
 
 from .elastic import _of
-from .rotations import skew
-from .stages import Quantity, Space
-from .variation import along, check_same, coefficients, differential, turning
+from .stages import Quantity, Space, cross
+from .variation import Rules, along, check_same, differential, turning
+
+AMPLITUDE = sp.symbols("amplitude amplitude_rate amplitude_acceleration")
+
+
+class Block(NamedTuple):
+    """A position or a rotation: its value, its motion, and how a column of the tangent moves it."""
+
+    state: Quantity
+    rate: Quantity
+    acceleration: Quantity
+    direction: Quantity     # variation of the state; of a rotation through T
+    unit: Quantity          # the column itself, along which rates and accelerations vary
+    angle: sp.Symbol | None # of a rotation in a plane
+
+    @property
+    def turns(self) -> bool:
+        """A rotation."""
+        return self.state.kind == "rotation"
 
 
 class Element(NamedTuple):
-    """Description of a joint or a load."""
+    """Description of a joint, body or force: what the printer turns into text."""
 
     name: str
     summary: str
     space: Space
     constants: tuple[Quantity, ...]     # in the order of the constants row
-    rotations: tuple[Quantity, ...]     # rotation matrices it reads
-    places: tuple[Quantity, ...]        # positions it reads, from its coordinates
-    rates: tuple[Quantity, ...]         # velocities of its coordinates, block by block
-    accelerations: tuple[Quantity, ...]
-    directions: tuple[Quantity, ...]    # variations of its coordinates, block by block
+    blocks: tuple[Block, ...]           # positions first
     multipliers: tuple[sp.Symbol, ...]
     residual: tuple[sp.Expr, ...]       # force on the coordinates, then phi
-    second: tuple[sp.Expr, ...]         # phi differentiated twice in time
-    linear: tuple[sp.Expr, ...]         # differential of the residual, as `directions` vary
+    linear: tuple[sp.Expr, ...]         # a column of the matrix
     on_multipliers: sp.Matrix           # derivative of the force by the multipliers
-    power: sp.Expr | None = None        # rate of work done on the system
+    velocity: tuple[sp.Expr, ...]       # phi differentiated in time, once
+    second: tuple[sp.Expr, ...]         # and twice
+    sums: dict[str, sp.Expr]            # what it adds to the energies, by name
+    power: sp.Expr | None               # of loads, dampers and drives on the system
 
 
-def revolute(grounded: bool) -> Element:
-    """Revolute joint: two directions of a body stay normal to an axis fixed in another one.
-
-    ``phi_k = (R_a n_k) . (R_b e)``, k = 1, 2; the position is shared, so it needs no constraint.
-    To the ground ``R_b = I``. With the normals in body a, the gradient in its material axes does
-    not change as it turns about the axis, and one factorization lasts.
-    """
-    space = Space(False)
-    make = space.quantity
-    e, n = make("e", "vector", "element"), [make(f"n{k}", "vector", "element") for k in (1, 2)]
-    bodies = "a" if grounded else "ab"
-    R = [make(f"R{b}", "rotation", "element") for b in bodies]
-    rates = [make(f"Om{b}", "axial", "element") for b in bodies]
-    accelerations = [make(f"A{b}", "axial", "element") for b in bodies]
-    dth = [make(f"dth{b}", "axial", "element") for b in bodies]
-    other = sp.eye(3) if grounded else R[1].symbols
-    phi = [(R[0].symbols * nk.symbols).dot(other * e.symbols) for nk in n]
-    return _constraint("revolute_ground" if grounded else "revolute", (
-        "revolute joint to the ground" if grounded else "revolute joint between two bodies")
-        + ": two directions stay normal to the axis", space, (e, *n), R, rates, accelerations,
-        dth, phi)
+def position(space: Space, name: str) -> Block:
+    """A position, ``x<name>`` with velocity ``v<name>``."""
+    return Block(*(space.quantity(kind + name, "vector", "element")
+                   for kind in ("x", "v", "a", "dx", "ux")), None)
 
 
-def _constraint(name, summary, space, constants, R, rates, accelerations, dth, phi) -> Element:
-    lam = sp.symbols(f"lam_1:{len(phi) + 1}")
-    vary = _turning_all(R, dth)
-    work = sum(force * differential(p, vary) for force, p in zip(lam, phi, strict=True))
-    force = sp.Matrix.vstack(*[_of(work, d.symbols) for d in dth])
-    linear = [differential(f, vary) for f in force] + [differential(p, vary) for p in phi]
-    in_time = _turning_all(R, rates)
-    for rate, acceleration in zip(rates, accelerations, strict=True):
-        in_time |= along(rate.symbols, acceleration.symbols)
-    second = [differential(differential(p, in_time), in_time) for p in phi]
-    gradient = force.jacobian(sp.Matrix(lam))
-    for k, p in enumerate(phi):
-        check_same("constraint force is the gradient", sp.Matrix([differential(p, vary)]),
-                   sp.Matrix([gradient[:, k].dot(sp.Matrix.vstack(*[d.symbols for d in dth]))]))
-    return Element(name, summary, space, tuple(constants), tuple(R), (), tuple(rates),
-                   tuple(accelerations), tuple(dth), lam, (*force, *phi), tuple(second),
-                   tuple(linear), gradient)
+def rotation(space: Space, name: str) -> Block:
+    """A rotation, ``R<name>`` with material angular velocity ``Om<name>``."""
+    state = space.quantity("R" + name, "rotation", "element")
+    return Block(state, *(space.quantity(kind + name, "axial", "element")
+                          for kind in ("Om", "A", "dth", "uth")),
+                 sp.Symbol("th" + name) if space.planar else None)
 
 
-def _turning_all(R, dth) -> dict:
-    rules = {}
-    for rotation, d in zip(R, dth, strict=True):
-        rules |= turning(rotation.symbols, d.symbols)
+def varied(blocks: Sequence[Block]) -> Rules:
+    """Rules of a variation of the configuration."""
+    return _moved(blocks, "direction")
+
+
+def in_time(blocks: Sequence[Block]) -> Rules:
+    """Rules of time derivatives: of states, rates and the amplitude of a load."""
+    rules = _moved(blocks, "rate")
+    for block in blocks:
+        rules |= along(block.rate.symbols, block.acceleration.symbols)
+    return rules | dict(zip(AMPLITUDE[:2], AMPLITUDE[1:], strict=True))
+
+
+def _moved(blocks: Sequence[Block], along_what: str) -> Rules:
+    rules: Rules = {}
+    for block in blocks:
+        by = getattr(block, along_what).symbols
+        if not block.turns:
+            rules |= along(block.state.symbols, by)
+            continue
+        rules |= turning(block.state.symbols, by)
+        if block.angle is not None:
+            rules[block.angle] = by[2]
     return rules
 
 
-def spherical(grounded: bool, planar: bool) -> Element:
-    """Spherical joint as an explicit constraint: a position stays with another, or where it is.
-
-    Sharing or fixing the position does the same with fewer unknowns; this form is for comparison.
-    """
-    space = Space(planar)
-    points = [space.quantity(f"x{b}", "vector", "element") for b in ("a" if grounded else "ab")]
-    ground = space.quantity("c", "vector", "element")
-    gap = points[0].symbols - (ground if grounded else points[1]).symbols
-    lam = sp.symbols(f"lam_1:{3 if planar else 4}")
-    phi = space.components("vector", gap)
-    parts = [[space.quantity(f"{kind}{p.name[1:]}", "vector", "element") for p in points]
-             for kind in ("v", "a", "dx")]
-    vary = {}
-    for point, d in zip(points, parts[2], strict=True):
-        vary |= along(point.symbols, d.symbols)
-    in_time = [along(p.symbols, v.symbols) for p, v in zip(points, parts[0], strict=True)]
-    in_time += [along(v.symbols, a.symbols) for v, a in zip(*parts[:2], strict=True)]
-    rates = {s: e for rule in in_time for s, e in rule.items()}
-    work = sum(f * differential(p, vary) for f, p in zip(lam, phi, strict=True))
-    kept = [s for d in parts[2] for s in d.kept]
-    force_ = sp.Matrix(coefficients(work, kept))
-    name = "planar_" * planar + "spherical" + "_ground" * grounded
+def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
+            constants: Sequence[Quantity] = (), *, constraints: Sequence[sp.Expr] = (),
+            kinetic: sp.Expr = sp.S.Zero, strain: sp.Expr = sp.S.Zero,
+            potential: sp.Expr = sp.S.Zero, dissipation: sp.Expr = sp.S.Zero,
+            load: sp.Expr = sp.S.Zero) -> Element:
+    """Derive an element from its scalars; `load` is virtual work, linear in the directions."""
+    lam = sp.symbols(f"lam_1:{len(constraints) + 1}")
+    vary, time = varied(blocks), in_time(blocks)
+    work = sum(f * differential(phi, vary) for f, phi in zip(lam, constraints, strict=True))
+    work += differential(strain + potential, vary) - load
+    force = [entry for block in blocks for entry in space.components(
+        block.direction.kind, _of(work, block.direction.symbols)
+        + _of(dissipation, block.rate.symbols) + _inertia(kinetic, block, vary, time))]
+    gradient = sp.Matrix(force).jacobian(sp.Matrix(lam)) if lam else sp.zeros(len(force), 0)
+    _check_gradient(blocks, lam, constraints, gradient, vary)
+    velocity = [differential(phi, time) for phi in constraints]
     return Element(
-        name, "spherical joint as an explicit constraint" + " to the ground" * grounded, space,
-        (ground,) if grounded else (), (), tuple(points), *map(tuple, parts), lam,
-        (*force_, *phi), tuple(differential(differential(p, rates), rates) for p in phi),
-        (*(sp.S.Zero for _ in force_), *(differential(p, vary) for p in phi)),
-        force_.jacobian(sp.Matrix(lam)))
+        name, ("planar " if space.planar else "") + summary, space, tuple(constants),
+        tuple(blocks), lam, (*force, *constraints), _column(blocks, force, constraints, vary),
+        gradient, tuple(velocity), tuple(differential(v, time) for v in velocity),
+        _sums(blocks, kinetic, strain, potential),
+        _power(blocks, lam, constraints, dissipation, load))
 
 
-def force(planar: bool) -> Element:
-    """Dead force on a position: fixed direction in space, amplitude from the load's history."""
-    space = Space(planar)
-    d, v, dx, a = (space.quantity(name, "vector", "element") for name in ("d", "v", "dx", "a"))
-    amplitude = sp.Symbol("amplitude")
-    push = space.components("vector", -amplitude * d.symbols)
-    return Element("planar_force" if planar else "force", "dead force on a position", space, (d,),
-                   (), (), (v,), (a,), (dx,), (), tuple(push), (), tuple(sp.S.Zero for _ in push),
-                   sp.zeros(len(push), 0), amplitude * d.symbols.dot(v.symbols))
+def _inertia(kinetic: sp.Expr, block: Block, vary: Rules, time: Rules) -> sp.Matrix:
+    momentum = _of(kinetic, block.rate.symbols)
+    force = differential(momentum, time) - _of(differential(kinetic, vary),
+                                               block.direction.symbols)
+    return force + cross(block.rate.symbols, momentum) if block.turns else force
 
 
-def torque(planar: bool) -> Element:
-    """Dead torque on a rotation: ``delta W = m . R dTheta``, so its material value turns."""
-    space = Space(planar)
-    d = space.quantity("d", "axial", "element")
-    R = space.quantity("Ra", "rotation", "element")
-    Om, dth, A = (space.quantity(name, "axial", "element") for name in ("Om", "dth", "A"))
-    amplitude = sp.Symbol("amplitude")
-    work = amplitude * d.symbols.dot(R.symbols * dth.symbols)
-    material = -_of(work, dth.symbols)
-    linear = differential(material, turning(R.symbols, dth.symbols))
-    check_same("rate of a dead torque in material axes", linear,
-               -amplitude * skew(R.symbols.T * d.symbols) * dth.symbols, [R.symbols])
-    kept = space.components("axial", material)
-    return Element("planar_torque" if planar else "torque", "dead torque on a rotation", space,
-                   (d,), () if planar else (R,), (), (Om,), (A,), (dth,), (), tuple(kept), (),
-                   tuple(space.components("axial", linear)), sp.zeros(len(kept), 0),
-                   amplitude * (R.symbols * Om.symbols).dot(d.symbols))
+def _column(blocks, force, constraints, vary) -> tuple[sp.Expr, ...]:
+    c_mass, c_rate, c_place, c_constraint = sp.symbols("c_mass c_rate c_place c_constraint")
+    rates, accelerations = {}, {}
+    for block in blocks:
+        rates |= along(block.rate.symbols, block.unit.symbols)
+        accelerations |= along(block.acceleration.symbols, block.unit.symbols)
+    on_force = [c_place * differential(f, vary) + c_rate * differential(f, rates)
+                + c_mass * differential(f, accelerations) for f in force]
+    return (*on_force, *(c_constraint * differential(phi, vary) for phi in constraints))
 
 
-ELEMENTS = {
-    "revolute_ground": lambda: revolute(True),
-    "revolute": lambda: revolute(False),
-    "spherical_ground": lambda: spherical(True, False),
-    "spherical": lambda: spherical(False, False),
-    "planar_spherical_ground": lambda: spherical(True, True),
-    "planar_spherical": lambda: spherical(False, True),
-    "force": lambda: force(False),
-    "torque": lambda: torque(False),
-    "planar_force": lambda: force(True),
-    "planar_torque": lambda: torque(True),
-}
+def _check_gradient(blocks, lam, constraints, gradient, vary) -> None:
+    """Columns of the multipliers and rows of the constraints are transposes of each other."""
+    directions = sp.Matrix([s for block in blocks for s in block.direction.kept])
+    for k in range(len(lam)):
+        check_same("constraint force is the gradient", sp.Matrix([gradient[:, k].dot(directions)]),
+                   sp.Matrix([differential(constraints[k], vary)]))
+
+
+def _sums(blocks, kinetic, strain, potential) -> dict[str, sp.Expr]:
+    """Energies; momentum and its moment, conjugate to rigid motions of the element."""
+    sums = {"kinetic": kinetic, "strain": strain, "potential": potential}
+    if kinetic != 0:
+        linear, moment = sp.zeros(3, 1), sp.zeros(3, 1)
+        for block in blocks:
+            p = _of(kinetic, block.rate.symbols)
+            if block.turns:
+                moment += block.state.symbols * p
+            else:
+                linear, moment = linear + p, moment + cross(block.state.symbols, p)
+        sums |= {f"P_{a}": linear[k] for k, a in enumerate("xyz")}
+        sums |= {f"H_{a}": moment[k] for k, a in enumerate("xyz")}
+    return {name: value for name, value in sums.items() if value != 0}
+
+
+def _power(blocks, lam, constraints, dissipation, load) -> sp.Expr | None:
+    """Rate of work on the system of what is not in the energies."""
+    rules = {d: r for block in blocks for d, r in zip(block.direction.symbols, block.rate.symbols,
+                                                      strict=True) if isinstance(d, sp.Symbol)}
+    power = sp.sympify(load).xreplace(rules)
+    for block in blocks:
+        power -= block.rate.symbols.dot(_of(dissipation, block.rate.symbols))
+    if any(phi.has(AMPLITUDE[0]) for phi in constraints):   # a drive: what moves is not at rest
+        moved = _moved(blocks, "rate")
+        power -= sum(f * differential(phi, moved) for f, phi in zip(lam, constraints, strict=True))
+    return power if power != 0 else None

@@ -1,4 +1,4 @@
-"""The kernels that are shipped: one table.
+"""The superelement kernels that are shipped, one table; all elements of `catalogue` are, too.
 
 A kernel fuses one frame and one inertia option, so the loop makes one call an element and the
 compiler sees all of its arithmetic. The formulas are derived once for each and only combined here:
@@ -26,6 +26,3 @@ SUPERELEMENTS = (
     ("planar-f2", "positions", "b"),
     ("planar-f3", "converged_mean", "b"),
 )
-ELEMENTS = ("revolute_ground", "revolute", "spherical_ground", "spherical",
-            "planar_spherical_ground", "planar_spherical", "force", "torque", "planar_force",
-            "planar_torque")

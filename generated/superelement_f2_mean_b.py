@@ -412,7 +412,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 H_z += R_zx*pw_x + R_zy*pw_y + R_zz*pw_z
             energies[0] += kinetic
             energies[1] += strain
-            energies[9] += potential
+            energies[8] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[4] += P_z

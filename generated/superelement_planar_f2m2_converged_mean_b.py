@@ -263,7 +263,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 H_z += pw_z
             energies[0] += kinetic
             energies[1] += strain
-            energies[9] += potential
+            energies[8] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[7] += H_z

@@ -337,7 +337,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     px_z*(-R0_xz*x_y + R0_yz*x_x))
             energies[0] += kinetic
             energies[1] += strain
-            energies[9] += potential
+            energies[8] += potential
             energies[2] += P_x
             energies[3] += P_y
             energies[4] += P_z

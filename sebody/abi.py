@@ -6,23 +6,25 @@ not depend on which kernels a scene uses.
 ===============  =================================================================================
 argument         meaning
 ===============  =================================================================================
-task             RESIDUAL, TANGENT (residual and matrix), ENERGY or ACCELERATION (constraints)
+task             RESIDUAL, TANGENT (residual and matrix), ENERGY, or VELOCITY and ACCELERATION:
+                 constraints differentiated in time
 count            number of elements in the batch
 stride           length of an index row
 width            number n of unknowns of an element (coordinates, then multipliers)
-index            rows: offset into constants, frame or load, n, ids of rotations, ids of unknowns
+index            rows: offset into constants, frame, item, ids of rotations, ids of unknowns; an
+                 item is something that does work: load, damper, drive
 constants        one flat row per body type; matrices by padded columns, see `padded`
 q, R             coordinates (positions, modes, multipliers; rotations' step increments), rotations
 v, a             velocities and accelerations of the coordinates
 reference        frames of the last converged step, (frames, 9)
 frames           frames of the current iterate, (frames, 9); superelements write theirs
 T                tangent operators of the step increments of rotations, (rotations, 9)
-loads            load amplitudes at the current time
+loads            of every item its amplitude now, and the two rates of that
 coefficients     c_mass, c_rate, c_place, c_geo, c_constraint of the matrix; gravity (3)
 g, J             element blocks: forces (count, n), matrices (count, n, n)
 work             scratch memory, WORK_ROWS padded rows
-energy           sums: kinetic, strain, momentum (3), moment of momentum (3), power of the loads,
-                 potential of gravity
+energy           sums: kinetic, strain, momentum (3), moment of momentum (3), potential; then the
+                 power of every item
 ===============  =================================================================================
 
 ``J = c_mass dG/da + c_rate dG/dv + c_place dG/dq T``: rotations vary multiplicatively, and T
@@ -34,10 +36,10 @@ from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-RESIDUAL, TANGENT, ENERGY, ACCELERATION = range(4)
+RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
 HEADER = 3          # integers of an index row before the ids
 LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
-ENERGIES, POWER_OF_LOADS, POTENTIAL = 10, 8, 9
+POTENTIAL, POWERS = 8, 9      # among the energies; powers are the last
 
 
 @njit(cache=True)

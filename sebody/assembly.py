@@ -10,8 +10,11 @@ from .abi import LANES, padded
 from .dense import padded_columns
 from .errors import InputError
 from .kernels import element_kernel
-from .model import Model, Superelement, Triplet
+from .links import link_arrays
+from .model import Model, Superelement
+from .numbering import Numbering, coordinates, number
 from .reduction import ReducedBody
+from .triplets import Element
 
 DENSE_LIMIT = 24        # above this many unknowns elimination by blocks is faster than an inverse
 
@@ -28,8 +31,8 @@ class System(NamedTuple):
     at_index: NDArray
     at_g: NDArray
     at_J: NDArray
-    first_joint: NDArray    # (1,) first batch of joints
-    first_load: NDArray     # (1,) first batch of loads
+    first_joint: NDArray    # (1,) first batch that is none of superelements
+    first_power: NDArray    # (1,) first batch of what does work: loads, dampers, drives
     index: NDArray
     constants: NDArray
     g_unknown: NDArray      # unknown of every entry of the element forces
@@ -49,80 +52,23 @@ class System(NamedTuple):
     linked: NDArray         # (1,) 1 where bodies that turn against each other are coupled
     dimension: NDArray      # (1,) coordinates of a position
     magnitude: NDArray      # size of each coordinate, for the rounding floor
-    load_at: NDArray        # (loads + 1,) where each table starts
-    load_times: NDArray
-    load_values: NDArray
-    load_function: NDArray  # address of a compiled history, 0 for a table
-
-
-class Numbering(NamedTuple):
-    """Where the user's things are among the unknowns."""
-
-    free: int                       # number of unknowns; fixed coordinates come behind
-    total: int
-    triplets: dict[int, int]        # id(triplet) -> first coordinate
-    rotations: dict[int, int]       # id(triplet) -> number of its rotation matrix
-    modes: dict[str, int]           # superelement -> first modal amplitude
-    multipliers: dict[int, int]     # joint -> first multiplier
-    names: list[str]                # of every coordinate
-
-
-def number(model: Model) -> Numbering:
-    """Number the unknowns body by body; what bodies share waits for the last one that has it.
-
-    Multipliers follow the unknowns they act on. So an elimination in this order meets no zero
-    pivot, and keeps its fill close to the diagonal.
-
-    Raises
-    ------
-    InputError
-        A triplet that belongs to no superelement and is not fixed.
-    """
-    names, at, modes, multipliers = [], {}, {}, {}
-    fixed: list[Triplet] = []
-    last = {id(t): body.name for body in model.bodies.values()
-            for t in (*body.positions, *body.rotations)}
-
-    def place(triplet: Triplet) -> None:
-        if triplet.fixed and triplet not in fixed:
-            fixed.append(triplet)
-        if triplet.fixed or id(triplet) in at:
-            return
-        at[id(triplet)] = len(names)
-        names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
-
-    def place_joints() -> None:
-        for k, joint in enumerate(model.joints):
-            if k not in multipliers and all(t.fixed or id(t) in at for t in joint.triplets):
-                multipliers[k] = len(names)
-                names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
-
-    for body in model.bodies.values():
-        modes[body.name] = len(names)
-        names.extend(f"mode {k} of {body.name}" for k in range(body.body.modes))
-        for triplets in (body.rotations, body.positions):
-            for triplet in triplets:
-                if last[id(triplet)] == body.name:
-                    place(triplet)
-            place_joints()
-    for node in model.nodes.values():
-        for triplet in (node.position, node.rotation):
-            if triplet is None or id(triplet) in at:
-                continue
-            if not triplet.fixed:
-                raise InputError(f"{triplet.name} belongs to no superelement, so nothing holds "
-                                 "it: attach a body or fix it")
-            place(triplet)      # fixed nodes without a body stand for the ground
-    free = len(names)
-    for triplet in fixed:
-        at[id(triplet)] = len(names)
-        names.extend(f"{triplet.name}[{k}] (fixed)" for k in range(triplet.start.size))
-    rotations = {}
-    if not model.planar:
-        for node in model.nodes.values():
-            if node.rotation is not None and id(node.rotation) in at:
-                rotations.setdefault(id(node.rotation), len(rotations))
-    return Numbering(free, len(names), at, rotations, modes, multipliers, names)
+    # items: what has a history or does work
+    table_at: NDArray       # (items + 1,) where each table starts
+    table_times: NDArray
+    table_cubics: NDArray   # (rows, 4), see sebody.histories
+    functions: NDArray      # (items, 3) addresses of compiled histories, 0 for a table
+    prescribed: NDArray     # (k, 3) coordinate, item, 1 for rotations
+    prescribed_factor: NDArray
+    # positions at the ends of rigid links, see sebody.links
+    hanging: NDArray
+    arms: NDArray
+    arm_vectors: NDArray
+    linked_elements: NDArray
+    linked_maps: NDArray
+    linked_blocks: NDArray
+    linked_entries: NDArray
+    arm_entries: NDArray
+    relaxed: NDArray        # (1,) 1 where constraints are redundant
 
 
 class Batch(NamedTuple):
@@ -140,21 +86,33 @@ def build(model: Model) -> tuple[System, Numbering]:
     Raises
     ------
     InputError
-        No superelements, or a triplet that nothing holds.
+        No bodies, or a triplet that nothing holds.
     """
-    if not model.bodies:
-        raise InputError("the model has no superelement: add one with model.superelement(...)")
+    if not (model.bodies or model.rigid_bodies):
+        raise InputError("the model has no body: add one with model.superelement(...) or "
+                         "model.rigid_body(...)")
     numbering = number(model)
+    if numbering.free == 0:
+        raise InputError("every node of the model is fixed: nothing is left to move, free one")
     constants: list[NDArray] = []
     batches = _body_batches(model, numbering, constants)
     first_joint = len(batches)
-    batches += _joint_batches(model, numbering, constants)
-    first_load = len(batches)
-    batches += _load_batches(model, numbering, constants)
+    elements = [*model.rigid_bodies.values(), *model.joints, *model.loads]
+    working = [element_kernel(e.kind).POWER for e in elements]
+    batches += _element_batches(numbering, constants, [e for e, w in zip(
+        elements, working, strict=True) if not w])
+    first_power = len(batches)
+    batches += _element_batches(numbering, constants, [e for e, w in zip(
+        elements, working, strict=True) if w])
     dense = numbering.free <= DENSE_LIMIT
     places = _dense_places if dense else _sparse_places
-    entries, rows, columns, diagonal, pattern = places(*_element_places(batches), numbering.free)
-    tables = _load_tables(model)
+    row, column = _element_places(batches)
+    axes = _body_axes(model, numbering, batches, first_joint, first_power)
+    links, linked_row, linked_column = link_arrays(model, numbering, batches, axes["turned"])
+    entries, rows, columns, diagonal, pattern = places(
+        np.concatenate([row, linked_row]), np.concatenate([column, linked_column]), numbering.free)
+    links["linked_entries"], links["arm_entries"] = np.split(
+        entries[len(row):], [len(linked_row) - links.pop("arm_entry_count")])
     widths = [b.width for b in batches]
     sizes = [len(b.rows) for b in batches]
     integers = np.array
@@ -168,28 +126,23 @@ def build(model: Model) -> tuple[System, Numbering]:
         at_index=_starts([len(b.rows) * len(b.rows[0]) for b in batches]),
         at_g=_starts([s * w for s, w in zip(sizes, widths, strict=True)]),
         at_J=_starts([s * w * w for s, w in zip(sizes, widths, strict=True)]),
-        first_joint=integers([first_joint]), first_load=integers([first_load]),
+        first_joint=integers([first_joint]), first_power=integers([first_power]),
         index=integers([i for b in batches for row in b.rows for i in row]),
         constants=np.concatenate(constants),
         g_unknown=integers([u for b in batches for row in b.unknowns for u in row]),
-        J_entry=entries.astype(np.int32), rows=rows.astype(np.int32),
+        J_entry=entries[:len(row)].astype(np.int32), rows=rows.astype(np.int32),
         columns=columns.astype(np.int32), diagonal=diagonal[:numbering.free],
         padding=diagonal[numbering.free:],
         block_starts=pattern.starts, block_rows=pattern.rows, block_diagonal=pattern.diagonal,
         is_multiplier=multiplier,
-        rotation_at=_rotation_starts(model, numbering),
-        **_body_axes(model, numbering, batches, first_joint, first_load),
-        dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering), **tables)
+        rotation_at=_rotation_starts(model, numbering), **axes,
+        dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering),
+        **_items(numbering), **links, relaxed=np.zeros(1, dtype=np.int64))
     return system, numbering
 
 
 def _starts(sizes: list[int]) -> NDArray:
     return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
-
-
-def _coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
-    first = numbering.triplets[id(triplet)]
-    return list(range(first, first + triplet.start.size))
 
 
 def _body_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:
@@ -204,7 +157,7 @@ def _body_batches(model: Model, numbering: Numbering, constants: list) -> list[B
             constants.append(row)
             at += len(row)
         unknowns = [c for t in (*body.positions, *body.rotations)
-                    for c in _coordinates(numbering, t)]
+                    for c in coordinates(numbering, t)]
         first = numbering.modes[body.name]
         unknowns += range(first, first + body.body.modes)
         nodes = ([] if not model.planar and not body.rotations else
@@ -212,7 +165,7 @@ def _body_batches(model: Model, numbering: Numbering, constants: list) -> list[B
                  else [0] * len(body.rotations))
         batch = batches.setdefault((body.kernel.__name__, len(unknowns)),
                                    Batch(body.kernel, len(unknowns), [], []))
-        batch.rows.append([rows_of[key], number_, len(unknowns), *nodes, *unknowns])
+        batch.rows.append([rows_of[key], number_, 0, *nodes, *unknowns])
         batch.unknowns.append(unknowns)
     return list(batches.values())
 
@@ -234,39 +187,23 @@ def mass_constants(body: ReducedBody, origin: NDArray) -> list[NDArray]:
             body.total_mass * (body.centre_of_mass - origin), np.array([body.total_mass])]
 
 
-def _joint_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:
+def _element_batches(numbering: Numbering, constants: list,
+                     elements: list[Element]) -> list[Batch]:
     batches: dict[str, Batch] = {}
     at = sum(map(len, constants))
-    for k, joint in enumerate(model.joints):
-        unknowns = [c for t in joint.triplets for c in _coordinates(numbering, t)]
-        first = numbering.multipliers[k]
-        unknowns += range(first, first + joint.multipliers)
-        batch = batches.setdefault(joint.kind, Batch(element_kernel(joint.kind), len(unknowns),
-                                                     [], []))
-        nodes = [numbering.rotations[id(t)] for t in joint.triplets
+    for element in elements:
+        unknowns = [c for t in element.triplets for c in coordinates(numbering, t)]
+        if element.multipliers:
+            first = numbering.first_multiplier[id(element)]
+            unknowns += range(first, first + element.multipliers)
+        batch = batches.setdefault(element.kind, Batch(element_kernel(element.kind),
+                                                       len(unknowns), [], []))
+        nodes = [numbering.rotations[id(t)] for t in element.triplets
                  if id(t) in numbering.rotations]
-        batch.rows.append([at, 0, len(unknowns), *nodes, *unknowns])
+        batch.rows.append([at, 0, numbering.items.get(id(element), 0), *nodes, *unknowns])
         batch.unknowns.append(unknowns)
-        constants.append(joint.constants)
-        at += len(joint.constants)
-    return list(batches.values())
-
-
-def _load_batches(model: Model, numbering: Numbering, constants: list) -> list[Batch]:
-    batches: dict[str, Batch] = {}
-    at = sum(map(len, constants))
-    held = {id(t) for body in model.bodies.values() for t in (*body.positions, *body.rotations)}
-    for k, load in enumerate(model.loads):
-        if id(load.triplet) not in held:
-            raise InputError(f"{load.name}: nothing holds this triplet: attach a body to it")
-        unknowns = _coordinates(numbering, load.triplet)
-        batch = batches.setdefault(load.kind, Batch(element_kernel(load.kind), len(unknowns),
-                                                    [], []))
-        nodes = ([numbering.rotations[id(load.triplet)]] if load.kind == "torque" else [])
-        batch.rows.append([at, k, len(unknowns), *nodes, *unknowns])
-        batch.unknowns.append(unknowns)
-        constants.append(load.direction)
-        at += len(load.direction)
+        constants.append(element.constants)
+        at += len(element.constants)
     return list(batches.values())
 
 
@@ -308,7 +245,7 @@ def _rotation_starts(model: Model, numbering: Numbering) -> NDArray:
 
 
 def _body_axes(model: Model, numbering: Numbering, batches: list[Batch],
-               bodies: int, first_load: int) -> dict[str, NDArray]:
+               bodies: int, first_power: int) -> dict[str, NDArray]:
     """Free positions are solved for in the axes of the first body they belong to.
 
     There the tangent of a body hardly changes, so one factorization serves many steps. Matrices of
@@ -317,8 +254,10 @@ def _body_axes(model: Model, numbering: Numbering, batches: list[Batch],
     frame_of: dict[int, int] = {}
     for k, body in enumerate(model.bodies.values()):
         for triplet in body.positions:
-            if not triplet.fixed:
+            if triplet.solved:
                 frame_of.setdefault(numbering.triplets[id(triplet)], k)
+    for triplet in numbering.hanging:
+        frame_of[numbering.triplets[id(triplet)]] = -1
     blocks, start = [], 0
     for k, batch in enumerate(batches):
         for row, unknowns in zip(batch.rows, batch.unknowns, strict=True):
@@ -327,11 +266,12 @@ def _body_axes(model: Model, numbering: Numbering, batches: list[Batch],
                 if frame_of.get(unknown, own) != own:
                     blocks.append((start, batch.width, local, frame_of[unknown], own))
             start += batch.width ** 2
-    loads = sum(len(b.rows) * b.width ** 2 for b in batches[first_load:])
+    loads = sum(len(b.rows) * b.width ** 2 for b in batches[first_power:])
     linked = (any(block[0] < start - loads for block in blocks)
               or any(len(joint.triplets) > 1 for joint in model.joints))
     return {"linked": np.array([int(linked)]),
-            "turned": np.array(list(frame_of.items()), dtype=np.int64).reshape(-1, 2),
+            "turned": np.array([item for item in frame_of.items() if item[1] >= 0],
+                               dtype=np.int64).reshape(-1, 2),
             "turned_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
 
 
@@ -341,25 +281,31 @@ def _magnitude(model: Model, numbering: Numbering) -> NDArray:
     size = np.zeros(numbering.total)
     for node in model.nodes.values():
         if node.position is not None and id(node.position) in numbering.triplets:
-            size[_coordinates(numbering, node.position)] = np.abs(points).max()
+            size[coordinates(numbering, node.position)] = np.abs(points).max()
         if node.rotation is not None and id(node.rotation) in numbering.triplets:
-            size[_coordinates(numbering, node.rotation)] = 1.0
+            size[coordinates(numbering, node.rotation)] = 1.0
     return size
 
 
-def _load_tables(model: Model) -> dict[str, NDArray]:
-    histories = [load.history for load in model.loads]
-    return {"load_at": _starts([len(h.times) for h in histories]),
-            "load_times": np.array([t for h in histories for t in h.times], dtype=float),
-            "load_values": np.array([v for h in histories for v in h.values], dtype=float),
-            "load_function": np.array([h.address for h in histories], dtype=np.int64)}
+def _items(numbering: Numbering) -> dict[str, NDArray]:
+    """Histories of the items, and the coordinates that some of them move."""
+    histories = numbering.histories
+    return {"table_at": _starts([len(h.times) for h in histories]),
+            "table_times": np.array([t for h in histories for t in h.times], dtype=float),
+            "table_cubics": np.array([c for h in histories for c in h.cubics],
+                                     dtype=float).reshape(-1, 4),
+            "functions": np.array([h.addresses for h in histories],
+                                  dtype=np.int64).reshape(-1, 3),
+            "prescribed": np.array([row[:3] for row in numbering.prescribed],
+                                   dtype=np.int64).reshape(-1, 3),
+            "prescribed_factor": np.array([row[3] for row in numbering.prescribed], dtype=float)}
 
 
 def work_size(model: Model) -> int:
     """Scratch memory the kernels of a model need."""
     rows = [b.kernel.WORK_ROWS * padded(max(_width(b), 9 * b.kernel.N_ROTATIONS))
             for b in model.bodies.values()]
-    return max([*rows, 64])
+    return max([*rows, 64])     # elements have two rows of at most fifteen
 
 
 def _width(body: Superelement) -> int:

@@ -17,7 +17,16 @@ from scipy.spatial.transform import Rotation
 
 import sebody.generated
 
-from .abi import ACCELERATION, ENERGIES, ENERGY, POTENTIAL, RESIDUAL, TANGENT, call_kernel, padded
+from .abi import (
+    ACCELERATION,
+    ENERGY,
+    POTENTIAL,
+    POWERS,
+    RESIDUAL,
+    TANGENT,
+    call_kernel,
+    padded,
+)
 from .dense import padded_columns
 from .errors import InputError
 from .kernels import load, user_directory
@@ -80,7 +89,7 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
              ) -> tuple[NDArray, NDArray, NDArray]:
     """Forces, matrix and energies of a kernel in the state of a case."""
     n, module = case.n, case.module
-    g, J, energy = np.zeros(n), np.zeros(n * n), np.zeros(ENERGIES)
+    g, J, energy = np.zeros(n), np.zeros(n * n), np.zeros(POWERS + 1)
     work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
     T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
     frame = case.frames.copy()
@@ -154,7 +163,7 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     q = np.concatenate([x.ravel(), rotations, random.normal(size=modes)])
     about = np.array([0.0, 0.0, beta]) if planar else beta * random.normal(size=3) / 1.8
     frame = (base * Rotation.from_rotvec(about)).as_matrix().ravel()
-    index = np.array([0, 0, n, *range(nrot), *range(n)])
+    index = np.array([0, 0, 0, *range(nrot), *range(n)])
     v, a = random.normal(size=n), random.normal(size=n)
     of_translations, moment = random.normal(size=(n, d)), random.normal(size=d)
     constants = constants_row(alpha, np.full(npos, 1 / npos), alpha_r, X, S, M, of_translations,

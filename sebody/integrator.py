@@ -4,24 +4,18 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
 from . import loop
-from .abi import ENERGIES, LANES, padded
-from .assembly import DENSE_LIMIT, Numbering, System, build, work_size
+from .abi import LANES, POWERS, padded
+from .assembly import DENSE_LIMIT, System, build, work_size
 from .errors import InputError, SimulationError
 from .loop import Record, Scheme, State
 from .model import Model
+from .numbering import Numbering
 from .results import Result
-
-REASONS = {
-    loop.HALF_TURN: "a node is turned by nearly half a turn against its body's frame",
-    loop.NO_FRAME: "the search for a body's frame did not end",
-    loop.NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
-    loop.SLOW: "Newton's iteration did not converge",
-}
+from .start import REASONS, Start, assembled, start
 
 
 def generalized_alpha(rho: float = 0.9, tolerance: float = 1e-8,
@@ -77,17 +71,22 @@ class Simulation:
     output_every : int
         Keep every so many steps.
 
+    Attributes
+    ----------
+    start : Start
+        Initial velocities that were solved for, redundant constraints.
+
     Raises
     ------
     InputError
-        Bad step, singular constraints or mass, or an initial state that violates constraints.
+        Bad step, singular mass, contradicting constraints, or an initial state that violates them.
     """
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1):
         if not (np.isfinite(h) and h > 0):
             raise InputError(f"the time step is {h}: give a positive number")
-        if int(output_every) < 1:
+        if output_every != int(output_every) or output_every < 1:
             raise InputError(f"output_every is {output_every}: give a whole number of steps >= 1")
         self.model, self.h, self.every = model, float(h), int(output_every)
         self.scheme = scheme or generalized_alpha()
@@ -98,7 +97,7 @@ class Simulation:
         self.seconds = 0.0
         self.failure = ""
         self._factors = None
-        _start(self.system, self.numbering, self.state)
+        self.start: Start = start(model, self.system, self.numbering, self.state)
         first = _record(self.state, 1, self.every)
         self.state.control[loop.RECORDED] = 0
         loop.write_record(self.state, first)
@@ -156,7 +155,7 @@ class Simulation:
     def _factorize(self) -> None:
         """Factors with exchanges of rows, where elimination in order met a small pivot."""
         scale = diags_array(self.state.scale[:self.numbering.free])
-        matrix = csc_matrix(scale @ _sparse(self.system, self.state) @ scale)
+        matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
         self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
 
     def _explain(self) -> str:
@@ -178,18 +177,19 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
     bodies, turns = len(model.bodies), len(numbering.rotations)
     zeros = np.zeros
     q, v = zeros(total), zeros(total)
-    for node in model.nodes.values():
+    for node in (*model.nodes.values(), *model.grounds):
         for triplet in (node.position, node.rotation):
             if triplet is not None and id(triplet) in numbering.triplets:
                 first = numbering.triplets[id(triplet)]
                 q[first:first + triplet.start.size] = triplet.start
-                v[first:first + triplet.start.size] = 0.0 if triplet.fixed else triplet.rate
+                v[first:first + triplet.start.size] = triplet.rate if triplet.solved else 0.0
     for body in model.bodies.values():
         first = numbering.modes[body.name]
         v[first:first + body.body.modes] = body.mode_rates
     identities = np.tile(np.eye(3).ravel(), max(turns, bodies))
     R, frames = identities[:9 * turns], identities[:9 * bodies]
-    parts = loop.recorded_parts(total, turns, bodies)
+    items = len(numbering.histories)
+    parts = loop.recorded_parts(total, turns, bodies, items)
     now = zeros(parts["frames_old"].stop)
     for name, value in {"q": q, "v": v, "R": R, "frames": frames, "frames_old": frames}.items():
         now[parts[name]] = value
@@ -200,101 +200,18 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
     coefficients = zeros(8)
     coefficients[5:5 + model.dimension] = model.gravity_field
     return State(
-        now, *[now[parts[name]] for name in ("q", "R", "v", "a", "frames", "frames_old")],
-        aux=zeros(total), q_old=q.copy(), R_old=R.copy(), v_old=v.copy(), a_old=zeros(total),
-        aux_old=zeros(total), dq=zeros(total), T=R.copy(),
-        loads=zeros(max(len(model.loads), 1)), coefficients=coefficients,
+        now, *[now[parts[name]] for name in ("works", "q", "R", "v", "a", "frames", "frames_old")],
+        aux=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
+        v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total), T=R.copy(),
+        loads=zeros(3 * items), loads_old=zeros(3 * items), powers=zeros(items),
+        coefficients=coefficients,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
-        turned=zeros(int(system.width.max()) ** 2), residual=zeros(total),
+        turned=zeros(int(system.width.max()) ** 2), residual=zeros(total), forces=zeros(total),
         correction=zeros(padded(total) + LANES), matrix=zeros(system.rows.size + 1),
         scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, padded(n)) if dense else (1, 1)),
         column=zeros(LANES * LANES * system.block_diagonal.size), work=zeros(work_size(model)),
-        energy=zeros(ENERGIES), clock=clock, control=control)
-
-
-def _start(system: System, numbering: Numbering, state: State) -> None:
-    """Accelerations and multipliers at t = 0 from the index-1 form, after checking the state."""
-    n = numbering.free
-    loop.set_loads(system, state, 0.0)
-    _check_start(system, numbering, state)
-    state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
-    _evaluate(system, state, loop.RENEWED)
-    matrix = _sparse(system, state)
-    _evaluate(system, state, loop.START)
-    loop.to_body_axes(system, state.frames, state.residual, False)
-    answer = _solve_start(matrix, state.residual[:n].copy(), numbering)
-    full = np.zeros(numbering.total)
-    full[:n] = -answer
-    loop.to_body_axes(system, state.frames, full, True)
-    multiplier = system.is_multiplier[:numbering.total] > 0
-    state.a[:] = np.where(multiplier, 0.0, full)
-    state.q[multiplier] = full[multiplier]
-    state.aux[:] = state.a
-    state.frames_old[:] = state.frames
-    state.clock[loop.POWER] = loop.load_power(system, state)
-
-
-def _sparse(system: System, state: State) -> csc_matrix:
-    """The assembled matrix, without padding."""
-    n, entries = system.diagonal.size, state.matrix[:-1]
-    kept = np.flatnonzero((entries != 0.0) & (system.rows < n))
-    return csc_matrix((entries[kept], (system.rows[kept], system.columns[kept])), shape=(n, n))
-
-
-def _evaluate(system: System, state: State, level: int) -> None:
-    status = loop.assemble(level, system, state, state.residual)
-    if status:
-        raise InputError(f"the initial state cannot be evaluated: {REASONS[status]}")
-
-
-def _solve_start(matrix, residual: NDArray, numbering: Numbering) -> NDArray:
-    """Solve the scaled index-1 system; a singular one names the unknown that makes it so."""
-    scale = 1.0 / np.sqrt(np.maximum(abs(matrix).max(axis=0).toarray().ravel(), 1e-300))
-    scaled = csc_matrix(matrix.multiply(scale[:, None]).multiply(scale[None, :]))
-    try:
-        factors = splu(scaled)
-        pivots = np.abs(factors.U.diagonal())
-        weakest = int(np.argmin(pivots))
-        singular = pivots[weakest] < 1e-13 * pivots.max()
-        name = numbering.names[int(np.argsort(factors.perm_c)[weakest])]
-    except RuntimeError:
-        singular, name = True, _null_unknown(scaled, numbering)
-    if singular:
-        raise InputError(f"the constraints or the mass are singular at {name}: two joints demand "
-                         "the same thing, a joint acts on fixed triplets only, or an unknown has "
-                         "no mass; remove the redundant joint or support")
-    return scale * factors.solve(scale * residual)
-
-
-def _null_unknown(matrix, numbering: Numbering) -> str:
-    """Largest entry of the null vector of a small singular matrix."""
-    if numbering.free > 1000:
-        return "an unknown"
-    _, _, vectors = np.linalg.svd(matrix.toarray())
-    return numbering.names[int(np.argmax(np.abs(vectors[-1])))]
-
-
-def _check_start(system: System, numbering: Numbering, state: State) -> None:
-    """Initial positions and velocities must satisfy the constraints."""
-    multipliers = np.flatnonzero(system.is_multiplier)
-    if not multipliers.size:
-        return
-    state.coefficients[:5] = (0.0, 0.0, 0.0, 1.0, 1.0)
-    _evaluate(system, state, loop.RENEWED)
-    gap = state.residual[multipliers]
-    n = numbering.free
-    matrix = _sparse(system, state)
-    velocity = state.v.copy()
-    loop.to_body_axes(system, state.frames, velocity, False)
-    velocity[multipliers] = 0.0
-    rate = (matrix @ velocity[:n])[multipliers]
-    size = max(np.abs(state.v).max(), 1e-300)
-    for what, values, limit in (("position", gap, 1e-8), ("velocity", rate, 1e-8 * size)):
-        worst = int(np.argmax(np.abs(values)))
-        if abs(values[worst]) > limit:
-            raise InputError(f"the initial {what} violates {numbering.names[multipliers[worst]]} "
-                             f"by {abs(values[worst]):.3g}: start from a state the joints allow")
+        energy=zeros(POWERS + items), clock=clock, control=control)
 
 
 def _record(state: State, steps: int, every: int) -> Record:

@@ -19,20 +19,23 @@ from . import elimination
 from .abi import (
     ACCELERATION,
     ENERGY,
-    POWER_OF_LOADS,
+    POWERS,
     RESIDUAL,
     TANGENT,
+    VELOCITY,
     at,
     borrowed,
     call_kernel,
     pointer_to,
 )
 from .dense import columns_times
+from .histories import cubic_at
+from .links import add_expanded, add_second_order, place_hanging, pull_back
 from .rotations import tangent_operator, turn
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
 BEGIN, ITERATE, FACTORED, SOLVED = range(4)             # where it goes on
-FORCES, TURNED, RENEWED, START = range(4)               # what is assembled, see assemble
+FORCES, TURNED, RENEWED, START, RATES = range(5)        # what is assembled, see assemble
 # why a step failed
 NO_REASON, HALF_TURN, NO_FRAME, NOT_FINITE, SLOW = range(5)
 FINEST = 4096           # a grid step is cut into at most this many parts
@@ -44,12 +47,14 @@ LONGEST_HABIT = 32      # steps that begin with a new matrix before reuse is tri
 ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
 POOR = 0.3              # contraction so slow asks for a new matrix at once
 MOST_MATRICES = 4       # of a step
+RELAXATION = 1e-7       # of redundant constraints, in the scaled iteration matrix alone
 
 
 class State(NamedTuple):
     """Everything a restart needs, and scratch memory."""
 
-    now: NDArray            # one block of what is recorded: the next six are parts of it
+    now: NDArray            # one block of what is recorded: the next seven are parts of it
+    works: NDArray          # done by every item since the start
     q: NDArray              # positions, modes, angles, multipliers; rotations: step increments
     R: NDArray              # rotation matrices, nine numbers each
     v: NDArray
@@ -57,6 +62,7 @@ class State(NamedTuple):
     frames: NDArray         # of superelements, nine numbers each
     frames_old: NDArray     # of the last accepted step
     aux: NDArray            # auxiliary accelerations of the integrator
+    q_start: NDArray        # at t = 0
     q_old: NDArray          # the last accepted step
     R_old: NDArray
     v_old: NDArray
@@ -64,12 +70,15 @@ class State(NamedTuple):
     aux_old: NDArray
     dq: NDArray             # increment of the step
     T: NDArray              # tangent operators of the rotation increments
-    loads: NDArray          # load amplitudes now
+    loads: NDArray          # of every item its amplitude and two rates
+    loads_old: NDArray      # at the last accepted step
+    powers: NDArray         # of the items, there
     coefficients: NDArray   # (8,) of the matrix, then gravity: see sebody.abi
     g: NDArray              # element forces
     J: NDArray              # element matrices, of superelements in the axes of their frame
     turned: NDArray         # one of them, positions in the axes they are solved for in
     residual: NDArray       # in body axes
+    forces: NDArray         # the same, of the last matrix and in global axes, for links
     correction: NDArray
     matrix: NDArray         # entries by columns or in blocks, there its factors; in body axes
     scale: NDArray          # of the unknowns: the scaled matrix has a unit diagonal
@@ -83,9 +92,9 @@ class State(NamedTuple):
 
 
 # State.clock
-(TIME, STEP, CURRENT_STEP, WORK, POWER, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, SPAN,
- YOUNG_RATE, EXCESS) = range(12)
-CLOCKS = 12
+(TIME, STEP, CURRENT_STEP, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, SPAN, YOUNG_RATE,
+ EXCESS) = range(10)
+CLOCKS = 10
 # State.control
 (PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
  RECORDED, AGE, PIVOTED, EAGER, EAGER_LEFT) = range(17)
@@ -99,9 +108,10 @@ class Record(NamedTuple):
     every: NDArray          # (1,) grid steps between records
 
 
-def recorded_parts(coordinates: int, rotations: int, bodies: int) -> dict[str, slice]:
+def recorded_parts(coordinates: int, rotations: int, bodies: int, items: int
+                   ) -> dict[str, slice]:
     """Where things are in State.now and so in the rows of a record."""
-    sizes = {"t": 1, "work": 1, "iterations": 1, "q": coordinates, "R": 9 * rotations,
+    sizes = {"t": 1, "iterations": 1, "works": items, "q": coordinates, "R": 9 * rotations,
              "v": coordinates, "a": coordinates, "frames": 9 * bodies, "frames_old": 9 * bodies}
     parts, first = {}, 0
     for name, size in sizes.items():
@@ -145,23 +155,34 @@ def run_kernels(task, first, last, system, state):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def set_loads(system, state, t):
-    """Amplitudes of the loads at a time."""
-    for k in range(system.load_function.size):
-        if system.load_function[k] != 0:
-            state.loads[k] = _call_function(system.load_function[k], t)
+def set_loads(system, loads, t):
+    """Amplitudes of the items and their rates at a time."""
+    for k in range(system.functions.shape[0]):
+        if system.functions[k, 0] == 0:
+            cubic_at(system.table_times, system.table_cubics, system.table_at[k],
+                     system.table_at[k + 1] - 1, t, loads, 3 * k)
             continue
-        first, last = system.load_at[k], system.load_at[k + 1] - 1
-        if t <= system.load_times[first]:
-            state.loads[k] = system.load_values[first]
-        elif t >= system.load_times[last]:
-            state.loads[k] = system.load_values[last]
+        for i in range(3):
+            loads[3 * k + i] = (_call_function(system.functions[k, i], t)
+                                if system.functions[k, i] != 0 else 0.0)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def move_prescribed(system, state):
+    """Motion of the prescribed coordinates; of rotations the increment of the step."""
+    loads, old = state.loads, state.loads_old
+    for k in range(system.prescribed.shape[0]):
+        i = system.prescribed[k, 0]
+        state.q[i], state.v[i], state.a[i], state.dq[i] = state.q_start[i], 0.0, 0.0, 0.0
+    for k in range(system.prescribed.shape[0]):
+        i, item, factor = (system.prescribed[k, 0], 3 * system.prescribed[k, 1],
+                           system.prescribed_factor[k])
+        if system.prescribed[k, 2] == 1:
+            state.dq[i] += factor * (loads[item] - old[item])
         else:
-            i = first
-            while system.load_times[i + 1] < t:
-                i += 1
-            x = (t - system.load_times[i]) / (system.load_times[i + 1] - system.load_times[i])
-            state.loads[k] = (1.0 - x) * system.load_values[i] + x * system.load_values[i + 1]
+            state.q[i] += factor * loads[item]
+        state.v[i] += factor * loads[item + 1]
+        state.a[i] += factor * loads[item + 2]
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -169,14 +190,16 @@ def assemble(level, system, state, residual):
     """Sum of the element forces in `residual`, and the matrix.
 
     `level` is FORCES for these alone, TURNED for a matrix of the bodies' old ones in their new
-    places and of new ones of joints and loads, RENEWED for new ones of all, START for forces and
-    accelerations of the constraints.
+    places and of new ones of joints and loads, RENEWED for new ones of all; START is for forces and
+    accelerations of the constraints, RATES for their velocities.
     """
     bodies, batches = system.first_joint[0], system.address.size
     status = run_kernels(TANGENT if level == RENEWED else RESIDUAL, 0, bodies, system, state)
     if status != 0:
         return status
-    task = RESIDUAL if level == FORCES else ACCELERATION if level == START else TANGENT
+    task = RESIDUAL if level == FORCES else TANGENT
+    if level >= START:
+        task = ACCELERATION if level == START else VELOCITY
     status = run_kernels(task, bodies, batches, system, state)
     if status != 0:
         return status
@@ -185,13 +208,15 @@ def assemble(level, system, state, residual):
     sums, unknowns = pointer_to(residual), pointer_to(system.g_unknown)
     for k in range(system.g_unknown.size):
         sums[unknowns[k]] += state.g[k]
+    if system.hanging.shape[0] > 0:
+        pull_back(system, state.q, state.R, residual)
     if level == TURNED or level == RENEWED:
-        sum_matrices(system, state)
+        sum_matrices(system, state, residual)
     return 0
 
 
 @njit(cache=True, error_model="numpy")
-def sum_matrices(system, state):
+def sum_matrices(system, state, forces):
     """The matrix from the element matrices, which stay as they are."""
     for k in range(state.matrix.size):
         state.matrix[k] = 0.0
@@ -199,6 +224,7 @@ def sum_matrices(system, state):
         state.matrix[system.padding[k]] = 1.0
     matrix, J = pointer_to(state.matrix), pointer_to(state.turned)
     block, blocks = 0, system.turned_blocks.shape[0]
+    linked, links = 0, system.linked_elements.shape[0]
     for b in range(system.address.size):
         width = system.width[b]
         for element in range(system.count[b]):
@@ -209,8 +235,14 @@ def sum_matrices(system, state):
             while block < blocks and system.turned_blocks[block, 0] == start:
                 _turn_block(system.turned_blocks[block], system.dimension[0], J, state.frames)
                 block += 1
+            if linked < links and system.linked_elements[linked, 0] == start:
+                add_expanded(system, state, linked, state.turned)
+                linked += 1
+                continue
             for k in range(width * width):
                 matrix[entries[k]] += J[k]
+    if links > 0:
+        add_second_order(system, state, forces)
 
 
 @njit(cache=True, error_model="numpy")
@@ -221,7 +253,8 @@ def _turn_block(block, dimension, J, frames):
     turn = np.empty(9)
     for i in range(3):
         for k in range(3):
-            turn[3 * i + k] = to[3 * k + i] if block[4] < 0 else (
+            turn[3 * i + k] = own[3 * i + k] if block[3] < 0 else to[3 * k + i] if (
+                block[4] < 0) else (
                 to[i] * own[k] + to[3 + i] * own[3 + k] + to[6 + i] * own[6 + k])
     for across in range(2):
         first, next_line, step = (row, width, 1) if across == 0 else (row * width, 1, width)
@@ -282,6 +315,18 @@ def equilibrate(system, state):
 
 
 @njit(cache=True, error_model="numpy")
+def relax(system, state):
+    """Make the matrix of redundant constraints regular.
+
+    Their residuals are consistent and so is the answer: multipliers of least norm. Iterations go on
+    until the constraints hold, so nothing is changed but the way there.
+    """
+    for i in range(system.diagonal.size):
+        if system.is_multiplier[i] > 0.0:
+            state.matrix[system.diagonal[i]] -= RELAXATION * state.weight[i] * state.weight[i]
+
+
+@njit(cache=True, error_model="numpy")
 def invert_dense(system, state, n):
     """Inverse of a small system, by columns, scales included; False if it is singular."""
     dense = np.empty((n, n))
@@ -311,7 +356,9 @@ def factorize(system, state):
         pointer_to(system.block_diagonal), pointer_to(state.matrix), pointer_to(state.column),
         pointer_to(state.scale))
     if not done:
-        sum_matrices(system, state)
+        sum_matrices(system, state, state.forces)
+        if system.relaxed[0] == 1:
+            relax(system, state)
     return done
 
 
@@ -347,8 +394,9 @@ def begin_step(system, state, scheme):
         state.q[i] = q + state.dq[i]
         state.v[i] = v + h * aux
         state.a[i] = to_a * (aux - scheme.alpha_f * a)
-    set_loads(system, state, state.clock[TIME] + h)
+    set_loads(system, state.loads, state.clock[TIME] + h)
     set_coefficients(state, scheme, h)
+    move_prescribed(system, state)
     turn_rotations(system, state)
     state.control[ITERATION] = 0
     state.clock[LAST_NORM] = 0.0
@@ -373,6 +421,8 @@ def turn_rotations(system, state):
         x, y, z = dq[first], dq[first + 1], dq[first + 2]
         q[first], q[first + 1], q[first + 2] = x, y, z
         turn(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
+    if system.hanging.shape[0] > 0:
+        place_hanging(system, state.q, state.v, state.a, state.R)
 
 
 @njit(cache=True, error_model="numpy")
@@ -448,9 +498,7 @@ def accept(system, state, record):
     if control[STEPS] % ORTHOGONAL == 0:
         for r in range(system.rotation_at.size):
             _orthogonalize(at(pointer_to(state.R), 9 * r))
-    clock[WORK] += 0.5 * h * clock[POWER]
-    clock[POWER] = load_power(system, state)
-    clock[WORK] += 0.5 * h * clock[POWER]
+    add_work(system, state, h)
     watch_age(state)
     if control[FRESH] == 0:
         control[EAGER] = 0
@@ -489,13 +537,39 @@ def watch_age(state):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def load_power(system, state):
-    """Rate of work of the loads in the current state."""
-    if system.load_function.size == 0:
-        return 0.0
-    state.energy[POWER_OF_LOADS] = 0.0
-    run_kernels(ENERGY, system.first_load[0], system.address.size, system, state)
-    return state.energy[POWER_OF_LOADS]
+def add_work(system, state, h):
+    """Work of the items over a step, by the trapezoidal rule."""
+    for k in range(state.powers.size):
+        state.works[k] += 0.5 * h * state.powers[k]
+    set_powers(system, state)
+    for k in range(state.powers.size):
+        state.works[k] += 0.5 * h * state.powers[k]
+    for k in range(state.loads.size):
+        state.loads_old[k] = state.loads[k]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def set_powers(system, state):
+    """Rate of work of the items in the current state."""
+    if state.powers.size == 0:
+        return
+    run_kernels(ENERGY, system.first_power[0], system.address.size, system, state)
+    for k in range(state.powers.size):
+        state.powers[k] = state.energy[POWERS + k]
+    if system.prescribed.shape[0] > 0:
+        add_prescribed_powers(system, state)
+
+
+@njit(cache=True, error_model="numpy")
+def add_prescribed_powers(system, state):
+    """What moves coordinates in a prescribed way bears the forces on them."""
+    assemble(FORCES, system, state, state.residual)
+    for k in range(system.prescribed.shape[0]):
+        state.powers[system.prescribed[k, 1]] = 0.0
+    for k in range(system.prescribed.shape[0]):
+        item = system.prescribed[k, 1]
+        state.powers[item] += (state.residual[system.prescribed[k, 0]]
+                               * system.prescribed_factor[k] * state.loads[3 * item + 1])
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -520,8 +594,7 @@ def _orthogonalize(R):
 def write_record(state, record):
     """Store the accepted state."""
     k = state.control[RECORDED]
-    state.now[0], state.now[1] = state.clock[TIME], state.clock[WORK]
-    state.now[2] = state.control[ITERATIONS]
+    state.now[0], state.now[1] = state.clock[TIME], state.control[ITERATIONS]
     for i in range(state.now.size):     # one block: nine separate ones cost as much as a step
         record.rows[k, i] = state.now[i]
     state.control[RECORDED] = k + 1
@@ -585,6 +658,9 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             reason = assemble(level, system, state, state.residual)
             if reason != NO_REASON:
                 continue
+            if level != FORCES and system.hanging.shape[0] > 0:
+                for i in range(state.residual.size):
+                    state.forces[i] = state.residual[i]
             to_body_axes(system, state.frames, state.residual, False)
             control[PHASE] = FACTORED
             if level != FORCES:
@@ -592,6 +668,8 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                     equilibrate(system, state)
                     control[AGE], clock[YOUNG_RATE], clock[EXCESS] = 0, 0.5, 0.0
                     clock[FACTOR_STEP] = clock[CURRENT_STEP]
+                if system.relaxed[0] == 1:
+                    relax(system, state)
                 control[WANTED] = FORCES
                 control[FRESH] += 1
                 control[MATRICES] += 1

@@ -5,39 +5,21 @@ own block). Two bodies that share a position triplet have a spherical joint betw
 multiplier, a fixed triplet is no unknown at all.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
+from .forces import Forces
+from .joints import Joints
 from .kernels import superelement_kernel
-from .loads import History, history
 from .reduction import ReducedBody, body_weights
+from .triplets import Element, Node, Triplet
 
 FRAMES = ("converged_mean", "mean", "mean_small", "node", "positions")
 INERTIAS = ("a", "b")
-
-
-@dataclass
-class Triplet:
-    """A block of unknowns: a position or a rotation (in a plane two coordinates or an angle)."""
-
-    name: str
-    start: NDArray                  # initial position; zeros for a rotation
-    rate: NDArray                   # initial velocity, or angular velocity (material = global)
-    fixed: bool = False
-
-
-@dataclass(eq=False)
-class Node:
-    """A named point of the model; either triplet may be absent or shared with another node."""
-
-    name: str
-    point: NDArray
-    position: Triplet | None
-    rotation: Triplet | None
 
 
 @dataclass(eq=False)
@@ -67,30 +49,8 @@ class Superelement:
 
 
 @dataclass(eq=False)
-class Joint:
-    """Constraint equations between triplets of one kind, or to the ground."""
-
-    name: str
-    kind: str
-    triplets: tuple[Triplet, ...]
-    constants: NDArray
-    multipliers: int
-
-
-@dataclass(eq=False)
-class Load:
-    """A dead force or torque on a triplet."""
-
-    name: str
-    kind: str
-    triplet: Triplet
-    direction: NDArray
-    history: History
-
-
-@dataclass(eq=False)
-class Model:
-    """A mechanism: nodes, superelements, joints and loads.
+class Model(Joints, Forces):
+    """A mechanism: nodes, superelements, rigid bodies, joints and forces.
 
     Parameters
     ----------
@@ -101,8 +61,10 @@ class Model:
     planar: bool = False
     nodes: dict[str, Node] = field(default_factory=dict)
     bodies: dict[str, Superelement] = field(default_factory=dict)
-    joints: list[Joint] = field(default_factory=list)
-    loads: list[Load] = field(default_factory=list)
+    rigid_bodies: dict[str, Element] = field(default_factory=dict)
+    joints: list[Element] = field(default_factory=list)
+    loads: list[Element] = field(default_factory=list)      # springs and dampers among them
+    grounds: list[Node] = field(default_factory=list)       # fixed ends of joints to the ground
     gravity_field: NDArray | None = None
 
     def __post_init__(self) -> None:
@@ -120,7 +82,7 @@ class Model:
         return 1 if self.planar else 3
 
     def node(self, name: str, point: ArrayLike, keeps: str = "full",
-             at: Node | None = None) -> Node:
+             at: Node | str | None = None) -> Node:
         """Add a node.
 
         Parameters
@@ -129,7 +91,7 @@ class Model:
         point : (3,), planar (2,)
             Initial position, global axes [length].
         keeps : {'full', 'translation', 'rotation'}
-        at : Node, optional
+        at : Node or str, optional
             Share the position triplet of this node: a spherical joint with no multiplier.
 
         Raises
@@ -137,8 +99,8 @@ class Model:
         InputError
             Name taken, wrong shape, or `at` is somewhere else.
         """
-        if name in self.nodes:
-            raise InputError(f"node {name!r} exists already: give every node its own name")
+        self._check_new(name)
+        at = None if at is None else self._known(at)
         point = self._vector(point, f"point of node {name!r}")
         if keeps not in ("full", "translation", "rotation"):
             raise InputError(f"node {name!r} keeps {keeps!r}: use full, translation or rotation")
@@ -202,132 +164,106 @@ class Model:
                                          alpha_r, kernel, np.zeros(placed.modes))
         return self.bodies[name]
 
-    def fix(self, node: Node | str, what: str = "both") -> None:
-        """Fix a node's position, rotation or both: fixed triplets are no unknowns."""
-        node = self._known(node)
-        if what not in ("position", "rotation", "both"):
-            raise InputError(f"cannot fix {what!r}: use position, rotation or both")
-        for kind in ("position", "rotation"):
-            if what in (kind, "both"):
-                self._triplet(node, kind).fixed = True
-
-    def revolute(self, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.0),
-                 to: Node | str | None = None) -> None:
-        """Revolute joint about an axis through a node, to the ground or to another node.
-
-        To the ground the position triplet is fixed; to another node both must share one. Two
-        multipliers in space, none in a plane.
-        """
-        node = self._known(node)
-        rotation = self._triplet(node, "rotation")
-        position = self._triplet(node, "position")
-        if to is None:
-            rotations = (rotation,)
-        else:
-            to = self._known(to)
-            if to.position is not position:
-                raise InputError(f"revolute joint: nodes {node.name!r} and {to.name!r} do not "
-                                 "share a position: make the second one with at=")
-            rotations = (rotation, self._triplet(to, "rotation"))
-        if self.planar:
-            position.fixed = position.fixed or to is None
-            return
-        axis = self._vector(axis, f"axis of the revolute joint at {node.name!r}")
-        length = np.linalg.norm(axis)
-        if not length > 0:
-            raise InputError(f"axis of the revolute joint at {node.name!r} is zero: give its "
-                             "direction")
-        e = axis / length
-        first = np.cross(e, np.eye(3)[np.argmin(np.abs(e))])
-        first /= np.linalg.norm(first)
-        position.fixed = position.fixed or to is None
-        kind = "revolute_ground" if to is None else "revolute"
-        constants = np.concatenate([e, first, np.cross(e, first)])
-        self.joints.append(Joint(f"{kind} at {node.name}", kind, rotations, constants, 2))
-
-    def spherical(self, node: Node | str, to: Node | str | None = None) -> None:
-        """Spherical joint as an explicit constraint with a multiplier a direction.
-
-        For comparison: `fix(node, "position")`, or a second node made with ``at=``, is the same
-        joint with fewer unknowns.
-        """
-        node = self._known(node)
-        position = self._triplet(node, "position")
-        triplets, constants = (position,), node.point
-        if to is not None:
-            to = self._known(to)
-            if np.abs(to.point - node.point).max() > 1e-9 * max(1.0, np.abs(node.point).max()):
-                raise InputError(f"spherical joint: nodes {node.name!r} and {to.name!r} start "
-                                 "apart: give both the same point")
-            triplets, constants = (position, self._triplet(to, "position")), np.zeros(0)
-            if triplets[0] is triplets[1]:
-                raise InputError(f"spherical joint: nodes {node.name!r} and {to.name!r} share "
-                                 "their position already: leave the joint out")
-        kind = self._kind("spherical_ground" if to is None else "spherical")
-        self.joints.append(Joint(f"{kind} at {node.name}", kind, triplets, constants,
-                                 self.dimension))
-
-    def force(self, node: Node | str, direction: ArrayLike,
-              amplitude: ArrayLike | Callable[[float], float] | History | None = None) -> None:
-        """Dead force on a node: `direction` (global axes) times a history."""
-        triplet = self._triplet(self._known(node), "position")
-        vector = self._vector(direction, f"force on {triplet.name}")
-        self.loads.append(Load(f"force on {triplet.name}", self._kind("force"), triplet, vector,
-                               history(amplitude)))
-
-    def torque(self, node: Node | str, direction: ArrayLike,
-               amplitude: ArrayLike | Callable[[float], float] | History | None = None) -> None:
-        """Dead torque on a node: `direction` (global axes; a number in a plane) times a history."""
-        triplet = self._triplet(self._known(node), "rotation")
-        vector = np.atleast_1d(np.asarray(direction, dtype=float))
-        if vector.shape != (self.rotation_size,) or not np.isfinite(vector).all():
-            raise InputError(f"torque on {triplet.name} is {direction}: give "
-                             f"{self.rotation_size} finite number(s)")
-        self.loads.append(Load(f"torque on {triplet.name}", self._kind("torque"), triplet, vector,
-                               history(amplitude)))
-
-    def gravity(self, field: ArrayLike) -> None:
-        """Uniform gravity on every superelement, through its reduced mass.
+    def rigid_body(self, name: str, node: Node | str, mass: float, inertia: ArrayLike,
+                   centre: ArrayLike | None = None) -> Element:
+        """A rigid body that moves with a node.
 
         Parameters
         ----------
-        field : (3,), planar (2,)
-            Acceleration of free fall [length/time^2].
+        mass : float
+        inertia : (3, 3) or (3,), planar float
+            About the centre of mass, global axes at the start (three numbers: principal moments).
+        centre : (3,), planar (2,), optional
+            Centre of mass at the start, global axes; the node by default.
 
         Raises
         ------
         InputError
-            Not so many finite numbers.
+            A mass or inertia no body has, or a name that is taken.
         """
-        self.gravity_field = self._vector(field, "gravity")
+        node = self._known(node)
+        self._check_rigid(name, mass)
+        centre = node.point if centre is None else self._vector(centre, f"centre of {name!r}")
+        arm = centre - node.point
+        J = self._inertia(name, inertia)
+        if self.planar:
+            moments = np.array([J + mass * arm @ arm])
+        else:
+            J = J + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+            moments = J[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]]
+        self.rigid_bodies[name] = Element(
+            name, self._kind("rigid_body"),
+            (self._triplet(node, "position"), self._triplet(node, "rotation")),
+            np.concatenate([[mass], mass * arm, moments]))
+        return self.rigid_bodies[name]
+
+    def point_mass(self, name: str, node: Node | str, mass: float) -> Element:
+        """A mass on a node, without inertia of rotation.
+
+        Raises
+        ------
+        InputError
+            A mass that is not positive, or a name that is taken.
+        """
+        self._check_rigid(name, mass)
+        self.rigid_bodies[name] = Element(
+            name, self._kind("point_mass"), (self._triplet(self._known(node), "position"),),
+            np.array([float(mass)]))
+        return self.rigid_bodies[name]
+
+    def attach(self, name: str, point: ArrayLike, to: Node | str) -> Node:
+        """A node at the end of a massless rigid link from another one: no unknown, no equation.
+
+        Its rotation is that of `to`. Bodies, joints and loads may act on it as on any node, and
+        further links may start from it.
+
+        Raises
+        ------
+        InputError
+            Name taken, or `to` lacks a triplet.
+        """
+        master = self._known(to)
+        self._check_new(name)
+        point = self._vector(point, f"point of node {name!r}")
+        position, rotation = (self._triplet(master, k) for k in ("position", "rotation"))
+        root = position if position.root is None else position.root
+        arms = (*position.arms, (rotation, point - master.point))
+        hanging = Triplet(f"{name}.position", point, np.zeros(self.dimension), root=root, arms=arms)
+        self.nodes[name] = Node(name, point, hanging, rotation)
+        return self.nodes[name]
 
     def initial_velocity(self, node: Node | str, linear: ArrayLike | None = None,
                          angular: ArrayLike | None = None) -> None:
-        """Initial velocity of a node, global axes."""
+        """Initial velocity of a node, global axes.
+
+        What is not given follows from the joints, see `sebody.Simulation`.
+        """
         node = self._known(node)
         for kind, value in (("position", linear), ("rotation", angular)):
             if value is not None:
                 triplet = self._triplet(node, kind)
-                rate = np.atleast_1d(np.asarray(value, dtype=float))
-                if rate.shape != triplet.rate.shape or not np.isfinite(rate).all():
-                    raise InputError(f"initial rate of {triplet.name} is {value}: give "
-                                     f"{triplet.rate.size} finite number(s)")
-                triplet.rate[:] = rate
+                rate = (self._vector(value, f"initial rate of {triplet.name}")
+                        if kind == "position" else
+                        self._turning(value, f"initial rate of {triplet.name}"))
+                if not triplet.solved and np.any(rate):
+                    raise InputError(f"initial rate of {triplet.name} is {value}, but it is fixed, "
+                                     "prescribed or hangs on another node: leave it out")
+                triplet.rate, triplet.given = rate, True
 
     def rigid_velocity(self, linear: ArrayLike, angular: ArrayLike,
                        about: ArrayLike | None = None) -> None:
         """Start all free triplets in a rigid motion of the whole model."""
         linear = self._vector(linear, "linear velocity")
-        angular = np.atleast_1d(np.asarray(angular, dtype=float))
+        angular = self._turning(angular, "angular velocity")
         centre = np.zeros(self.dimension) if about is None else self._vector(about, "about")
         for node in self.nodes.values():
-            if node.position is not None and not node.position.fixed:
+            if node.position is not None and node.position.solved:
                 arm = node.point - centre
                 turning = (angular[0] * np.array([-arm[1], arm[0]]) if self.planar
                            else np.cross(angular, arm))
-                node.position.rate[:] = linear + turning
-            if node.rotation is not None and not node.rotation.fixed:
-                node.rotation.rate[:] = angular
+                node.position.rate = linear + turning
+            if node.rotation is not None and node.rotation.solved:
+                node.rotation.rate = angular.copy()
 
     def _kind(self, name: str) -> str:
         return "planar_" + name if self.planar else name
@@ -337,7 +273,58 @@ class Model:
         if name not in self.nodes:
             raise InputError(f"node {name!r} is unknown: the model has "
                              f"{', '.join(self.nodes) or 'no nodes'}")
+        if isinstance(node, Node) and self.nodes[name] is not node:
+            raise InputError(f"node {name!r} is of another model: use that of this one")
         return self.nodes[name]
+
+    def _check_new(self, name: str) -> None:
+        if name in self.nodes:
+            raise InputError(f"node {name!r} exists already: give every node its own name")
+
+    def _check_rigid(self, name: str, mass: float) -> None:
+        if name in self.rigid_bodies or name in self.bodies:
+            raise InputError(f"body {name!r} exists already: give it its own name")
+        if not (np.isfinite(mass) and mass > 0):
+            raise InputError(f"mass of {name!r} is {mass}: give a positive number")
+
+    def _inertia(self, name: str, inertia: ArrayLike) -> NDArray:
+        """Inertia about the centre of mass; moments must be those of a body."""
+        J = np.asarray(inertia, dtype=float)
+        if self.planar:
+            if J.shape != () or not (np.isfinite(J) and J >= 0):
+                raise InputError(f"inertia of {name!r} is {inertia}: give one number >= 0")
+            return J
+        J = np.diag(J) if J.shape == (3,) else J
+        if J.shape != (3, 3) or not np.isfinite(J).all():
+            raise InputError(f"inertia of {name!r} has shape {J.shape}: give 3 x 3 finite numbers, "
+                             "or three principal moments")
+        if np.abs(J - J.T).max() > 1e-9 * np.abs(J).max():
+            raise InputError(f"inertia of {name!r} is not symmetric: check its entries")
+        principal = np.linalg.eigvalsh(J)
+        if principal[0] < -1e-9 * principal[2] or (
+                principal[0] + principal[1] < (1 - 1e-9) * principal[2]):
+            raise InputError(f"inertia of {name!r} has the principal moments {principal}: no body "
+                             "has one that is negative or larger than the sum of the others")
+        return J
+
+    def _ground(self, node: Node) -> Node:
+        """A fixed node at the place of another one."""
+        ground = Node(f"ground at {node.name}", node.point, *(
+            Triplet(f"ground.{kind}", start, np.zeros(size), fixed=True)
+            for kind, start, size in (("position", node.point, self.dimension),
+                                      ("rotation", np.zeros(self.rotation_size),
+                                       self.rotation_size))))
+        self.grounds.append(ground)
+        return ground
+
+    def triplets(self) -> list[Triplet]:
+        """All triplets, each once."""
+        return list({id(t): t for n in (*self.nodes.values(), *self.grounds)
+                     for t in (n.position, n.rotation) if t is not None}.values())
+
+    def _size(self) -> float:
+        """Extent of the model, at least one unit of length."""
+        return max([1.0, *(np.abs(n.point).max() for n in self.nodes.values())])
 
     @staticmethod
     def _triplet(node: Node, kind: str) -> Triplet:
@@ -347,9 +334,16 @@ class Model:
         return triplet
 
     def _vector(self, value: ArrayLike, what: str) -> NDArray:
-        vector = np.asarray(value, dtype=float)
+        vector = _numbers(value)
         if vector.shape != (self.dimension,) or not np.isfinite(vector).all():
             raise InputError(f"{what} is {value}: give {self.dimension} finite numbers")
+        return vector
+
+    def _turning(self, value: ArrayLike, what: str) -> NDArray:
+        """A vector of rotation: three numbers, in a plane one."""
+        vector = np.atleast_1d(_numbers(value))
+        if vector.shape != (self.rotation_size,) or not np.isfinite(vector).all():
+            raise InputError(f"{what} is {value}: give {self.rotation_size} finite number(s)")
         return vector
 
     def _check_place(self, name: str, body: ReducedBody, nodes: tuple[Node, ...]) -> None:
@@ -367,6 +361,14 @@ class Model:
             raise InputError(f"superelement {name!r}: the nodes do not lie where the body's "
                              f"boundary nodes are (off by {error:.3g} after the best shift): pass "
                              "rotation=, the matrix that turns FE axes into global axes")
+
+
+def _numbers(value: ArrayLike) -> NDArray:
+    """As an array of numbers; what is none becomes NaN, which is refused with its name."""
+    try:
+        return np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        return np.full(1, np.nan)
 
 
 def _check_frame(name: str, body: ReducedBody, frame: str) -> None:

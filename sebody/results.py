@@ -9,11 +9,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from . import loop
-from .abi import ENERGIES, ENERGY, POTENTIAL
-from .assembly import Numbering, System
+from .abi import ENERGY, POTENTIAL
+from .assembly import System
 from .errors import InputError
 from .loop import State
 from .model import Model
+from .numbering import Numbering
 
 if TYPE_CHECKING:
     from .integrator import Simulation
@@ -51,7 +52,7 @@ class Result:
     def recorded(self, name: str) -> NDArray:
         """History of one of `loop.recorded_parts`, (n, size)."""
         parts = loop.recorded_parts(self.numbering.total, len(self.numbering.rotations),
-                                    len(self.model.bodies))
+                                    len(self.model.bodies), len(self.numbering.histories))
         return self.rows[:, parts[name]]
 
     @property
@@ -89,7 +90,7 @@ class Result:
         if name == "t":
             return self.t
         if name == "energy.external_work":
-            return self.recorded("work")[:, 0]
+            return self.recorded("works").sum(axis=1)
         if name in SYSTEM_QUANTITIES:
             return self._energy_table()[:, SYSTEM_QUANTITIES[name]]
         owner, _, quantity = name.rpartition(".")
@@ -124,7 +125,7 @@ class Result:
 
     def _energy_table(self) -> NDArray:
         if self._energies is None:
-            self._energies = np.zeros((len(self.t), ENERGIES))
+            self._energies = np.zeros((len(self.t), self.state.energy.size))
             now = self.state.now.copy()
             status = _evaluate_energies(self.system, self.state, self.rows, self._energies)
             self.state.now[:] = now
@@ -178,11 +179,11 @@ class Result:
 
 @njit(cache=True, error_model="numpy")
 def _evaluate_energies(system, state, rows, out):
-    """Energies and momentum of the superelements in every recorded state."""
+    """Energies and momentum of the bodies and springs in every recorded state."""
     for k in range(len(rows)):
         state.now[:] = rows[k]
         state.energy[:] = 0.0
-        status = loop.run_kernels(ENERGY, 0, system.first_load[0], system, state)
+        status = loop.run_kernels(ENERGY, 0, system.address.size, system, state)
         if status != 0:
             return status
         out[k] = state.energy

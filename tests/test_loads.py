@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model, Simulation, loop, simulate
-from sebody.loads import History, history
+from sebody.histories import History, history
 from sebody.scenes.hinged_beam import build
 
 TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]

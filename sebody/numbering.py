@@ -1,0 +1,134 @@
+"""Where the things of a model are among the unknowns."""
+
+from typing import NamedTuple
+
+from .errors import InputError
+from .histories import History
+from .kernels import element_kernel
+from .model import Model
+from .triplets import Triplet
+
+
+class Numbering(NamedTuple):
+    """Unknowns first, then fixed and prescribed coordinates, then those at rigid links."""
+
+    free: int                           # number of unknowns
+    total: int
+    triplets: dict[int, int]            # id(triplet) -> first coordinate
+    rotations: dict[int, int]           # id(triplet) -> number of its rotation matrix
+    modes: dict[str, int]               # superelement -> first modal amplitude
+    multipliers: dict[int, int]         # joint -> first multiplier
+    first_multiplier: dict[int, int]    # id(joint) -> the same
+    names: list[str]                    # of every coordinate
+    hanging: list[Triplet]              # positions at the ends of rigid links
+    items: dict[int, int]               # id(joint, load or spring) -> item
+    item_names: list[str]               # of what has a history or does work
+    histories: list[History]            # of every item
+    prescribed: list[tuple[int, int, int, float]]   # coordinate, item, is a rotation, factor
+
+
+def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
+    """Coordinates of a triplet."""
+    first = numbering.triplets[id(triplet)]
+    return list(range(first, first + triplet.start.size))
+
+
+def number(model: Model) -> Numbering:
+    """Number the unknowns body by body; what bodies share waits for the last one that has it.
+
+    Multipliers follow the unknowns they act on. So an elimination in this order meets no zero
+    pivot, and keeps its fill close to the diagonal.
+
+    Raises
+    ------
+    InputError
+        A triplet that belongs to no body and is not fixed.
+    """
+    names, at, modes, multipliers = [], {}, {}, {}
+    parts = _parts(model)
+    last = {id(p): k for k, (_, triplets, _) in enumerate(parts)
+            for t in triplets for p in t.parents()}
+
+    def place(triplet: Triplet) -> None:
+        if triplet.solved and id(triplet) not in at:
+            at[id(triplet)] = len(names)
+            names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
+
+    def place_joints() -> None:
+        for k, joint in enumerate(model.joints):
+            if k not in multipliers and all(id(p) in at or not p.solved for t in joint.triplets
+                                            for p in t.parents()):
+                multipliers[k] = len(names)
+                names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
+
+    for number_, (name, triplets, count) in enumerate(parts):
+        if name in model.bodies:
+            modes[name] = len(names)
+        names.extend(f"mode {k} of {name}" for k in range(count))
+        for triplet in triplets:
+            for parent in triplet.parents():
+                if last[id(parent)] == number_:
+                    place(parent)
+        place_joints()
+    _refuse_loose(model, last)
+    place_joints()
+    free = len(names)
+    used = _used(model, last)
+    for triplet in used:
+        if id(triplet) not in at and triplet.root is None:
+            at[id(triplet)] = len(names)
+            names.extend(f"{triplet.name}[{k}] (fixed)" for k in range(triplet.start.size))
+    hanging = [t for t in used if t.root is not None]
+    for triplet in hanging:
+        at[id(triplet)] = len(names)
+        names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
+    rotations = {}
+    if not model.planar:
+        for triplet in used:
+            if triplet.name.endswith("rotation"):
+                rotations.setdefault(id(triplet), len(rotations))
+    return Numbering(free, len(names), at, rotations, modes, multipliers,
+                     {id(model.joints[k]): first for k, first in multipliers.items()}, names,
+                     hanging, *_items(model, at))
+
+
+def _parts(model: Model) -> list[tuple[str, list[Triplet], int]]:
+    """Bodies: name, triplets with rotations first, number of modes."""
+    parts = [(b.name, [*b.rotations, *b.positions], b.body.modes) for b in model.bodies.values()]
+    return parts + [(e.name, list(e.triplets[::-1]), 0) for e in model.rigid_bodies.values()]
+
+
+def _refuse_loose(model: Model, held: dict) -> None:
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            for parent in triplet.parents() if triplet is not None else ():
+                if parent.solved and id(parent) not in held:
+                    raise InputError(f"{parent.name} belongs to no body, so nothing holds it: "
+                                     "attach a body or fix it")
+
+
+def _used(model: Model, held: dict) -> list[Triplet]:
+    """Triplets of nodes, of bodies, and those of the ground that joints need."""
+    elements = (*model.rigid_bodies.values(), *model.joints, *model.loads)
+    found = [t for n in model.nodes.values() for t in (n.position, n.rotation) if t is not None]
+    found += [t for e in elements for t in e.triplets]
+    found += [p for t in found for p in t.parents()]
+    return list({id(t): t for t in found}.values())
+
+
+def _items(model: Model, at: dict[int, int]) -> tuple[dict, list, list, list]:
+    items, names, histories, prescribed = {}, [], [], []
+    for element in (*model.joints, *model.loads):
+        if element_kernel(element.kind).POWER:
+            items[id(element)] = len(names)
+            names.append(element.name)
+            histories.append(element.history or History())
+    for triplet in {id(t): t for n in model.nodes.values() for t in (n.position, n.rotation)
+                    if t is not None}.values():
+        turning = int(triplet.name.endswith("rotation"))
+        for direction, history in triplet.motions:
+            prescribed += [(at[id(triplet)] + k, len(names), turning and not model.planar, d)
+                           for k, d in enumerate(direction) if d != 0.0]
+            names.append(f"motion of {triplet.name}")
+            histories.append(history)
+    return items, names, histories, prescribed
