@@ -20,6 +20,7 @@ from .emit_element import element_text
 from .frames import FRAMES
 from .inertia import OPTIONS
 from .layouts import Layout, LayoutError
+from .manifest import ELEMENTS as SHIPPED_ELEMENTS
 from .manifest import SUPERELEMENTS
 from .superelement import superelement
 
@@ -31,7 +32,7 @@ def shipped() -> dict[str, str]:
     files = {}
     for layout, frame, inertia in SUPERELEMENTS:
         files |= variant_file(layout, frame, inertia)
-    for name in ELEMENTS:
+    for name in SHIPPED_ELEMENTS:
         files[f"element_{name}.py"] = element_text(ELEMENTS[name]())
     return files
 

@@ -1,9 +1,11 @@
-"""The superelement kernels that are shipped, one table; all elements of `catalogue` are, too.
+"""The kernels that are shipped: one table of superelements, and all elements of `catalogue`.
 
 A kernel fuses one frame and one inertia option, so the loop makes one call an element and the
 compiler sees all of its arithmetic. The formulas are derived once for each and only combined here:
 sources add, and files multiply no further than this table; any other combination is made on demand.
 """
+
+from .catalogue import ELEMENTS as CATALOGUE
 
 SUPERELEMENTS = (
     # layout, frame, inertia option; pinned numbers of modes where beams mostly need no others
@@ -26,3 +28,4 @@ SUPERELEMENTS = (
     ("planar-f2", "positions", "b"),
     ("planar-f3", "converged_mean", "b"),
 )
+ELEMENTS = tuple(CATALOGUE)

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from functools import cache
 
 import sympy as sp
+from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
 from .layouts import Layout
@@ -22,6 +23,15 @@ class _CodePrinter(PythonCodePrinter):
             text = self.parenthesize(base, 100)
             return "*".join([text] * int(power))
         return super()._print_Pow(expr, **kwargs)
+
+    def _print_Mul(self, expr):
+        """Powers below a fraction line as products in parentheses."""
+        below = [f for f in expr.args if f.is_Pow and f.exp.is_Integer and f.exp <= -2]
+        if not below:
+            return super()._print_Mul(expr)
+        above = sp.Mul(*[f for f in expr.args if f not in below])
+        text = self._print(sp.Mul(*[1 / f for f in below]))
+        return f"{self.parenthesize(above, precedence(expr))}/({text})"
 
     def _print_Rational(self, expr):
         return repr(float(expr))

@@ -136,7 +136,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t50 = -t48/t22**(1.5)
                 t51 = t32*t50
                 t52 = 3*k3*t30*t30*t49
-                t53 = (0.5)*c*t36*(-t44 - t47)/t22*t22
+                t53 = ((0.5)*c*t36*(-t44 - t47))/(t22*t22)
                 t54 = 2*xa_y - 2*xb_y
                 t55 = t27*t39
                 t56 = k*t49

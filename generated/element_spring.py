@@ -164,7 +164,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t63 = -t61/t29**(1.5)
                 t64 = t39*t63
                 t65 = 3*k3*t37*t37*t62
-                t66 = (0.5)*c*t44*(-t54 - t57 - t60)/t29*t29
+                t66 = ((0.5)*c*t44*(-t54 - t57 - t60))/(t29*t29)
                 t67 = 2*xa_y - 2*xb_y
                 t68 = t34*t47
                 t69 = k*t62

@@ -322,7 +322,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t171 = t130*(n_x*t165 + n_y*t167 + n_z*t169)
                 t172 = -t149
                 t173 = ((-t117*(2*t151 + 2*t152 + 2*t153) - t118*(2*t138 + 2*t143 +
-                    2*t148))/t119*t119)
+                    2*t148))/(t119*t119))
                 t174 = t117*t173
                 t175 = t130*t173
                 t176 = t131*t175

@@ -78,6 +78,7 @@ class Batch(NamedTuple):
     width: int
     rows: list[list[int]]           # index rows
     unknowns: list[list[int]]       # unknowns of each element
+    owners: list[int]               # id of what each element stands for
 
 
 def build(model: Model) -> tuple[System, Numbering]:
@@ -138,7 +139,9 @@ def build(model: Model) -> tuple[System, Numbering]:
         rotation_at=_rotation_starts(model, numbering), **axes,
         dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering),
         **_items(numbering), **links, relaxed=np.zeros(1, dtype=np.int64))
-    return system, numbering
+    owners = [owner for b in batches for owner in b.owners]
+    starts = _starts([b.width for b in batches for _ in b.rows])
+    return system, numbering._replace(forces_at=dict(zip(owners, starts.tolist(), strict=False)))
 
 
 def _starts(sizes: list[int]) -> NDArray:
@@ -164,9 +167,10 @@ def _body_batches(model: Model, numbering: Numbering, constants: list) -> list[B
                  [numbering.rotations[id(t)] for t in body.rotations] if not model.planar
                  else [0] * len(body.rotations))
         batch = batches.setdefault((body.kernel.__name__, len(unknowns)),
-                                   Batch(body.kernel, len(unknowns), [], []))
+                                   Batch(body.kernel, len(unknowns), [], [], []))
         batch.rows.append([rows_of[key], number_, 0, *nodes, *unknowns])
         batch.unknowns.append(unknowns)
+        batch.owners.append(id(body))
     return list(batches.values())
 
 
@@ -197,11 +201,12 @@ def _element_batches(numbering: Numbering, constants: list,
             first = numbering.first_multiplier[id(element)]
             unknowns += range(first, first + element.multipliers)
         batch = batches.setdefault(element.kind, Batch(element_kernel(element.kind),
-                                                       len(unknowns), [], []))
+                                                       len(unknowns), [], [], []))
         nodes = [numbering.rotations[id(t)] for t in element.triplets
                  if id(t) in numbering.rotations]
         batch.rows.append([at, 0, numbering.items.get(id(element), 0), *nodes, *unknowns])
         batch.unknowns.append(unknowns)
+        batch.owners.append(id(element))
         constants.append(element.constants)
         at += len(element.constants)
     return list(batches.values())

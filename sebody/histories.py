@@ -57,14 +57,14 @@ def history(source: "ArrayLike | Callable[[float], float] | History | None") -> 
                                                                       strict=True)))
 
 
-def motion(source: "ArrayLike | tuple | object") -> History:
+def motion(source: "ArrayLike | tuple[Callable, Callable, Callable] | History") -> History:
     """The motion of a drive: position, velocity and acceleration that belong together.
 
     Parameters
     ----------
-    source : table, three functions, or SymPy expression
+    source : table or tuple of three functions
         A table ``[(t, value), ...]`` becomes a cubic spline, at rest at both ends and outside.
-        Three functions of time are value, rate and second rate. An expression has one symbol.
+        Three functions of time are value, rate and second rate.
 
     Raises
     ------
@@ -73,15 +73,13 @@ def motion(source: "ArrayLike | tuple | object") -> History:
     """
     if isinstance(source, History):
         return source
-    if hasattr(source, "free_symbols"):
-        return _of_expression(source)
     if isinstance(source, tuple) and len(source) == 3 and all(map(callable, source)):
         functions = tuple(_compiled(f, "motion of a drive") for f in source)
         _check_rates(functions)
         return History(functions=functions)
     if callable(source):
         raise InputError("the motion of a drive is one function: give three, (value, rate, second "
-                         "rate), a SymPy expression of time, or a table [(t, value), ...]")
+                         "rate), or a table [(t, value), ...]")
     times, values = _table(source, "motion of a drive")
     if len(times) < 2:
         raise InputError("the motion of a drive has one row: give at least two rows (t, value), "
@@ -89,20 +87,6 @@ def motion(source: "ArrayLike | tuple | object") -> History:
     spline = CubicSpline(times, values, bc_type="clamped")
     return History(tuple(times), (*(tuple(c) for c in spline.c[::-1].T),
                                   (values[-1], 0.0, 0.0, 0.0)))
-
-
-def _of_expression(expression) -> History:
-    import sympy as sp  # only here: importing it takes as long as everything else
-
-    symbols = sorted(expression.free_symbols, key=str)
-    if len(symbols) > 1:
-        raise InputError(f"the motion {expression} depends on {', '.join(map(str, symbols))}: "
-                         "leave one symbol, the time")
-    t = symbols[0] if symbols else sp.Symbol("t")
-    rates = [expression, sp.diff(expression, t), sp.diff(expression, t, 2)]
-    return History(functions=tuple(
-        _compiled(sp.lambdify([t], sp.Float(1.0) * rate, "numpy"), f"motion {expression}")
-        for rate in rates))
 
 
 def _compiled(function: Callable[[float], float], what: str):

@@ -80,6 +80,18 @@ class Joints:
             self._on_line("prismatic", a, b, self._axis(axis, "prismatic joint", a)[1:])
         self._turn_together("prismatic", a, b)
 
+    def slider(self, node: Node | str, axis: ArrayLike, to: Node | str | None = None) -> None:
+        """Point on a line: `node` slides along an axis through its place, fixed in `to`."""
+        what = "slider"
+        b, a = self._pair(node, to, what, ("position",))
+        if self.planar:
+            e = self._direction(axis, what, b)
+            normals = [np.array([-e[1], e[0]])]
+        else:
+            normals = self._axis(axis, what, b)[1:]
+        self._triplet(a, "rotation")
+        self._on_line(what, a, b, normals)
+
     def planar_joint(self, node: Node | str, normal: ArrayLike,
                      to: Node | str | None = None) -> None:
         """Planar joint: `to` stays in a plane through and fixed in `node`, and parallel to it."""
@@ -130,7 +142,7 @@ class Joints:
 
         Parameters
         ----------
-        motion_ : table, three functions or SymPy expression
+        motion_ : table or tuple of three functions
             See `sebody.histories.motion`; zero at the start [rad].
         """
         a, b = self._pair(node, to, "drive", ("rotation",))
@@ -147,7 +159,7 @@ class Joints:
 
         Parameters
         ----------
-        motion_ : table, three functions or SymPy expression
+        motion_ : table or tuple of three functions
             Of the way from the start [length]; see `sebody.histories.motion`.
         """
         a, b = self._pair(node, to, "drive")
@@ -166,7 +178,7 @@ class Joints:
         direction : (3,), planar (2,); of a planar rotation a number
             The motion times this is added to the place (may be called again, for positions), or is
             the angle about this axis.
-        motion_ : table, three functions or SymPy expression
+        motion_ : table or tuple of three functions
             See `sebody.histories.motion`; zero at the start.
         what : {'position', 'rotation'}
 
@@ -263,7 +275,7 @@ class Joints:
     def _on_line(self, what: str, a: Node, b: Node, normals: list[NDArray]) -> None:
         for normal in normals:
             if abs(normal @ (b.point - a.point)) > NEAR * self._size():
-                raise InputError(f"{what} joint: node {b.name!r} is off the axis through "
+                raise InputError(f"{what}: node {b.name!r} is off the axis through "
                                  f"{a.name!r}: place it there or turn the axis")
         self._constrain(what, self._kind("on_line"), a, (a.position, b.position, a.rotation),
                         tuple(normals), len(normals))

@@ -47,6 +47,8 @@ LONGEST_HABIT = 32      # steps that begin with a new matrix before reuse is tri
 ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
 POOR = 0.3              # contraction so slow asks for a new matrix at once
 MOST_MATRICES = 4       # of a step
+STRICT = 100.0          # tolerance of what accelerations move, in that of the increment
+MEMORY = 0.99           # for the size of the accelerations, a step
 RELAXATION = 1e-7       # of redundant constraints, in the scaled iteration matrix alone
 
 
@@ -93,8 +95,8 @@ class State(NamedTuple):
 
 # State.clock
 (TIME, STEP, CURRENT_STEP, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, SPAN, YOUNG_RATE,
- EXCESS) = range(10)
-CLOCKS = 10
+ EXCESS, BEND) = range(11)
+CLOCKS = 11
 # State.control
 (PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
  RECORDED, AGE, PIVOTED, EAGER, EAGER_LEFT) = range(17)
@@ -440,13 +442,16 @@ def set_tangent_operators(system, state):
 def apply_correction(system, state, scheme):
     """Add the solved correction; returns 1 converged, 0 go on, -1 new matrix, -2 give up."""
     n, h = system.diagonal.size, state.clock[CURRENT_STEP]
-    norm = size = 0.0
+    norm = size = bend = 0.0
     for i in range(n):
         d = state.correction[i] * state.weight[i]
         x = state.dq[i] + system.is_multiplier[i] * state.q_old[i]      # a multiplier itself
+        z = state.a[i] * state.weight[i]
         norm += d * d
         size += x * x * state.weight[i] * state.weight[i]
+        bend += z * z
     norm, size = np.sqrt(norm), np.sqrt(size)
+    bend = max(scheme.beta * h * h * np.sqrt(bend), state.clock[BEND])
     if not np.isfinite(norm):
         state.clock[LAST_NORM] = norm
         return -2
@@ -463,7 +468,8 @@ def apply_correction(system, state, scheme):
     turn_rotations(system, state)
     iteration, last = state.control[ITERATION], state.clock[LAST_NORM]
     rate = state.clock[CONTRACTION]
-    target = scheme.tolerance * size + state.clock[FLOOR]
+    target = min(scheme.tolerance * size, STRICT * scheme.tolerance * bend) + state.clock[FLOOR]
+    state.clock[BEND] = bend
     if iteration == 0:
         state.clock[SPAN] = np.log(norm / target)
     if iteration > 0 and last > 0.0:
@@ -502,6 +508,7 @@ def accept(system, state, record):
     watch_age(state)
     if control[FRESH] == 0:
         control[EAGER] = 0
+    clock[BEND] *= MEMORY
     control[STEPS] += 1
     control[UNIT] += FINEST >> control[LEVEL]
     if control[UNIT] >= FINEST:             # back on the output grid

@@ -25,6 +25,7 @@ class Numbering(NamedTuple):
     item_names: list[str]               # of what has a history or does work
     histories: list[History]            # of every item
     prescribed: list[tuple[int, int, int, float]]   # coordinate, item, is a rotation, factor
+    forces_at: dict[int, int] = {}      # id(body, joint or load) -> its first force in State.g
 
 
 def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
@@ -71,9 +72,8 @@ def number(model: Model) -> Numbering:
                     place(parent)
         place_joints()
     _refuse_loose(model, last)
-    place_joints()
     free = len(names)
-    used = _used(model, last)
+    used = _used(model)
     for triplet in used:
         if id(triplet) not in at and triplet.root is None:
             at[id(triplet)] = len(names)
@@ -105,9 +105,13 @@ def _refuse_loose(model: Model, held: dict) -> None:
                 if parent.solved and id(parent) not in held:
                     raise InputError(f"{parent.name} belongs to no body, so nothing holds it: "
                                      "attach a body or fix it")
+    for load in model.loads:
+        if load.history is not None and not any(id(p) in held for t in load.triplets
+                                                for p in t.parents()):
+            raise InputError(f"{load.name}: no body is there to bear it: attach one")
 
 
-def _used(model: Model, held: dict) -> list[Triplet]:
+def _used(model: Model) -> list[Triplet]:
     """Triplets of nodes, of bodies, and those of the ground that joints need."""
     elements = (*model.rigid_bodies.values(), *model.joints, *model.loads)
     found = [t for n in model.nodes.values() for t in (n.position, n.rotation) if t is not None]
@@ -126,9 +130,9 @@ def _items(model: Model, at: dict[int, int]) -> tuple[dict, list, list, list]:
     for triplet in {id(t): t for n in model.nodes.values() for t in (n.position, n.rotation)
                     if t is not None}.values():
         turning = int(triplet.name.endswith("rotation"))
-        for direction, history in triplet.motions:
+        for number_, (direction, history) in enumerate(triplet.motions, 1):
             prescribed += [(at[id(triplet)] + k, len(names), turning and not model.planar, d)
                            for k, d in enumerate(direction) if d != 0.0]
-            names.append(f"motion of {triplet.name}")
+            names.append(f"motion{f' {number_}' * (number_ > 1)} of {triplet.name}")
             histories.append(history)
     return items, names, histories, prescribed

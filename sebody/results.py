@@ -11,15 +11,19 @@ from numpy.typing import NDArray
 from . import loop
 from .abi import ENERGY, POTENTIAL
 from .assembly import System
+from .audit import Forces, constraint_residuals, forces
 from .errors import InputError
 from .loop import State
 from .model import Model
 from .numbering import Numbering
+from .start import Start
+from .triplets import Triplet
 
 if TYPE_CHECKING:
     from .integrator import Simulation
 
-NODE_QUANTITIES = ("position", "rotation", "velocity", "angular_velocity", "acceleration")
+NODE_QUANTITIES = ("position", "rotation", "velocity", "angular_velocity", "acceleration",
+                   "reaction", "reaction_moment")
 SYSTEM_QUANTITIES = {"energy.kinetic": 0, "energy.strain": 1, "momentum": slice(2, 5),
                      "angular_momentum": slice(5, 8), "energy.potential": POTENTIAL}
 
@@ -29,9 +33,14 @@ class Result:
     """Histories on the output grid; ``result["tip.position"]`` by the rule ``<node>.<quantity>``.
 
     Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
-    angular_velocity (n, 3), all in global axes; in a plane (n, 2) and (n,). Of the model:
-    energy.kinetic, energy.strain, energy.potential, energy.external_work (n,), momentum and
-    angular_momentum about the origin (n, 3), `<superelement>.modes` (n, m).
+    angular_velocity (n, 3), all in global axes; in a plane (n, 2) and (n,); where it is fixed or
+    prescribed reaction and reaction_moment. Of the model: energy.kinetic, energy.strain (springs
+    included), energy.potential, energy.external_work (n,), momentum and angular_momentum about the
+    origin (n, 3), constraints.position and constraints.velocity, the largest residuals (n,).
+
+    Of a superelement ``<body>.modes`` (n, m); of any body ``<body>.forces``, those of neighbours
+    and supports on its nodes, inertia balanced: positions in global axes, rotations in those of
+    their nodes; of a joint ``<joint>.multipliers``; of a load, damper or drive ``<name>.work``.
     """
 
     model: Model
@@ -41,13 +50,16 @@ class Result:
     rows: NDArray           # recorded states, see `recorded`
     seconds: float
     failure: str = ""
+    start: Start | None = None
     _energies: NDArray | None = field(default=None, repr=False)
+    _forces: Forces | None = field(default=None, repr=False)
 
     @classmethod
     def of(cls, run: "Simulation") -> "Result":
         """Everything a simulation has recorded so far."""
         rows = np.concatenate([record.rows for record in run.records])
-        return cls(run.model, run.numbering, run.system, run.state, rows, run.seconds, run.failure)
+        return cls(run.model, run.numbering, run.system, run.state, rows, run.seconds, run.failure,
+                   run.start)
 
     def recorded(self, name: str) -> NDArray:
         """History of one of `loop.recorded_parts`, (n, size)."""
@@ -93,26 +105,61 @@ class Result:
             return self.recorded("works").sum(axis=1)
         if name in SYSTEM_QUANTITIES:
             return self._energy_table()[:, SYSTEM_QUANTITIES[name]]
+        if name.startswith("constraints."):
+            gaps, rates = constraint_residuals(self, self.forces())
+            return gaps if name == "constraints.position" else rates
         owner, _, quantity = name.rpartition(".")
+        bodies = self.model.bodies | self.model.rigid_bodies
         if owner in self.model.bodies and quantity == "modes":
             first = self.numbering.modes[owner]
             return self.recorded("q")[:, first:first + self.model.bodies[owner].body.modes]
+        if owner in bodies and quantity == "forces":
+            return self._of_body(owner)
+        if quantity == "work" and owner in self.numbering.item_names:
+            return self.recorded("works")[:, self.numbering.item_names.index(owner)]
+        if quantity == "multipliers" and any(j.name == owner for j in self.model.joints):
+            return self._multipliers(owner)
         if owner not in self.model.nodes:
-            raise InputError(f"{name!r} is unknown: nodes are {', '.join(self.model.nodes)}; of "
-                             f"the model there are t, energy.external_work, "
-                             f"{', '.join(SYSTEM_QUANTITIES)}")
+            raise InputError(
+                f"{name!r} is unknown: nodes are {', '.join(self.model.nodes)}; of bodies "
+                f"({', '.join(bodies)}) there are modes and forces; of joints multipliers; of "
+                f"{', '.join(self.numbering.item_names) or 'loads'} work; of the model t, "
+                f"energy.external_work, constraints.position, constraints.velocity, "
+                f"{', '.join(SYSTEM_QUANTITIES)}")
         if quantity not in NODE_QUANTITIES:
             raise InputError(f"{quantity!r} is unknown: a node has {', '.join(NODE_QUANTITIES)}")
         return self._of_node(owner, quantity)
 
+    def forces(self) -> Forces:
+        """Forces in every recorded state, see `sebody.audit`; evaluated once."""
+        if self._forces is None:
+            self._forces = forces(self)
+        return self._forces
+
+    def _of_body(self, name: str) -> NDArray:
+        """Forces of neighbours and supports on a body's nodes, its inertia balanced."""
+        part = (self.model.bodies | self.model.rigid_bodies)[name]
+        first = self.numbering.forces_at[id(part)]
+        width = (part.body.stiffness.shape[0] if name in self.model.bodies else
+                 sum(t.start.size for t in part.triplets))
+        return self.forces().elements[:, first:first + width]
+
+    def _multipliers(self, name: str) -> NDArray:
+        rows = [i for k, j in enumerate(self.model.joints) if j.name == name
+                for i in range(self.numbering.multipliers[k],
+                               self.numbering.multipliers[k] + j.multipliers)]
+        return self.recorded("q")[:, rows]
+
     def _of_node(self, name: str, quantity: str) -> NDArray:
         node = self.model.nodes[name]
-        turning = quantity in ("rotation", "angular_velocity")
+        turning = quantity in ("rotation", "angular_velocity", "reaction_moment")
         triplet = node.rotation if turning else node.position
         if triplet is None or id(triplet) not in self.numbering.triplets:
             raise InputError(f"node {name!r} has no {quantity}: the triplet is not in the model")
         first = self.numbering.triplets[id(triplet)]
         part = slice(first, first + triplet.start.size)
+        if quantity.startswith("reaction"):
+            return self._reaction(triplet, part)
         if not turning:
             source = {"position": "q", "velocity": "v", "acceleration": "a"}[quantity]
             return self.recorded(source)[:, part]
@@ -122,6 +169,18 @@ class Result:
         k = self.numbering.rotations[id(triplet)]
         R = self.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
         return R if quantity == "rotation" else np.einsum("nij,nj->ni", R, v[:, part])
+
+    def _reaction(self, triplet: Triplet, part: slice) -> NDArray:
+        """What the support of a fixed or prescribed triplet exerts, in global axes."""
+        values = self.forces().sums[:, part]
+        if triplet.solved:
+            raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
+                             "reaction; a joint's force is in its multipliers")
+        if self.model.planar or id(triplet) not in self.numbering.rotations:
+            return values
+        k = self.numbering.rotations[id(triplet)]
+        R = self.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
+        return np.einsum("nij,nj->ni", R, values)
 
     def _energy_table(self) -> NDArray:
         if self._energies is None:
@@ -165,7 +224,7 @@ class Result:
         return path
 
     def summary(self) -> str:
-        """A few lines: steps, iterations, time, energy balance."""
+        """A few lines: steps, iterations, time, balances, works, what the start changed."""
         lines = [
             f"unknowns             {self.numbering.free}",
             f"steps                {self.steps} ({self.cuts} cut), to t = {self.t[-1]:.6g}",
@@ -173,8 +232,27 @@ class Result:
             f"({self.matrices} iteration matrices)",
             f"time per step        {self.microseconds_per_step:.2f} us in the compiled loop",
             f"energy balance       {self.energy_balance():.2e} of the largest energy",
+            f"momentum at the end  {_vector(self['momentum'][-1])}, moment "
+            f"{_vector(self['angular_momentum'][-1])}",
         ]
+        if self.numbering.multipliers:
+            lines.append(f"constraints          off by at most "
+                         f"{self['constraints.position'].max():.1e}, their rates by "
+                         f"{self['constraints.velocity'].max():.1e}")
+        lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
+                  for k, name in enumerate(self.numbering.item_names)]
+        if self.start and self.start.changed:
+            lines.append("solved for           initial velocity of "
+                         + ", ".join(f"{name} (by {change:.3g})"
+                                     for name, change in self.start.changed.items()))
+        if self.start and self.start.redundant:
+            lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
+                         + ": multipliers are those of least norm")
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
+
+
+def _vector(values: NDArray) -> str:
+    return "(" + ", ".join(f"{v:.4g}" for v in values) + ")"
 
 
 @njit(cache=True, error_model="numpy")

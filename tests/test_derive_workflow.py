@@ -58,7 +58,7 @@ q[first] += 0.1         # stretched
 g, J, work, energy = np.zeros(99), np.zeros(999), np.zeros(9999), np.zeros(10)
 call = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * 4, *[ctypes.c_void_p] * 15)
 R, v, a, reference, frames, T = np.zeros((6, 9 * numbering.total))
-loads, coefficients = np.array([3.0]), np.zeros(8)
+loads, coefficients = np.array([3.0, 0.0, 0.0]), np.zeros(8)
 for k, address in enumerate(system.address):
     arrays = (system.index[system.at_index[k]:], system.constants, q, R, v, a, reference, frames,
               T, loads, coefficients, g, J, work, energy)
@@ -121,8 +121,8 @@ def test_text_is_the_same_for_every_hash_seed(original, seed):
 def test_change_a_formula_and_a_leaf(original, tmp_path):
     tree = duplicate(original, tmp_path)
     package = tree / "sebody"
-    edit(package / "derive" / "elements.py", '"vector", -amplitude * d.symbols)',
-         '"vector", -2 * amplitude * d.symbols)')
+    edit(package / "derive" / "forces.py", "load=AMPLITUDE[0] * direction.dot(x.",
+         "load=2 * AMPLITUDE[0] * direction.dot(x.")
     edit(package / "dense.py", "_store(builder, result, out, row)",
          "_store(builder, builder.fadd(result, result), out, row)")
     done = derive(tree, "--check")

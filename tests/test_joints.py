@@ -102,7 +102,7 @@ def test_joint_inputs():
     model = two_links(planar=True)
     with pytest.raises(InputError, match="share a position|share their position"):
         model.spherical("elbow", "elbow2")
-    with pytest.raises(InputError, match="do not share a position: make the second one with at="):
+    with pytest.raises(InputError, match="nodes 'base' and 'tip' start apart: give both the same"):
         model.revolute("base", to="tip")
     with pytest.raises(InputError, match="start apart: give both the same point"):
         model.spherical("base", "tip")

@@ -4,6 +4,7 @@ import functools
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from sebody import InputError, Model, Simulation, loop, simulate
 from sebody.histories import History, history
@@ -60,7 +61,6 @@ def test_function_that_cannot_be_compiled(function):
     pytest.param(lambda a, b: a, id="two arguments"),
     pytest.param(functools.partial(max, 1.0), id="partial"),
     pytest.param("abc", id="text"), pytest.param([(0, 1), (1,)], id="ragged rows")])
-@pytest.mark.xfail(strict=True, reason="TypeError, AttributeError or ValueError of the libraries")
 def test_histories_to_be_refused(source):
     with pytest.raises(InputError, match="load history"):
         history(source)
@@ -91,11 +91,19 @@ def test_planar_torque_is_one_number():
 
 
 def test_histories():
-    assert history(None) == History((0.0,), (1.0,))
+    assert history(None) == History((0.0,), ((1.0, 0.0, 0.0, 0.0),))
     table = history(np.array(TABLE))
-    assert (table.times, table.values) == tuple(zip(*TABLE, strict=True))
-    assert table.address == 0 and history(table) is table
-    assert history(ramps).address != 0
+    assert table.times == (0.0, 0.05, 0.15)
+    assert [row[0] for row in table.cubics] == [0.0, 1.0e4, -2.0e3]
+    assert table.addresses == (0, 0, 0) and history(table) is table
+    assert history(ramps).addresses[0] != 0
+
+
+def amplitudes(run, t):
+    """Amplitude and rates of every item at a time."""
+    loads = np.zeros_like(run.state.loads)
+    loop.set_loads(run.system, loads, t)
+    return loads.reshape(-1, 3)
 
 
 def test_amplitudes_in_the_loop():
@@ -105,12 +113,59 @@ def test_amplitudes_in_the_loop():
         model.force("tip", (0, 0, 1), source)
     run = Simulation(model, 0.01)
     for t in (-1.0, 0.0, 0.02, 0.05, 0.0999, 0.15, 9.0):
-        loop.set_loads(run.system, run.state, t)
         expected = np.interp(t, *zip(*TABLE, strict=True))
-        of_table, of_function, constant, single = run.state.loads[1:]
-        assert of_table == pytest.approx(expected, abs=1e-9)
-        assert of_function == pytest.approx(ramps(t))
-        assert (constant, single) == (1.0, 7.0)
+        of_table, of_function, constant, single = amplitudes(run, t)[1:]
+        assert of_table[0] == pytest.approx(expected, abs=1e-9)
+        assert of_function == pytest.approx([ramps(t), 0.0, 0.0])
+        assert (constant[0], single[0]) == (1.0, 7.0)
+
+
+def wave(t):
+    return np.sin(3.0 * t)
+
+
+def wave_rate(t):
+    return 3.0 * np.cos(3.0 * t)
+
+
+def wave_second(t):
+    return -9.0 * np.sin(3.0 * t)
+
+
+def test_motions_in_the_loop():
+    """Tables become splines at rest at both ends; rates are those of what moves."""
+    rows = [(0.0, 0.0), (0.5, 0.4), (1.0, 1.0), (2.0, 0.7)]
+    model = Model(planar=True)
+    model.node("a", (0.0, 0.0))
+    model.point_mass("ball", "a", 1.0)
+    for k, source in enumerate((rows, (wave, wave_rate, wave_second))):
+        model.node(f"moved {k}", (1.0, 0.0))
+        model.move(f"moved {k}", (1.0, 0.0), source)
+        model.fix(f"moved {k}", "rotation")
+    model.fix("a", "rotation")
+    run = Simulation(model, 0.01)
+    spline = CubicSpline(*zip(*rows, strict=True), bc_type="clamped")
+    for t in (0.0, 0.3, 0.5, 1.7, 2.0):
+        of_table, of_functions = amplitudes(run, t)
+        expected = [float(spline(t, k)) * (k < 2 or 0 < t < 2) for k in range(3)]
+        assert of_table == pytest.approx(expected, abs=1e-12)
+        assert of_functions == pytest.approx([wave(t), wave_rate(t), wave_second(t)])
+    assert amplitudes(run, 5.0)[0] == pytest.approx([0.7, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("source, message", [
+    (wave, r"is one function: give three, \(value, rate, second rate\), or a table"),
+    ((wave, wave, wave_second), "second function is not the derivative of the first: at t = 0.137"),
+    ((wave, wave_rate, wave), "third function is not the derivative of the second"),
+    ([(0.0, 0.0)], "has one row: give at least two rows"),
+    ([(0.0, 1.0), (1.0, 2.0)], "the motion at 'a' is 1 at t = 0: motions count from the start"),
+    ("abc", "motion of a drive cannot be read as numbers")])
+def test_wrong_motions(source, message):
+    model = Model(planar=True)
+    model.node("a", (0.0, 0.0))
+    with pytest.raises(InputError, match=message):
+        model.move("a", (1.0, 0.0), source)
+    assert not model.nodes["a"].position.fixed
 
 
 def test_compiled_history_gives_the_run_of_the_table():

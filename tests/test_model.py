@@ -148,11 +148,13 @@ def test_massless_body():
                                               "its direction"),
     (lambda m: m.revolute("base", (0, 1)), "axis of the revolute joint at 'base' is .0, 1.: give"),
     (lambda m: m.revolute("base", (0, 0, np.nan)), "axis of .* give 3 finite numbers"),
-    (lambda m: m.revolute("base", to="tip"), "nodes 'base' and 'tip' do not share a position: make "
-                                             "the second one with at="),
+    (lambda m: m.revolute("base", to="tip"), "revolute joint: nodes 'base' and 'tip' start apart: "
+                                             "give both the same point"),
     (lambda m: m.revolute("base", to="far"), "node 'far' is unknown"),
     (lambda m: m.spherical("base", "tip"), "'base' and 'tip' start apart: give both the same"),
-    (lambda m: m.spherical("base", "base"), "share their position already: leave the joint out"),
+    (lambda m: m.spherical("base", "base"), "node 'base' is joined to itself: give two nodes"),
+    (lambda m: (m.node("twin", (0, 0, 0), at="base"), m.spherical("base", "twin")),
+     "nodes 'base' and 'twin' share their position already: leave the joint out"),
     (lambda m: m.initial_velocity("base", (0, 1)), "initial rate of base.position is .0, 1.: give "
                                                    "3 finite"),
     (lambda m: m.initial_velocity("base", angular=(0, 0, np.inf)),
@@ -176,7 +178,6 @@ def test_joints_and_velocities(action, message):
                  id="at is a name"),
     pytest.param(lambda m: m.fix(Model().node("base", (9, 9, 9))), "base", id="foreign node"),
 ])
-@pytest.mark.xfail(strict=True, reason="raw Python error or silence where InputError is due")
 def test_inputs_to_be_refused(action, message):
     with pytest.raises(InputError, match=message):
         action(model_with_nodes())

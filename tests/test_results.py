@@ -87,7 +87,9 @@ def test_energy_is_the_work_done(run):
 
 
 @pytest.mark.parametrize("name, message", [
-    ("top.position", "'top.position' is unknown: nodes are base, tip; of the model there are t, "),
+    ("top.position", "'top.position' is unknown: nodes are base, tip; of bodies .beam. there are "
+                     "modes and forces; of joints multipliers; of torque on base.rotation work; of "
+                     "the model t, "),
     ("position", "'position' is unknown: nodes are base, tip"),
     ("energy.total", "energy.kinetic, energy.strain, momentum, angular_momentum"),
     ("tip.speed", "'speed' is unknown: a node has position, rotation, velocity, "),

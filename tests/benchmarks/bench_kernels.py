@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from sebody import check, simulate
+from sebody import simulate
 from sebody.abi import ENERGIES, RESIDUAL, TANGENT, call_kernel, padded
+from sebody.check import superelements
 from sebody.kernels import load
 from sebody.scenes import hinged_beam, planar_hinged_beam
 
@@ -82,7 +83,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for name in LAYOUTS:
             module = load("superelement_" + name)
-            other, case = generic(module, folder), check.superelement_case(module, 0)
+            other, case = generic(module, folder), superelements.superelement_case(module, 0)
             row = [nanoseconds(m, case, task, times) for task, times in (
                 (RESIDUAL, 20000), (TANGENT, 2000)) for m in (module, other)]
             print(f"{name:30} {row[0]:12.0f} {row[1]:9.0f} {row[1] / row[0]:6.2f}   "

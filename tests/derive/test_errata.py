@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import Simulation, check, generalized_alpha
+from sebody import Simulation, generalized_alpha
+from sebody.check import states, superelements
 from sebody.derive import inertia, superelement
 from sebody.derive.emit import superelement_text
 from sebody.derive.layouts import Layout
@@ -35,9 +36,9 @@ class PaperMatrices:
     def __init__(self, case, option="b"):
         n = case.n
         alpha = case.constants[4:6]
-        self.M = check.Constants(case).M
+        self.M = superelements.Constants(case).M
         nodes = Rotation.from_matrix(case.R.reshape(2, 3, 3))
-        R0 = check._mean_rotation(case).reshape(3, 3)
+        R0 = superelements._mean_rotation(case).reshape(3, 3)
         psi = (Rotation.from_matrix(R0).inv() * nodes).as_rotvec()
         parts = [a * np.linalg.inv(tangent(p)) for a, p in zip(alpha, psi, strict=True)]
         B = sum(part.T for part in parts)
@@ -81,9 +82,9 @@ def state(request):
 
     The force is quadratic in the velocities, so that central differences are exact.
     """
-    case = check.superelement_case(load(KERNEL[:-1] + request.param), 11)
-    differences = [(check.evaluate(case._replace(v=case.v + d), 0)[0]
-                    - check.evaluate(case._replace(v=case.v - d), 0)[0]) / 2
+    case = superelements.superelement_case(load(KERNEL[:-1] + request.param), 11)
+    differences = [(states.evaluate(case._replace(v=case.v + d), 0)[0]
+                    - states.evaluate(case._replace(v=case.v - d), 0)[0]) / 2
                    for d in np.eye(case.n)]
     return case, PaperMatrices(case, request.param), np.array(differences).T
 
@@ -91,9 +92,9 @@ def state(request):
 def test_erratum_4_derived_velocity_tangent(state):
     """(50)-(51), (62)-(63): last factor of C2 is P, V1 is minus the skew of the momentum."""
     case, paper, exact = state
-    assert check.difference(paper.pseudo_damping(), exact) < 1e-7
-    J = check.evaluate(case, 1, (0, 1, 0, 1, 1))[1]
-    assert check.difference(J, paper.pseudo_damping()) < 1e-12
+    assert states.difference(paper.pseudo_damping(), exact) < 1e-7
+    J = states.evaluate(case, 1, (0, 1, 0, 1, 1))[1]
+    assert states.difference(J, paper.pseudo_damping()) < 1e-12
 
 
 @pytest.mark.parametrize("misprint, sizes", [
@@ -102,15 +103,15 @@ def test_erratum_4_derived_velocity_tangent(state):
 def test_erratum_4_printed_velocity_tangent(state, misprint, sizes):
     """Printed: P^T ending C2, V1 = +skew, and in (50) a last term P diag(skew(p_psi)) of C3."""
     _, paper, exact = state
-    error = check.difference(paper.pseudo_damping(misprint), exact)
+    error = states.difference(paper.pseudo_damping(misprint), exact)
     assert error == pytest.approx(sizes[paper.option], rel=0.01, abs=1e-7)
 
 
 def test_mass_48_60(state):
     """(48), (60) are right as printed: ``P^T Mbar P``."""
     case, paper, _ = state
-    J = check.evaluate(case, 1, (1, 0, 0, 1, 1))[1]
-    assert check.difference(J, paper.P.T @ paper.M @ paper.P) < 1e-12
+    J = states.evaluate(case, 1, (1, 0, 0, 1, 1))[1]
+    assert states.difference(J, paper.P.T @ paper.M @ paper.P) < 1e-12
 
 
 @pytest.fixture(scope="module")
@@ -137,10 +138,10 @@ def printed_kernel(tmp_path_factory):
 
 def power_and_gain(case):
     """Power of the inertia force and rate of the kinetic energy along a path."""
-    case = check.without(case, "stiffness")
-    gain = check.derivative(
-        lambda t: check.evaluate(check.along_path(case, t), 2)[2][0], 0.003)
-    return check.evaluate(case, 0)[0] @ case.v, gain
+    case = superelements.without(case, "stiffness")
+    gain = states.derivative(
+        lambda t: states.evaluate(states.along_path(case, t), 2)[2][0], 0.003)
+    return states.evaluate(case, 0)[0] @ case.v, gain
 
 
 def test_erratum_1_power_balance(state):
@@ -157,7 +158,7 @@ def test_erratum_1_power_balance(state):
 
 def test_erratum_1_power_of_the_printed_kernel(printed_kernel):
     """A kernel with the printed sign is off by exactly 2 W . Omega_0, W = sum of xdot* x p_x."""
-    case = check.superelement_case(printed_kernel, 11)
+    case = superelements.superelement_case(printed_kernel, 11)
     paper = PaperMatrices(case)
     power, gain = power_and_gain(case)
     W = sum(np.cross(paper.ydot[i:i + 3], paper.p[i:i + 3]) for i in (0, 3))
@@ -199,7 +200,7 @@ def exact_upsilon(x, nodes, reference, alpha, i):
         return local_coordinates(x + d[:n].reshape(-1, 3),
                                  nodes * Rotation.from_rotvec(d[n:].reshape(-1, 3)), reference,
                                  alpha)[i]
-    columns = [check.derivative(lambda s, d=d: moved(s * d), 0.01) for d in np.eye(2 * n)]
+    columns = [states.derivative(lambda s, d=d: moved(s * d), 0.01) for d in np.eye(2 * n)]
     return np.array(columns).T
 
 
@@ -276,12 +277,12 @@ def steady_turning(case, w):
 def test_erratum_6_left_hand_side_of_52():
     """(52): T is made of Omega_i; the paper prints its rate, which is zero in steady rotation."""
     w = np.array([0.4, -0.3, 0.8])
-    case = steady_turning(check.superelement_case(load(KERNEL), 1), w)
+    case = steady_turning(superelements.superelement_case(load(KERNEL), 1), w)
     paper = PaperMatrices(case)
     R = case.R[:9].reshape(3, 3)
-    rate = check.derivative(
+    rate = states.derivative(
         lambda t: (Rotation.from_rotvec(t * w).as_matrix() @ R).T @ w, 0.01)
-    kinetic = check.evaluate(case, 2)[2][0]
+    kinetic = states.evaluate(case, 2)[2][0]
     printed = paper.ydot.copy()
     printed[6:12] = np.concatenate([rate, rate])
     assert np.abs(rate).max() < 1e-12
@@ -291,9 +292,9 @@ def test_erratum_6_left_hand_side_of_52():
 
 def test_erratum_7_rates_of_the_modes_in_53():
     """(53): ydot holds the rates of the internal modes, which the paper's column leaves out."""
-    case = check.superelement_case(load(KERNEL), 1)
+    case = superelements.superelement_case(load(KERNEL), 1)
     paper = PaperMatrices(case)
-    kinetic = check.evaluate(case, 2)[2][0]
+    kinetic = states.evaluate(case, 2)[2][0]
     kept = paper.ydot[:12] @ paper.M[:12, :12] @ paper.ydot[:12] / 2
     assert kinetic == pytest.approx(paper.ydot @ paper.M @ paper.ydot / 2, rel=1e-12)
     assert abs(kept / kinetic - 1) > 1e-2
@@ -303,7 +304,7 @@ def test_erratum_7_variations_are_not_increments():
     """(12) against (26): the unknowns are increments, dTheta = T dPsi; equal only at zero."""
     increment = np.array([0.3, -0.2, 0.4])
     here = Rotation.from_rotvec(increment)
-    columns = [check.derivative(
+    columns = [states.derivative(
         lambda s, e=e: (here.inv() * Rotation.from_rotvec(increment + s * e)).as_rotvec(), 0.01)
         for e in np.eye(3)]
     assert np.abs(np.array(columns).T - tangent(increment)).max() < 1e-11

@@ -3,7 +3,18 @@
 import pytest
 import sympy as sp
 
-from sebody.derive import elements, frames, inertia, kinematics, rotations, superelement, variation
+from sebody.derive import (
+    elastic,
+    elements,
+    forces,
+    frames,
+    inertia,
+    joints,
+    kinematics,
+    rotations,
+    superelement,
+    variation,
+)
 from sebody.derive.layouts import Layout
 from sebody.derive.quantities import Quantities
 from sebody.derive.stages import Linearizer, Space, Stage, cross
@@ -194,10 +205,21 @@ def test_wrong_variation_of_the_best_fit(monkeypatch, fresh):
         derive(frame="positions", layout="f3")
 
 
-def test_wrong_rate_of_a_dead_torque(monkeypatch):
-    monkeypatch.setattr(elements, "skew", lambda a: -rotations.skew(a))
-    with pytest.raises(DerivationError, match="rate of a dead torque in material axes"):
-        elements.torque(False)
+def test_wrong_gradient_of_a_constraint(monkeypatch):
+    """The matrix of a joint must have the constraint force as its column and as its row."""
+    monkeypatch.setattr(elements, "_of", lambda form, variables: -2 * elastic._of(form, variables))
+    with pytest.raises(DerivationError, match="constraint force is the gradient"):
+        joints.parallel(False)
+
+
+def test_dead_torque_turns_in_material_axes():
+    """``d(R^T m) = (R^T m) x dTheta``: what the second-order term of a dead torque must be."""
+    torque = forces.torque(False, False)
+    block, = torque.blocks
+    R, m = block.state.symbols, torque.constants[0].symbols
+    amplitude, c_place = sp.symbols("amplitude c_place")
+    expected = -amplitude * c_place * rotations.skew(R.T * m) * block.direction.symbols
+    check_same("dead torque", sp.Matrix(torque.linear), expected, [R])
 
 
 def test_out_of_plane_component_is_refused():

@@ -1,139 +1,31 @@
-"""Consistency of the generated kernels: forces against energies, tangents against differences.
+"""Criteria of superelement kernels: energies, forces, tangents, momenta, the paper's own forms."""
 
-Every criterion compares a kernel with derivatives taken numerically, in seeded generic states:
-rotations of the order of one radian, elastic rotations to 0.3, moving and accelerating. Differences
-are of sixth order, since axial stiffness makes central ones lose the digits that are asked for.
-"""
-
-from collections.abc import Iterable
-from pathlib import Path
 from types import ModuleType
-from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-import sebody.generated
-
-from .abi import (
-    ACCELERATION,
-    ENERGY,
-    POTENTIAL,
-    POWERS,
-    RESIDUAL,
-    TANGENT,
-    call_kernel,
-    padded,
+from ..abi import ENERGY, POTENTIAL, RESIDUAL, TANGENT, padded
+from ..dense import padded_columns
+from .states import (
+    LIMIT,
+    STATES,
+    Case,
+    CheckRow,
+    along_path,
+    derivative,
+    difference,
+    evaluate,
+    gradient,
+    momenta,
+    tangent_mass,
+    tangent_rate,
 )
-from .dense import padded_columns
-from .errors import InputError
-from .kernels import load, user_directory
 
 SIZE = "geometric term, its size"       # shown, not judged
-LIMIT = 1e-7
 LIMITS = {"K - K^T = skew(G)": 1e-10, "energies (24), (34)": 1e-10,
           "momentum = rigid dT/dv": 1e-10, SIZE: np.inf}
-STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))      # sixth-order central differences
-STATES = 2
-
-
-class CheckRow(NamedTuple):
-    """One line of the table."""
-
-    kernel: str
-    criterion: str
-    state: int
-    error: float            # relative to the largest entry
-    slope: float | None     # order of a difference that is there by design
-    passed: bool
-
-
-class Case(NamedTuple):
-    """A kernel with a generic state to evaluate it in."""
-
-    module: ModuleType
-    n: int
-    index: NDArray
-    constants: NDArray
-    q: NDArray
-    R: NDArray
-    v: NDArray
-    a: NDArray
-    reference: NDArray
-    frames: NDArray
-    field: NDArray = np.zeros(3)
-
-    @property
-    def planar(self) -> bool:
-        """Motion in a plane: angles among q in place of rotation matrices."""
-        return getattr(self.module, "LAYOUT", "").startswith("planar")
-
-    @property
-    def turning(self) -> list[int]:
-        """First unknown of each rotation triplet."""
-        first = getattr(self.module, "ROTATIONS", 0)
-        return [] if not self.R.size else [first + 3 * j for j in range(self.module.N_ROTATIONS)]
-
-
-@njit(cache=True)
-def _call(address, task, stride, width, index, constants, q, R, v, a, reference, frames, T, loads,
-          coefficients, g, J, work, energy):
-    return call_kernel(address, task, 1, stride, width, (
-        index, constants, q, R, v, a, reference, frames, T, loads, coefficients, g, J, work,
-        energy))
-
-
-def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)
-             ) -> tuple[NDArray, NDArray, NDArray]:
-    """Forces, matrix and energies of a kernel in the state of a case."""
-    n, module = case.n, case.module
-    g, J, energy = np.zeros(n), np.zeros(n * n), np.zeros(POWERS + 1)
-    work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
-    T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
-    frame = case.frames.copy()
-    status = _call(module.kernel.address, task, len(case.index), n, case.index, case.constants,
-                   case.q, case.R, case.v, case.a, case.reference, frame, T,
-                   np.array([1.7]), np.array([*coefficients, *case.field], dtype=float), g, J, work,
-                   energy)
-    if status:
-        raise InputError(f"kernel {module.__name__} refuses the check's state (status {status})")
-    return g, _in_global_axes(J.reshape(n, n), frame, module), energy
-
-
-def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:
-    """Matrix with positions in global axes: superelements leave them in those of the frame."""
-    turn, d = np.eye(len(J)), 2 if "planar" in getattr(module, "LAYOUT", "") else 3
-    R0 = frame.reshape(3, 3)[:d, :d]
-    for i in range(0, getattr(module, "ROTATIONS", 0), d):
-        turn[i:i + d, i:i + d] = R0
-    return turn @ J @ turn.T
-
-
-def moved(case: Case, direction: NDArray, size: float) -> Case:
-    """The case with its configuration moved: rotations multiplied, the rest added."""
-    q, R = case.q + size * direction, case.R.copy()
-    for j, at in enumerate(case.turning):
-        turn = Rotation.from_rotvec(size * direction[at:at + 3]).as_matrix()
-        R[9 * j:9 * j + 9] = (R[9 * j:9 * j + 9].reshape(3, 3) @ turn).ravel()
-    return case._replace(q=q, R=R)
-
-
-def derivative(function, step: float):
-    """Sixth-order central derivative of a function of one number at zero."""
-    return sum(w * (function(k * step) - function(-k * step)) for k, w in STENCIL) / step
-
-
-def gradient(case: Case, function, step: float) -> NDArray:
-    """Derivatives of a function of the case along every coordinate, as columns."""
-    return np.array([derivative(lambda s, d=d: function(moved(case, d, s)), step)
-                     for d in np.eye(case.n)]).T
-
-
-def difference(a: NDArray, b: NDArray) -> float:
-    """Largest difference relative to the largest entry."""
-    return float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-300))
 
 
 def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3,
@@ -199,41 +91,6 @@ def tangent_place(case: Case) -> float:
     """Configuration tangent against differences of the whole force."""
     exact = gradient(case, lambda c: evaluate(c, RESIDUAL)[0], 0.01)
     return difference(evaluate(case, TANGENT, (0, 0, 1, 1, 1))[1], exact)
-
-
-def tangent_rate(case: Case) -> float:
-    """Velocity tangent (61)-(63) against differences; the force is quadratic in the velocity."""
-    columns = [(evaluate(case._replace(v=case.v + d), RESIDUAL)[0]
-                - evaluate(case._replace(v=case.v - d), RESIDUAL)[0]) / 2 for d in np.eye(case.n)]
-    return difference(evaluate(case, TANGENT, (0, 1, 0, 1, 1))[1], np.array(columns).T)
-
-
-def tangent_mass(case: Case) -> float:
-    """Mass (48), (60) against differences; the force is linear in the acceleration."""
-    columns = [evaluate(case._replace(a=case.a + d), RESIDUAL)[0]
-               - evaluate(case, RESIDUAL)[0] for d in np.eye(case.n)]
-    return difference(evaluate(case, TANGENT, (1, 0, 0, 1, 1))[1], np.array(columns).T)
-
-
-def momenta(case: Case) -> NDArray:
-    """``dT/dv`` by central differences, exact since T is quadratic."""
-    def kinetic(v):
-        return evaluate(case._replace(v=v), ENERGY)[2][0]
-    return np.array([(kinetic(case.v + d) - kinetic(case.v - d)) / 2 for d in np.eye(case.n)])
-
-
-def along_path(case: Case, t: float) -> Case:
-    """The case a time t later on a path with its velocity and acceleration at t = 0."""
-    step = case.v * t + case.a * t * t / 2
-    v = case.v + case.a * t
-    for at in case.turning:
-        psi, rate = step[at:at + 3], v[at:at + 3].copy()
-        angle = np.linalg.norm(psi)
-        if angle > 0:       # Omega = T(psi) psidot
-            once = np.cross(psi, rate)
-            v[at:at + 3] = (rate - (1 - np.cos(angle)) / angle**2 * once
-                            + (angle - np.sin(angle)) / angle**3 * np.cross(psi, once))
-    return moved(case, step, 1.0)._replace(v=v) if t else case
 
 
 def inertia_force(case: Case) -> float:
@@ -421,107 +278,3 @@ def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
             rows.append(CheckRow(name, "force of (20) against dV/dq", seed, error, slope,
                                  slope > 1.8))
     return rows
-
-
-def element_case(module: ModuleType, seed: int) -> Case:
-    """A generic state of a joint or load kernel."""
-    random = np.random.default_rng(seed)
-    n, nrot = module.WIDTH, module.N_ROTATIONS
-    R = np.array([Rotation.from_rotvec(r).as_matrix() for r in random.normal(size=(nrot, 3))])
-    q = random.normal(size=n)
-    return Case(module, n, np.array([0, 0, n, *range(nrot), *range(n)]),
-                random.normal(size=max(module.N_CONSTANTS, 1)), q, R.ravel(),
-                random.normal(size=n), random.normal(size=n), np.zeros(9), np.zeros(9))
-
-
-def multipliers(case: Case) -> int:
-    """Number of multipliers of a joint: rows that do not change with the multipliers."""
-    return case.module.MULTIPLIERS
-
-
-def joint_force(case: Case) -> float:
-    """Force against the gradient of ``lambda . phi``."""
-    m = multipliers(case)
-    lam = case.q[case.n - m:]
-    exact = gradient(case, lambda c: lam @ evaluate(c, RESIDUAL)[0][case.n - m:], 0.02)
-    return difference(evaluate(case, RESIDUAL)[0][:case.n - m], exact[:case.n - m])
-
-
-def joint_acceleration(case: Case) -> float:
-    """``phi`` differentiated twice in time against differences along a path."""
-    m = multipliers(case)
-    case = case._replace(v=np.r_[case.v[:-m], np.zeros(m)], a=np.r_[case.a[:-m], np.zeros(m)])
-
-    def phi(t):
-        return evaluate(along_path(case, t), RESIDUAL)[0][-m:]
-    h, weights = 0.02, (1.5, -0.15, 1.0 / 90.0)
-    second = (-49.0 / 18.0 * phi(0.0) + sum(w * (phi(k * h) + phi(-k * h))
-                                            for k, w in enumerate(weights, 1))) / h**2
-    return difference(evaluate(case, ACCELERATION)[0][-m:], second)
-
-
-def element_tangent(case: Case) -> float:
-    """Matrix against differences of the residual, with a coefficient for what has multipliers."""
-    place, constraint, m = 2.0, 3.0, case.n - multipliers(case)
-    exact = constraint * gradient(case, lambda c: evaluate(c, RESIDUAL)[0], 0.02)
-    exact[:m, :m] *= place / constraint
-    matrix = evaluate(case, TANGENT, (0, 0, place, 1, constraint))[1]
-    if not np.abs(exact).max() > 1e-12:
-        return float(np.abs(matrix).max())
-    return difference(matrix, exact)
-
-
-def load_power(case: Case) -> float:
-    """Power against the force on the unknowns times their velocity."""
-    power = -evaluate(case, RESIDUAL)[0] @ case.v
-    return abs(evaluate(case, ENERGY)[2][8] - power) / abs(power)
-
-
-def check_element(name: str, module: ModuleType) -> list[CheckRow]:
-    """All criteria of a joint or load kernel."""
-    rows = []
-    joint = {"force = gradient of lambda.phi": joint_force, "acceleration": joint_acceleration}
-    criteria = (joint if module.MULTIPLIERS else {"power": load_power}) | {
-        "tangent": element_tangent}
-    for seed in range(STATES):
-        for criterion, measure in criteria.items():
-            error = measure(element_case(module, seed))
-            rows.append(CheckRow(name, criterion, seed, error, None, error <= LIMIT))
-    return rows
-
-
-def kernel_names() -> list[str]:
-    """Names of all kernels: the shipped ones and those of the user's directory."""
-    folders = [Path(sebody.generated.__file__).parent, user_directory()]
-    return sorted({path.stem for folder in folders if folder.exists()
-                   for path in folder.glob("*.py")
-                   if path.stem.startswith(("superelement_", "element_"))})
-
-
-def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
-    """Check kernels by name, all of them by default.
-
-    Raises
-    ------
-    InputError
-        An unknown name.
-    """
-    known, rows = kernel_names(), []
-    for name in names or known:
-        if name not in known:
-            raise InputError(f"kernel {name!r} is unknown: there are {', '.join(known)}")
-        module = load(name)
-        rows += (check_superelement if name.startswith("superelement_") else check_element)(
-            name, module)
-    return rows
-
-
-def format_table(rows: list[CheckRow]) -> str:
-    """The rows as a table: kernel, criterion, state, error, slope."""
-    width = max(len(row.kernel) for row in rows)
-    lines = [f"{'kernel':{width}}  {'criterion':31}  state    error  slope"]
-    for row in rows:
-        slope = f"{row.slope:5.2f}" if row.slope is not None else "    -"
-        lines.append(f"{row.kernel:{width}}  {row.criterion:31}  {row.state:5d}  {row.error:7.1e}  "
-                     f"{slope}{'' if row.passed else '  FAILED'}")
-    return "\n".join(lines)

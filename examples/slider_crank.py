@@ -1,0 +1,47 @@
+"""Slider-crank with a flexible rod (Meijaard 1991): the crank turns at constant speed.
+
+The crank pin moves on a circle as prescribed, so the crank takes no unknown; one multiplier keeps
+the slider on its line.
+"""
+
+from math import cos, sin
+
+from sebody import Model
+from sebody.fem import Section, planar_beam
+from sebody.reduction import craig_bampton
+from sebody.scenes.scene import Scene
+
+RADIUS, LENGTH, SPEED = 0.15, 0.3, 150.0
+SECTION = Section(area=2.8274333882e-5, inertia_y=6.3617251235e-11, inertia_z=6.3617251235e-11,
+                  torsion=1.2723450247e-10, youngs_modulus=2e11, poisson_ratio=0.3, density=7870.0)
+SLIDER = 0.033
+ELEMENTS = 24
+
+
+def build(bodies: int = 1, modes: int = 5) -> Scene:
+    """The scene: the rod is divided into equal superelements."""
+    model = Model(planar=True)
+    each = ELEMENTS // bodies
+    nodes = [model.node("pin" if k == 0 else "slider" if k == bodies else f"rod {k}",
+                        (RADIUS + LENGTH * k / bodies, 0.0)) for k in range(bodies + 1)]
+    for k, ends in enumerate(zip(nodes, nodes[1:], strict=False)):
+        fe_model = planar_beam(ends[0].point, ends[1].point, SECTION, each)
+        model.superelement(f"rod {k + 1}", craig_bampton(fe_model, [(0, "full"), (each, "full")],
+                                                         modes), ends)
+    model.point_mass("slider", nodes[-1], SLIDER)
+    model.slider(nodes[-1], axis=(1.0, 0.0))
+    model.move(nodes[0], (RADIUS, 0.0), (lambda t: cos(SPEED * t) - 1.0,
+                                         lambda t: -SPEED * sin(SPEED * t),
+                                         lambda t: -SPEED**2 * cos(SPEED * t)))
+    model.move(nodes[0], (0.0, RADIUS), (lambda t: sin(SPEED * t),
+                                         lambda t: SPEED * cos(SPEED * t),
+                                         lambda t: -SPEED**2 * sin(SPEED * t)))
+    model.rigid_velocity((0.0, RADIUS * SPEED), -SPEED * RADIUS / LENGTH, about=(RADIUS, 0.0))
+    return Scene("slider-crank", "slider-crank with a flexible rod", model, h=2e-5,
+                 t_end=0.08377580409572781, base="pin", tip="slider")
+
+
+if __name__ == "__main__":
+    from sebody.scenes.scene import main
+
+    main(build)
