@@ -7,7 +7,8 @@ from ..errors import InputError
 from . import machine, own, peer
 from .measurement import Measurement
 
-SCENES = ("hinged-beam", "planar-hinged-beam", "spherical-beam", "chain")
+SCENES = ("hinged-beam", "planar-hinged-beam", "spherical-beam", "chain", "slider-crank",
+          "four-bar", "heavy-top")
 
 
 def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
@@ -49,7 +50,8 @@ def ratios(measurements: list[Measurement]) -> list[str]:
     lines = []
     for m in measurements:
         rivals = [p for p in measurements if p.scene == m.scene and _is_peer(p)
-                  and p.h == m.h and (m.scene != "chain" or p.variant.endswith(m.variant))]
+                  and p.h == m.h and (m.scene not in ("chain", "four-bar")
+                                       or p.variant.endswith(m.variant))]
         if not _is_peer(m) and rivals:
             best = min(rivals, key=lambda p: p.us_per_step)
             lines.append(f"{m.scene}, {m.variant}: {best.variant} takes "

@@ -12,6 +12,7 @@ from .measurement import Measurement
 from .references import tip_error
 
 CHAINS = (1, 4, 16, 64, 256, 1024)
+LOOPS = (2, 20)
 
 
 class Case(NamedTuple):
@@ -30,9 +31,14 @@ def cases(scene: str) -> list[Case]:
     if scene == "chain":
         return [Case(scene, f"{n} links", {"links": n}, 1.0, "", 9 if n < 256 else 3)
                 for n in CHAINS]
+    if scene == "four-bar":
+        return [Case(scene, f"{n} loops", {"loops": n}, 0.0, "", 3) for n in LOOPS]
+    if scene == "slider-crank":
+        return [Case(scene, "4 superelements", {"bodies": 4, "modes": 0}, 0.0, "", 5)]
     references = {"hinged-beam": "hinged_beam", "planar-hinged-beam": "hinged_beam",
                   "spherical-beam": "spherical_beam"}
-    return [Case(scene, "superelement", {}, 0.0, references.get(scene, ""), 9)]
+    variant = "rigid body" if scene == "heavy-top" else "superelement"
+    return [Case(scene, variant, {}, 0.0, references.get(scene, ""), 9)]
 
 
 def measure(case: Case) -> Measurement:
@@ -62,7 +68,8 @@ def flops_per_step(result: Result) -> float:
     forces = sum(_kernel_flops(b.kernel, b.body.stiffness.shape[0]) for b in bodies)
     from ..kernels import element_kernel
     forces += sum(element_kernel(item.kind).OPERATIONS["residual"][0]
-                  for item in (*result.model.joints, *result.model.loads))
+                  for item in (*result.model.rigid_bodies.values(),
+                               *result.model.joints, *result.model.loads))
     return result.iterations_per_step * (forces + _solve_flops(system))
 
 

@@ -19,6 +19,7 @@ from .references import tip_error
 
 NAME = "Exudyn"
 LINKS = (1, 4, 16, 64, 256)
+LOOPS = (2, 20)
 
 
 def available() -> bool:
@@ -46,6 +47,7 @@ def measure(scene: str) -> list[Measurement]:
         raise InputError("Exudyn is not installed: pip install exudyn")
     sys.exudynFast = True       # read by Exudyn when it is first imported
     models = import_module("sebody.bench.peer_models")
+    mechanisms = import_module("sebody.bench.peer_mechanisms")
     if scene == "hinged-beam":
         runs = [_beam(scene, f"{NAME} reduced, 12 + 4 coordinates", models.reduced_beam, h)
                 for h in (0.02, 0.01, 0.005)]
@@ -62,7 +64,14 @@ def measure(scene: str) -> list[Measurement]:
         return [reduced, *(_beam(scene, f"{NAME} beams in space, {n} elements",
                                  lambda h, n=n: models.spherical_beam(h, n), 0.02)
                            for n in (2, 4))]
-    return [_chain(models.chain, n) for n in LINKS]
+    if scene == "chain":
+        return [_chain(models.chain, n) for n in LINKS]
+    variants = {"four-bar": [(f"{NAME} {n} loops", lambda h, n=n: mechanisms.four_bar(h, n), 1e-3)
+                             for n in LOOPS],
+                "heavy-top": [(f"{NAME} rigid body", mechanisms.heavy_top, 1e-3)],
+                "slider-crank": [(f"{NAME} beams in a plane, 4 elements", mechanisms.slider_crank,
+                                  2e-5)]}
+    return [_timed(scene, *variant) for variant in variants[scene]]
 
 
 def _beam(scene: str, variant: str, model: Callable, h: float) -> Measurement:
@@ -73,6 +82,14 @@ def _beam(scene: str, variant: str, model: Callable, h: float) -> Measurement:
     seconds = statistics.median(run.seconds for run in runs)
     return Measurement(scene, variant, runs[0].unknowns, h, 1e6 * seconds / runs[0].steps,
                        runs[0].iterations, tip_error(name, path[:, 0], path[:, 1:]), seconds)
+
+
+def _timed(scene: str, variant: str, model: Callable, h: float) -> Measurement:
+    """Three runs of a mechanism, without a reference."""
+    runs = [model(h) for _ in range(3)]
+    seconds = statistics.median(run.seconds for run in runs)
+    return Measurement(scene, variant, runs[0].unknowns, h, 1e6 * seconds / runs[0].steps,
+                       runs[0].iterations, None, seconds)
 
 
 def _chain(model: Callable, links: int) -> Measurement:

@@ -50,37 +50,37 @@ class Run(NamedTuple):
 
 def reduced_beam(h: float) -> Run:
     """The hinged beam as one reduced body: block of hexahedra, rigid ends, four inner modes."""
-    system, mbs = _system()
+    system, mbs = new_system()
     base, tip = _reduced_body(mbs, np.sqrt(2.0) * 100.0, SECTION, 4, (0.0, 0.0, 0.0))
     ground = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.AddObject(ObjectGround())))
     mbs.AddObject(GenericJoint(markerNumbers=[ground, base], constrainedAxes=[1, 1, 1, 1, 1, 0]))
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _turned(_solve(system, mbs, tip, h, T_END), np.pi / 4)
+    return _turned(solve(system, mbs, tip, h, T_END), np.pi / 4)
 
 
 def spherical_beam(h: float, elements: int) -> Run:
     """The beam on a spherical joint as geometrically exact beam elements."""
-    system, mbs = _system()
+    system, mbs = new_system()
     base, tip = _exact_beams(mbs, LENGTH, elements, [1, 1, 1, 0, 0, 0])
     _load(mbs, base, "torque", (0, 0, 1), SPHERICAL_TORQUE)
     _load(mbs, tip, "force", (0, 0, 1), PUSH)
-    return _solve(system, mbs, tip, h, T_END, modified=False)
+    return solve(system, mbs, tip, h, T_END, modified=False)
 
 
 def reduced_spherical_beam(h: float) -> Run:
     """The same as one reduced body with eight inner modes."""
-    system, mbs = _system()
+    system, mbs = new_system()
     base, tip = _reduced_body(mbs, LENGTH, SECTION, 8, (0.0, 0.0, 0.0))
     ground = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.AddObject(ObjectGround())))
     mbs.AddObject(GenericJoint(markerNumbers=[ground, base], constrainedAxes=[1, 1, 1, 0, 0, 0]))
     _load(mbs, base, "torque", (0, 0, 1), SPHERICAL_TORQUE)
     _load(mbs, tip, "force", (0, 0, 1), PUSH)
-    return _solve(system, mbs, tip, h, T_END)
+    return solve(system, mbs, tip, h, T_END)
 
 
 def planar_beams(h: float, elements: int) -> Run:
     """The hinged beam as geometrically exact beam elements in the plane."""
-    system, mbs = _system()
+    system, mbs = new_system()
     length = np.sqrt(2.0) * 100.0
     nodes = [mbs.AddNode(NodeRigidBody2D(referenceCoordinates=[length * k / elements, 0.0, 0.0]))
              for k in range(elements + 1)]
@@ -99,15 +99,15 @@ def planar_beams(h: float, elements: int) -> Run:
         mbs.AddObject(CoordinateConstraint(markerNumbers=[ground, held]))
     base, tip = (mbs.AddMarker(MarkerNodeRigid(nodeNumber=node)) for node in (nodes[0], nodes[-1]))
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _turned(_solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
+    return _turned(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
 
 
 def spatial_beams(h: float, elements: int) -> Run:
     """The hinged beam as geometrically exact beam elements in space."""
-    system, mbs = _system()
+    system, mbs = new_system()
     base, tip = _exact_beams(mbs, np.sqrt(2.0) * 100.0, elements, [1, 1, 1, 1, 1, 0])
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _turned(_solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
+    return _turned(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
 
 
 def _exact_beams(mbs, length: float, elements: int, held: list[int]):
@@ -135,17 +135,17 @@ def _exact_beams(mbs, length: float, elements: int, held: list[int]):
 
 def chain(links: int, steps: int) -> Run:
     """The chain of reduced links on revolute joints."""
-    system, mbs = _system()
+    system, mbs = new_system()
     last = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.AddObject(ObjectGround())))
     for k in range(links):
         base, tip = _reduced_body(mbs, 1.0, LINK, 4, (float(k), 0.0, 0.0), GRAVITY)
         mbs.AddObject(GenericJoint(markerNumbers=[last, base],
                                    constrainedAxes=[1, 1, 1, 1, 1, 0]))
         last = tip
-    return _solve(system, mbs, last, 0.01, 0.01 * steps)
+    return solve(system, mbs, last, 0.01, 0.01 * steps)
 
 
-def _system():
+def new_system():
     with contextlib.redirect_stdout(io.StringIO()):
         system = exu.SystemContainer()
         return system, system.AddSystem()
@@ -198,7 +198,7 @@ def _interpolated(t, table):
     return esym.IfThenElse(t <= table[0][0], esym.Real(table[0][1]), value)
 
 
-def _solve(system, mbs, tip, h: float, t_end: float, modified: bool = True) -> Run:
+def solve(system, mbs, tip, h: float, t_end: float, modified: bool = True) -> Run:
     """Time the solver alone; the tip is stored every 0.1 s.
 
     Modified Newton is faster for the reduced bodies, the full one for the beams; a looser
