@@ -14,7 +14,8 @@ from .superelement import Superelement
 VERSION = "1.0"
 ROWS = ("qe", "ve", "ae", "y", "yd", "ydd", "acc", "s", "p", "pd", "h", "beta", "Q", "e0s", "e1s",
         "b0s", "b1s", "gamma", "d", "weight", "dqe", "dve", "dae", "dy", "dyd", "dydd", "dacc",
-        "ds", "dp", "dpd", "dh", "dbeta", "dgamma", "dd", "dweight", "dg")
+        "ds", "dp", "dpd", "dh", "dbeta", "dgamma", "dd", "dweight", "eta", "friction", "deta",
+        "dfriction", "dg")
 
 
 def leaf_table(names: set[str]) -> dict[str, str]:

@@ -9,7 +9,18 @@ from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
 from .layouts import Layout
-from .stages import Product, Quantity, Solve, Space, Stage, Step, Text, name_functions, solve_matrix
+from .stages import (
+    Product,
+    Quantity,
+    Solve,
+    Space,
+    Stage,
+    Step,
+    Text,
+    When,
+    name_functions,
+    solve_matrix,
+)
 
 WIDTH = 100
 
@@ -58,7 +69,7 @@ class StepPrinter:
         out = []
         for step in steps:
             text = {Stage: self._stage, Product: self._product, Solve: self._solve,
-                    Text: self._text}[type(step)](step)
+                    Text: self._text, When: self._when}[type(step)](step)
             if text:
                 out += [f"# {step.title}", *text]
         return out
@@ -178,6 +189,13 @@ class StepPrinter:
         self.operations += step.operations * (1 if step.over == "element" else
                                               self.layout.rotations)
         return self._wrap(step.over, list(step.lines))
+
+    def _when(self, step: When) -> list[str]:
+        """A branch, whose arithmetic is not counted: most bodies do not take it."""
+        counted = self.operations, self.products
+        lines = [f"if {step.condition}:", *_indent(self.lines(step.steps))]
+        self.operations, self.products = counted
+        return lines
 
     def _count(self, over: str, expressions: list) -> None:
         times = {"element": 1, "mode": 0, "position": self.layout.positions,

@@ -132,7 +132,15 @@ class Text(NamedTuple):
     operations: int = 0         # arithmetic of one pass, for the operation count
 
 
-Step = Stage | Product | Solve | Text
+class When(NamedTuple):
+    """Steps that are taken only where a condition of the kernel holds."""
+
+    title: str
+    condition: str
+    steps: tuple
+
+
+Step = Stage | Product | Solve | Text | When
 
 
 class Linearizer:

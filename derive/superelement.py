@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from .damping import damping, linearized_damping
 from .elastic import VirtualWork, _of, virtual_work, virtual_work_small
 from .frames import FRAMES, Frame, origin_stage, relative_rotation
 from .gravity import Gravity, gravity, linearized, taken_off
@@ -23,7 +24,7 @@ from .kinematics import (
 )
 from .layouts import Layout, LayoutError
 from .quantities import Quantities
-from .stages import Linearizer, Product, Space, Stage, Step, Text, along_own, cross
+from .stages import Linearizer, Product, Space, Stage, Step, Text, When, along_own, cross
 from .variation import check_same, differential
 
 
@@ -68,9 +69,15 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
         raise LayoutError(f"in a plane the frame {frame!r} coincides with 'converged_mean': use "
                           "that one")
     q, chosen, option, parts = _derived(layout.planar, frame, inertia)
-    steps = [tuple(s for s in part if layout.rotations or getattr(s, "over", "") != "rotation")
-             for part in parts]
+    steps = [_kept(part, layout) for part in parts]
     return Superelement(layout, q.space, chosen, option, _names(q), *steps)
+
+
+def _kept(part, layout: Layout) -> tuple[Step, ...]:
+    """Steps without those over rotations, where a layout has none."""
+    kept = [s for s in part if layout.rotations or getattr(s, "over", "") != "rotation"]
+    return tuple(s._replace(steps=_kept(s.steps, layout)) if isinstance(s, When) else s
+                 for s in kept)
 
 
 @cache
@@ -86,7 +93,7 @@ def _derived(planar: bool, frame: str, inertia: str):
     after = _forces(q, chosen, option, work, weight)
     elastic, *inertia = PRODUCTS
     residual = [origin_stage(q, q.x0, q.x), *chosen.locate, *before, *weight.before, elastic,
-                *weight.products, taken_off(""), *inertia, *after]
+                *weight.products, taken_off(""), damping(q), *inertia, *after]
     tangent = _tangent(q, chosen, varied, before, after, weight)
     return q, chosen, option, (residual, _energy(q, option, weight), tangent)
 
@@ -156,6 +163,7 @@ def _tangent(q: Quantities, frame: Frame, varied, before, after, weight) -> list
     for step in before[1:]:
         if step.title not in skipped:
             steps.append(chain.solve(step) if hasattr(step, "unknown") else chain.stage(step))
+    steps.append(linearized_damping(q, chain))
     steps += [product.differential() for product in inertia]
     for quantity in (q.px, q.pw, q.pxd, q.pwd, q.pmd):
         chain.move(quantity)

@@ -69,6 +69,7 @@ class System(NamedTuple):
     linked_entries: NDArray
     arm_entries: NDArray
     relaxed: NDArray        # (1,) 1 where constraints are redundant
+    damped: NDArray         # (1,) 1 where a superelement has structural damping
 
 
 class Batch(NamedTuple):
@@ -138,7 +139,8 @@ def build(model: Model) -> tuple[System, Numbering]:
         is_multiplier=multiplier,
         rotation_at=_rotation_starts(model, numbering), **axes,
         dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering),
-        **_items(numbering), **links, relaxed=np.zeros(1, dtype=np.int64))
+        **_items(numbering), **links, relaxed=np.zeros(1, dtype=np.int64),
+        damped=integers([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for b in batches for owner in b.owners]
     starts = _starts([b.width for b in batches for _ in b.rows])
     return system, numbering._replace(forces_at=dict(zip(owners, starts.tolist(), strict=False)))
@@ -168,7 +170,8 @@ def _body_batches(model: Model, numbering: Numbering, constants: list) -> list[B
                  else [0] * len(body.rotations))
         batch = batches.setdefault((body.kernel.__name__, len(unknowns)),
                                    Batch(body.kernel, len(unknowns), [], [], []))
-        batch.rows.append([rows_of[key], number_, 0, *nodes, *unknowns])
+        item = numbering.items.get(id(body), 0)
+        batch.rows.append([rows_of[key], number_, item, *nodes, *unknowns])
         batch.unknowns.append(unknowns)
         batch.owners.append(id(body))
     return list(batches.values())
@@ -181,7 +184,13 @@ def _body_constants(body: Superelement) -> NDArray:
     fit = np.full(len(points), 1.0 / len(points))
     return np.concatenate([body.alpha, fit, body.alpha_r, local.ravel(),
                            padded_columns(reduced.stiffness), padded_columns(reduced.mass),
-                           *mass_constants(reduced, body.alpha @ points)])
+                           *mass_constants(reduced, body.alpha @ points),
+                           *_damping_constants(reduced.damping)])
+
+
+def _damping_constants(damping: NDArray | None) -> list[NDArray]:
+    """Whether there is any, then the matrix."""
+    return [np.zeros(1)] if damping is None else [np.ones(1), padded_columns(damping)]
 
 
 def mass_constants(body: ReducedBody, origin: NDArray) -> list[NDArray]:

@@ -560,6 +560,8 @@ def set_powers(system, state):
     """Rate of work of the items in the current state."""
     if state.powers.size == 0:
         return
+    if system.damped[0] == 1:
+        run_kernels(ENERGY, 0, system.first_joint[0], system, state)
     run_kernels(ENERGY, system.first_power[0], system.address.size, system, state)
     for k in range(state.powers.size):
         state.powers[k] = state.energy[POWERS + k]

@@ -127,6 +127,11 @@ def _items(model: Model, at: dict[int, int]) -> tuple[dict, list, list, list]:
             items[id(element)] = len(names)
             names.append(element.name)
             histories.append(element.history or History())
+    for body in model.bodies.values():
+        if body.body.damping is not None:
+            items[id(body)] = len(names)
+            names.append(f"damping of {body.name}")
+            histories.append(History())
     for triplet in {id(t): t for n in model.nodes.values() for t in (n.position, n.rotation)
                     if t is not None}.values():
         turning = int(triplet.name.endswith("rotation"))

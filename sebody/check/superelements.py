@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from ..abi import ENERGY, POTENTIAL, RESIDUAL, TANGENT, padded
+from ..abi import ENERGY, POTENTIAL, POWERS, RESIDUAL, TANGENT, padded
 from ..dense import padded_columns
 from .states import (
     LIMIT,
@@ -29,7 +29,7 @@ LIMITS = {"K - K^T = skew(G)": 1e-10, "energies (24), (34)": 1e-10,
 
 
 def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3,
-                      gravity: float = 0.0) -> Case:
+                      gravity: float = 0.0, damping: float = 0.0) -> Case:
     """A generic state of a superelement kernel."""
     random = np.random.default_rng(seed)
     planar = module.LAYOUT.startswith("planar")
@@ -58,17 +58,20 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     index = np.array([0, 0, 0, *range(nrot), *range(n)])
     v, a = random.normal(size=n), random.normal(size=n)
     of_translations, moment = random.normal(size=(n, d)), random.normal(size=d)
+    C = damping * M @ M     # any positive matrix
     constants = constants_row(alpha, np.full(npos, 1 / npos), alpha_r, X, S, M, of_translations,
-                              moment, 1.3)
+                              moment, 1.3, C)
     return Case(module, n, index, constants, q, R, v, a, frame, frame.copy(),
                 gravity * random.normal(size=3))
 
 
-def constants_row(alpha, fit, alpha_r, X, S, M, of_translations, moment, mass) -> NDArray:
+def constants_row(alpha, fit, alpha_r, X, S, M, of_translations, moment, mass,
+                  C=None) -> NDArray:
     """Constants of a superelement as its kernel reads them; see `Constants`."""
     return np.concatenate([alpha, fit, alpha_r, X.ravel(), padded_columns(S), padded_columns(M),
                            padded_columns(of_translations), padded_columns(of_translations.T),
-                           moment, [mass]])
+                           moment, [mass], [float(C is not None and C.any())],
+                           padded_columns(np.zeros_like(S) if C is None else C)])
 
 
 def without(case: Case, what: str) -> Case:
@@ -149,7 +152,7 @@ def constant_ends(case: Case) -> NDArray:
     module, n, d = case.module, case.n, 2 if case.planar else 3
     npos, matrix = module.N_POSITIONS, n * padded(n)
     return np.cumsum([npos, npos, module.N_ROTATIONS, module.ROTATIONS, matrix, matrix,
-                      d * padded(n), n * padded(d), d, 1])
+                      d * padded(n), n * padded(d), d, 1, 1, matrix])
 
 
 class Constants:
@@ -157,8 +160,8 @@ class Constants:
 
     def __init__(self, case: Case):
         n, column = case.n, padded(case.n)
-        (self.alpha, self.fit, self.alpha_r, X, S, M, of_translations, _, self.moment, mass
-         ) = np.split(case.constants, constant_ends(case)[:-1])
+        (self.alpha, self.fit, self.alpha_r, X, S, M, of_translations, _, self.moment, mass,
+         *_) = np.split(case.constants, constant_ends(case)[:-1])
         self.X = X.reshape(case.module.N_POSITIONS, -1)
         self.S, self.M, self.of_translations = (A.reshape(-1, column)[:, :n].T
                                                 for A in (S, M, of_translations))
@@ -199,6 +202,35 @@ def energies(case: Case) -> float:
                abs(computed[POTENTIAL] - potential) / max(abs(potential), 1e-300))
 
 
+def damping_power(case: Case) -> float:
+    """Power of the structural damping against its force on the unknowns times their velocity."""
+    calm = case._replace(constants=case.constants.copy())
+    calm.constants[constant_ends(case)[9]] = 0.0
+    force = evaluate(case, RESIDUAL)[0] - evaluate(calm, RESIDUAL)[0]
+    return abs(evaluate(case, ENERGY)[2][POWERS] / (-force @ case.v) - 1)
+
+
+def damping_of_rigid_motion(case: Case) -> float:
+    """Force of the structural damping in a rigid motion, which must be none."""
+    d, x = 2 if case.planar else 3, case.q[:case.module.ROTATIONS]
+    spin, v = np.array([0.3, -0.5, 0.7]), 0 * case.v
+    if case.planar:
+        spin[:2] = 0.0
+        v[case.module.ROTATIONS:case.module.MODES] = spin[2]
+    place = np.zeros((len(x) // d, 3))
+    place[:, :d] = x.reshape(-1, d)
+    v[:len(x)] = (np.cross(spin, place) + [0.2, 0.1, -0.4])[:, :d].ravel()
+    for j, at in enumerate(case.turning):
+        v[at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ spin
+    rigid = case._replace(v=v)
+    calm = rigid._replace(constants=case.constants.copy())
+    calm.constants[constant_ends(case)[9]] = 0.0
+    general = evaluate(case, RESIDUAL)[0] - evaluate(case._replace(
+        constants=calm.constants), RESIDUAL)[0]
+    force = evaluate(rigid, RESIDUAL)[0] - evaluate(calm, RESIDUAL)[0]
+    return float(np.abs(force).max() / np.abs(general).max())
+
+
 def total_momentum(case: Case) -> float:
     """Momentum and its moment against ``dT/dv`` along rigid velocities (Noether)."""
     p, d = momenta(case), 2 if case.planar else 3
@@ -233,6 +265,7 @@ def geometric_term(case: Case) -> float:
 
 EXACT_FORCE = {"force = dV/dq (30)": elastic_force, "Hamilton's force (45), (57)": inertia_force,
                "K - K^T = skew(G)": asymmetry, "tangent (31)": paper_tangent}
+DAMPING = {"power of damping": damping_power, "damping of rigid motion": damping_of_rigid_motion}
 ENERGY_SUMS = {"energies (24), (34)": energies, "momentum = rigid dT/dv": total_momentum}
 TANGENTS = {"tangent, configuration": tangent_place, "tangent, velocity (61)": tangent_rate,
             "tangent, mass (60)": tangent_mass}
@@ -268,9 +301,14 @@ def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
     small = module.FRAME.endswith("_small")
     for seed in range(STATES):
         case = superelement_case(module, seed, gravity=1.0)
-        criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
+        damped = superelement_case(module, seed, gravity=1.0, damping=0.1)
+        criteria = ({} if small else EXACT_FORCE | DAMPING) | TANGENTS | ENERGY_SUMS | {
+            SIZE: geometric_term}
+        if module.FRAME == "mean":      # its increments of a step are no rigid rotation
+            del criteria["damping of rigid motion"]
         for criterion, measure in criteria.items():
-            error = measure(case)
+            error = measure(damped if measure in (*DAMPING.values(), *TANGENTS.values(), energies)
+                            else case)
             passed = error <= LIMITS.get(criterion, LIMIT)
             rows.append(CheckRow(name, criterion, seed, error, None, passed))
         if small:

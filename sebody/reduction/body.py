@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import block_diag
+from scipy.linalg import block_diag, eigh
 
 from sebody.errors import InputError
 from sebody.reduction import checks
@@ -28,6 +28,8 @@ class ReducedBody:
         Triplets kept at each node (23), (39).
     modes : int
         Number of internal modes.
+    damping : (n, n), optional
+        Reduced damping matrix, acting on the rates of deformation; see `damped`.
 
     Raises
     ------
@@ -41,6 +43,7 @@ class ReducedBody:
     coordinates: NDArray
     keeps: tuple[str, ...]
     modes: int = 0
+    damping: NDArray | None = None
 
     def __post_init__(self) -> None:
         coordinates = np.array(self.coordinates, dtype=float)
@@ -56,6 +59,11 @@ class ReducedBody:
         rigid = self.rigid_modes_about(coordinates.mean(axis=0))
         checks.check_stiffness(self.stiffness, rigid, names)
         checks.check_mass(self.mass, rigid, names)
+        if self.damping is not None:
+            damping = np.array(self.damping, dtype=float)
+            checks.check_matrix("damping", damping, names)
+            self._store("damping", (damping + damping.T) / 2)
+            checks.check_damping(self.damping, rigid, names)
 
     def _store(self, name: str, array: NDArray) -> None:
         array.flags.writeable = False
@@ -120,6 +128,32 @@ class ReducedBody:
         skew = (moment - moment.T) / 2
         return middle + np.array([skew[1, 2], skew[2, 0], skew[0, 1]]) / self.total_mass
 
+    def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
+               stiffness: float = 0.0) -> "ReducedBody":
+        """The same body with structural damping of its deformation.
+
+        Parameters
+        ----------
+        ratio : float
+            Part of critical damping of every free vibration mode.
+        mass, stiffness : float
+            Rayleigh's coefficients, ``mass * M + stiffness * K`` on the vibration modes; rigid
+            motion is not damped.
+
+        Raises
+        ------
+        InputError
+            A number that is negative or not finite.
+        """
+        for name, value in (("ratio", ratio), ("mass", mass), ("stiffness", stiffness)):
+            if not (np.isfinite(value) and value >= 0):
+                raise InputError(f"damping: {name} is {value}; give a finite number >= 0")
+        squares, shapes = eigh(self.stiffness, self.mass)
+        rigid = self.rigid_modes.shape[1]
+        omega, momenta = np.sqrt(squares[rigid:]), self.mass @ shapes[:, rigid:]
+        damping = (momenta * (2 * ratio * omega + mass + stiffness * omega**2)) @ momenta.T
+        return replace(self, damping=damping)
+
     def rotated(self, rotation: ArrayLike) -> "ReducedBody":
         """The same body turned by `rotation` about the FE origin, in the old axes.
 
@@ -154,5 +188,6 @@ class ReducedBody:
             self,
             stiffness=turn @ self.stiffness @ turn.T,
             mass=turn @ self.mass @ turn.T,
+            damping=None if self.damping is None else turn @ self.damping @ turn.T,
             coordinates=self.coordinates @ rotation.T,
         )

@@ -110,6 +110,22 @@ def check_mass(mass: NDArray, rigid: NDArray, names: list[str]) -> None:
                          "give the FE model a density")
 
 
+def check_damping(damping: NDArray, rigid: NDArray, names: list[str]) -> None:
+    """Raise InputError unless damping takes energy out, and none out of rigid motion."""
+    lowest, worst = _lowest(damping, names)
+    if lowest < -NEGATIVE_STIFFNESS_LIMIT:
+        raise InputError(
+            f"damping is negative ({lowest:.2g} of its largest, mostly {names[worst]}), so it "
+            "would put energy in; check the reduction"
+        )
+    residual, worst = rigid_residual(damping, rigid, names)
+    if residual > RIGID_LIMIT:
+        raise InputError(
+            f"damping resists rigid motion ({residual:.2g}, mostly {names[worst]}); use damped(), "
+            "or damping of the deformation alone"
+        )
+
+
 def rigid_residual(stiffness: NDArray, rigid: NDArray, names: list[str]) -> tuple[float, int]:
     """Largest ``|K r| / (|K_B| |r|)`` over the rigid modes r (columns), and its worst row.
 
