@@ -31,6 +31,7 @@ ELEMENTS = {
     "follower_force": lambda: forces.force(False, True),
     "follower_torque": lambda: forces.torque(False, True),
     "planar_follower_force": lambda: forces.force(True, True),
+    "mode_force": forces.mode_force,
     "spring": lambda: forces.spring(False),
     "planar_spring": lambda: forces.spring(True),
     "torsion_spring": lambda: forces.torsion_spring(False),

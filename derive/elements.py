@@ -61,6 +61,12 @@ def position(space: Space, name: str) -> Block:
                    for kind in ("x", "v", "a", "dx", "ux")), None)
 
 
+def amplitude(space: Space, name: str) -> Block:
+    """The amplitude of an internal mode, ``y<name>``."""
+    return Block(*(space.quantity(kind + name, "scalar", "element")
+                   for kind in ("y", "yd", "ydd", "dy", "uy")), None)
+
+
 def rotation(space: Space, name: str) -> Block:
     """A rotation, ``R<name>`` with material angular velocity ``Om<name>``."""
     state = space.quantity("R" + name, "rotation", "element")

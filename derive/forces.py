@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from .elements import AMPLITUDE, Element, element, position, rotation
+from .elements import AMPLITUDE, Element, amplitude, element, position, rotation
 from .stages import Space, cross
 
 
@@ -29,6 +29,14 @@ def torque(planar: bool, follower: bool) -> Element:
     name = "planar_" * planar + "follower_" * follower + "torque"
     return element(name, ("follower" if follower else "dead") + " torque on a rotation", space,
                    [turn], (d,), load=AMPLITUDE[0] * d.symbols.dot(direction))
+
+
+def mode_force() -> Element:
+    """Force on an internal mode: work ``f dy``."""
+    mode = amplitude(Space(False), "a")
+    factor = Space(False).quantity("factor", "scalar", "element")
+    return element("mode_force", "force on an internal mode", Space(False), [mode], (factor,),
+                   load=AMPLITUDE[0] * factor.symbols[0] * mode.direction.symbols[0])
 
 
 def spring(planar: bool) -> Element:

@@ -202,18 +202,22 @@ def mass_constants(body: ReducedBody, origin: NDArray) -> list[NDArray]:
 
 def _element_batches(numbering: Numbering, constants: list,
                      elements: list[Element]) -> list[Batch]:
-    batches: dict[str, Batch] = {}
+    batches: dict[tuple, Batch] = {}
     at = sum(map(len, constants))
     for element in elements:
         unknowns = [c for t in element.triplets for c in coordinates(numbering, t)]
+        if element.mode is not None:
+            unknowns.append(numbering.modes[element.mode[0]] + element.mode[1])
         if element.multipliers:
             first = numbering.first_multiplier[id(element)]
             unknowns += range(first, first + element.multipliers)
-        batch = batches.setdefault(element.kind, Batch(element_kernel(element.kind),
-                                                       len(unknowns), [], [], []))
+        key = element.kind, len(unknowns)
+        batch = batches.setdefault(key, Batch(element_kernel(element.kind), len(unknowns), [], [],
+                                              []))
         nodes = [numbering.rotations[id(t)] for t in element.triplets
                  if id(t) in numbering.rotations]
-        batch.rows.append([at, 0, numbering.items.get(id(element), 0), *nodes, *unknowns])
+        extra = [] if element.function is None else [element.function.address]
+        batch.rows.append([at, 0, numbering.items.get(id(element), 0), *nodes, *unknowns, *extra])
         batch.unknowns.append(unknowns)
         batch.owners.append(id(element))
         constants.append(element.constants)
@@ -319,7 +323,8 @@ def work_size(model: Model) -> int:
     """Scratch memory the kernels of a model need."""
     rows = [b.kernel.WORK_ROWS * padded(max(_width(b), 9 * b.kernel.N_ROTATIONS))
             for b in model.bodies.values()]
-    return max([*rows, 64])     # elements have two rows of at most fifteen
+    elements = max((sum(t.start.size for t in load.triplets) for load in model.loads), default=0)
+    return max([*rows, 64, 4 * elements])
 
 
 def _width(body: Superelement) -> int:

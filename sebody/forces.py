@@ -1,12 +1,12 @@
 """Loads, springs, dampers and gravity of a model."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .errors import InputError
-from .histories import History, history
+from .histories import History, clock, history
 from .triplets import Element, Node, unit_vectors
 
 
@@ -37,6 +37,48 @@ class Forces:
         vector = self._turning(direction, f"torque on {triplet.name}")
         self._load("torque", triplet.name, (triplet,), vector, history(amplitude),
                    follower and not self.planar)
+
+    def mode_force(self, body: str, mode: int, factor: float,
+                   amplitude: ArrayLike | Callable[[float], float] | History | None = None) -> None:
+        """Force on an internal mode of a superelement: `factor` times a history.
+
+        A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
+        """
+        if body not in self.bodies:
+            raise InputError(f"superelement {body!r} is unknown: the model has "
+                             f"{', '.join(self.bodies) or 'none'}")
+        count = self.bodies[body].body.modes
+        if mode not in range(count):
+            raise InputError(f"superelement {body!r} has no mode {mode!r}: it has {count}, from 0")
+        if not np.isfinite(factor):
+            raise InputError(f"force on mode {mode} of {body!r} is {factor}: give a finite number")
+        self.loads.append(Element(f"force on mode {mode} of {body}", "mode_force", (),
+                                  np.array([float(factor)]), 0, history(amplitude), (body, mode)))
+
+    def user_force(self, name: str, nodes: Iterable[Node | str],
+                   function: Callable[..., None]) -> None:
+        """Forces of a user's own, compiled into the loop.
+
+        Parameters
+        ----------
+        nodes : iterable of Node or str
+            Whose positions and velocities the function is given, and on which it acts.
+        function : callable
+            ``function(t, x, v, force)`` with arrays of all coordinates, node after node: sets
+            `force`, which comes as zeros. Numba compiles it; its derivatives are differences.
+
+        Raises
+        ------
+        InputError
+            A function that cannot be compiled, or no nodes.
+        """
+        from .user_force import compiled  # its kernel is compiled on import
+
+        triplets = tuple(self._triplet(self._known(n), "position") for n in nodes)
+        if not triplets:
+            raise InputError(f"user force {name!r} has no nodes: give those it acts on")
+        self.loads.append(Element(name, "user_force", triplets, np.zeros(1), 0, clock(),
+                                  function=compiled(name, function)))
 
     def spring(self, node: Node | str, to: Node | str, stiffness: float = 0.0,
                damping: float = 0.0, length: float | None = None, cubic: float = 0.0) -> None:

@@ -57,6 +57,11 @@ def history(source: "ArrayLike | Callable[[float], float] | History | None") -> 
                                                                       strict=True)))
 
 
+def clock() -> History:
+    """The time itself."""
+    return History((0.0, 1e30), ((0.0, 1.0, 0.0, 0.0), (1e30, 0.0, 0.0, 0.0)))
+
+
 def motion(source: "ArrayLike | tuple[Callable, Callable, Callable] | History") -> History:
     """The motion of a drive: position, velocity and acceleration that belong together.
 

@@ -57,6 +57,8 @@ def superelement_kernel(layout: str, frame: str, inertia: str, modes: int) -> Mo
 
 def element_kernel(name: str) -> ModuleType:
     """The kernel of a joint or load."""
+    if name == "user_force":
+        return import_module("sebody.user_force")   # the one kernel that is not generated
     module = load(f"element_{name}")
     if module is None:
         raise InputError(f"there is no kernel for element {name!r}: reinstall sebody or run "

@@ -106,8 +106,8 @@ def _refuse_loose(model: Model, held: dict) -> None:
                     raise InputError(f"{parent.name} belongs to no body, so nothing holds it: "
                                      "attach a body or fix it")
     for load in model.loads:
-        if load.history is not None and not any(id(p) in held for t in load.triplets
-                                                for p in t.parents()):
+        parents = [p for t in load.triplets for p in t.parents()]
+        if parents and load.history is not None and not any(id(p) in held for p in parents):
             raise InputError(f"{load.name}: no body is there to bear it: attach one")
 
 

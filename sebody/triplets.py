@@ -55,6 +55,8 @@ class Element:
     constants: NDArray
     multipliers: int = 0
     history: History | None = None
+    mode: tuple[str, int] | None = None     # superelement and internal mode it acts on
+    function: object = None                 # a user's compiled one, kept alive
 
     @property
     def direction(self) -> NDArray:
