@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
+from .fem import Section, planar_beam, straight_beam
 from .forces import Forces
 from .joints import Joints
 from .kernels import superelement_kernel
-from .reduction import ReducedBody, body_weights
+from .reduction import ReducedBody, body_weights, craig_bampton
 from .triplets import Element, Node, Triplet
 
 FRAMES = ("converged_mean", "mean", "mean_small", "node", "positions")
@@ -163,6 +164,48 @@ class Model(Joints, Forces):
         self.bodies[name] = Superelement(name, placed, nodes, frame, inertia, layout, alpha,
                                          alpha_r, kernel, np.zeros(placed.modes))
         return self.bodies[name]
+
+    def beam(self, name: str, ends: tuple[Node | str, Node | str], section: Section,
+             elements: int, up: ArrayLike | None = None) -> list[Node]:
+        """A geometrically exact beam: the nonlinear reference for superelements.
+
+        A superelement of one finite element, with the mean of its two rotations as frame, has the
+        strain energy of Simo and Reissner's beam: the rotation half way between the nodes sees the
+        chord, ``Gamma = R_m^T (x_b - x_a) / l - t``, and each node is turned by half of
+        ``log(R_a^T R_b)`` against it. The exact linear stiffness does not lock; with no shear
+        factor in the section it is that of Euler and Bernoulli.
+
+        Parameters
+        ----------
+        ends : two Nodes or str
+            Full nodes at the ends of the straight axis.
+        section : Section
+        elements : int
+        up : (3,), optional
+            Direction of the section's y axis, see `sebody.fem.straight_beam`.
+
+        Returns
+        -------
+        list of Node
+            All nodes from end to end, named ``<name> 1`` and so on between them.
+
+        Raises
+        ------
+        InputError
+            No element, or names that are taken.
+        """
+        first, last = (self._known(n) for n in ends)
+        if elements != int(elements) or elements < 1:
+            raise InputError(f"beam {name!r} has {elements} elements: give a whole number >= 1")
+        step = (last.point - first.point) / elements
+        nodes = [first, *(self.node(f"{name} {k}", first.point + k * step)
+                          for k in range(1, int(elements))), last]
+        fe_model = (planar_beam(first.point, first.point + step, section, 1) if self.planar else
+                    straight_beam(first.point, first.point + step, section, 1, up))
+        body = craig_bampton(fe_model, [(0, "full"), (1, "full")], 0)
+        for k, pair in enumerate(zip(nodes, nodes[1:], strict=False), 1):
+            self.superelement(f"{name} {k}", body, pair)
+        return nodes
 
     def rigid_body(self, name: str, node: Node | str, mass: float, inertia: ArrayLike,
                    centre: ArrayLike | None = None) -> Element:
