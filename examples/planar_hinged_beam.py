@@ -1,20 +1,16 @@
 """The paper's hinged beam in its plane: two coordinates and an angle a node, no constraint."""
 
 from sebody import Model
-from sebody.fem import planar_beam
-from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION, TORQUE
-from sebody.scenes.scene import Scene
+from sebody.scenes.scene import Scene, divided_beam
 
 
 def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 2,
-          elements: int = 20) -> Scene:
+          elements: int = 20, bodies: int = 1) -> Scene:
     """The scene; two modes in the plane are what is left of the four of the spatial one."""
-    body = craig_bampton(planar_beam((0.0, 0.0), (100.0, 100.0), SECTION, elements),
-                         [(0, "full"), (elements, "full")], modes)
     model = Model(planar=True)
-    base, tip = model.node("base", (0.0, 0.0)), model.node("tip", (100.0, 100.0))
-    model.superelement("beam", body, [base, tip], frame=frame, inertia=inertia)
+    base, *_ = divided_beam(model, (100.0, 100.0), SECTION, bodies, modes, elements, frame=frame,
+                            inertia=inertia)
     model.revolute(base)
     model.torque(base, 1.0, TORQUE)
     return Scene("planar-hinged-beam", "the paper's hinged beam in its plane", model, h=0.01,

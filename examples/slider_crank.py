@@ -6,7 +6,7 @@ the slider on its line.
 
 from math import cos, sin
 
-from sebody import Model
+from sebody import InputError, Model
 from sebody.fem import Section, planar_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes.scene import Scene
@@ -18,16 +18,27 @@ SLIDER = 0.033
 ELEMENTS = 24
 
 
-def build(bodies: int = 1, modes: int = 5) -> Scene:
-    """The scene: the rod is divided into equal superelements."""
+def build(bodies: int = 1, modes: int = 5, elements: int = ELEMENTS,
+          frame: str = "converged_mean", inertia: str = "b") -> Scene:
+    """The scene: the rod is divided into equal superelements.
+
+    Raises
+    ------
+    InputError
+        Elements that cannot be divided among the bodies.
+    """
+    if bodies < 1 or elements % bodies:
+        raise InputError(f"{elements} elements cannot be divided among {bodies} bodies: give a "
+                         "multiple")
     model = Model(planar=True)
-    each = ELEMENTS // bodies
+    each = elements // bodies
     nodes = [model.node("pin" if k == 0 else "slider" if k == bodies else f"rod {k}",
                         (RADIUS + LENGTH * k / bodies, 0.0)) for k in range(bodies + 1)]
     for k, ends in enumerate(zip(nodes, nodes[1:], strict=False)):
         fe_model = planar_beam(ends[0].point, ends[1].point, SECTION, each)
         model.superelement(f"rod {k + 1}", craig_bampton(fe_model, [(0, "full"), (each, "full")],
-                                                         modes), ends)
+                                                         modes), ends, frame=frame,
+                           inertia=inertia)
     model.point_mass("slider", nodes[-1], SLIDER)
     model.slider(nodes[-1], axis=(1.0, 0.0))
     model.move(nodes[0], (RADIUS, 0.0), (lambda t: cos(SPEED * t) - 1.0,

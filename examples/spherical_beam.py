@@ -3,13 +3,9 @@
 The joint is a fixed position triplet: the system has no constraint and no multiplier.
 """
 
-import numpy as np
-
 from sebody import Model
-from sebody.fem import straight_beam
-from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
-from sebody.scenes.scene import Scene
+from sebody.scenes.scene import Scene, divided_beam
 
 LENGTH = 141.42
 TORQUE = [(0.0, 0.0), (0.2, 200.0), (10.0, 200.0), (10.2, 0.0)]
@@ -17,14 +13,11 @@ PUSH = [(15.0, 0.0), (15.2, 100.0), (15.4, 0.0)]
 
 
 def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 8,
-          elements: int = 20) -> Scene:
+          elements: int = 20, frame_node: int = 0, bodies: int = 1) -> Scene:
     """The scene: a torque of impulse 2000 about z at the base, an impulse of 20 along z at 15."""
-    end = np.array([LENGTH, 0.0, 0.0])
-    body = craig_bampton(straight_beam(np.zeros(3), end, SECTION, elements),
-                         [(0, "full"), (elements, "full")], modes)
     model = Model()
-    base, tip = model.node("base", np.zeros(3)), model.node("tip", end)
-    model.superelement("beam", body, [base, tip], frame=frame, inertia=inertia)
+    base, *_, tip = divided_beam(model, (LENGTH, 0.0, 0.0), SECTION, bodies, modes, elements,
+                                 frame=frame, inertia=inertia, frame_node=frame_node)
     model.fix(base, "position")
     model.torque(base, (0, 0, 1), TORQUE)
     model.force(tip, (0, 0, 1), PUSH)

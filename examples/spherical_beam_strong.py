@@ -2,13 +2,9 @@
 
 import math
 
-import numpy as np
-
 from sebody import Model
-from sebody.fem import straight_beam
-from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION, TORQUE
-from sebody.scenes.scene import Scene
+from sebody.scenes.scene import Scene, divided_beam
 
 
 def strike(t: float) -> float:
@@ -17,14 +13,11 @@ def strike(t: float) -> float:
 
 
 def build(F0: float = 2800.0, frame: str = "converged_mean", inertia: str = "b",
-          modes: int = 4, elements: int = 20) -> Scene:
+          modes: int = 4, elements: int = 20, bodies: int = 1) -> Scene:
     """The scene: torque of the hinged beam, then a force of peak `F0` along z at the tip."""
-    end = np.array([100.0, 100.0, 0.0])
-    body = craig_bampton(straight_beam(np.zeros(3), end, SECTION, elements),
-                         [(0, "full"), (elements, "full")], modes)
     model = Model()
-    base, tip = model.node("base", np.zeros(3)), model.node("tip", end)
-    model.superelement("beam", body, [base, tip], frame=frame, inertia=inertia)
+    base, *_, tip = divided_beam(model, (100.0, 100.0, 0.0), SECTION, bodies, modes, elements,
+                                 frame=frame, inertia=inertia)
     model.fix(base, "position")
     model.torque(base, (0, 0, 1), TORQUE)
     model.force(tip, (0, 0, F0), strike)

@@ -17,9 +17,18 @@ CASES = {   # length, final speed, axial, shear and bending stiffness, mass a le
 }
 
 
-def build(case: str = "kane", bodies: int = 8, modes: int = 0, frame: str = "converged_mean",
-          elements: int = 4) -> Scene:
-    """The scene: `bodies` superelements of `elements` finite elements each."""
+def build(case: str = "kane", bodies: int = 8, modes: int = 0, elements: int = 32,
+          frame: str = "converged_mean", inertia: str = "b") -> Scene:
+    """The scene: the arm is divided into equal superelements.
+
+    Raises
+    ------
+    InputError
+        An unknown case, or elements that cannot be divided among the bodies.
+    """
+    if bodies < 1 or elements % bodies:
+        raise InputError(f"{elements} elements cannot be divided among {bodies} bodies: give a "
+                         "multiple")
     if case not in CASES:
         raise InputError(f"case is {case!r}: use {' or '.join(CASES)}")
     length, speed, section = CASES[case][0], CASES[case][1], section_of(*CASES[case][2:])
@@ -27,9 +36,10 @@ def build(case: str = "kane", bodies: int = 8, modes: int = 0, frame: str = "con
     nodes = [model.node("root" if k == 0 else "tip" if k == bodies else f"arm {k}",
                         (each * k, 0.0)) for k in range(bodies + 1)]
     for k, ends in enumerate(zip(nodes, nodes[1:], strict=False)):
-        fe_model = planar_beam(ends[0].point, ends[1].point, section, elements)
+        own = elements // bodies
+        fe_model = planar_beam(ends[0].point, ends[1].point, section, own)
         model.superelement(f"arm {k + 1}", craig_bampton(
-            fe_model, [(0, "full"), (elements, "full")], modes), ends, frame=frame)
+            fe_model, [(0, "full"), (own, "full")], modes), ends, frame=frame, inertia=inertia)
     model.fix("root", "position")
     model.move("root", 1.0, turning(speed), "rotation")
     return Scene("spin-up", "spin-up of a flexible arm", model, h=0.005, t_end=20.0, base="root")

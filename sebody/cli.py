@@ -79,6 +79,12 @@ def _parser() -> argparse.ArgumentParser:
     bench.set_defaults(command=_bench)
     bench.add_argument("scenes", nargs="*", metavar="SCENE", help="all that have one by default")
     bench.add_argument("--json", action="store_true", help="print JSON in place of a table")
+    chart = commands.add_parser(
+        "chart", help="error against computing time, over formulations, divisions and steps")
+    chart.set_defaults(command=_chart)
+    chart.add_argument("scene", metavar="SCENE", help="name of a scene that has a chart")
+    chart.add_argument("--output", type=Path, metavar="FILE.png", help="draw it")
+    chart.add_argument("--csv", type=Path, metavar="FILE.csv", help="write the points")
     warm = commands.add_parser("warm", help="compile everything that is shipped")
     warm.set_defaults(command=_warm)
     return parser
@@ -264,6 +270,26 @@ def _bench(options: argparse.Namespace) -> int:
     rate = bench.machine_rate()
     found = bench.measure(options.scenes)
     print(bench.to_json(found, rate) if options.json else bench.report(found, rate))
+    return 0
+
+
+def _chart(options: argparse.Namespace) -> int:
+    from . import chart
+
+    if options.output:
+        from .plot import check_picture
+        check_picture(options.output)
+    if options.csv and not options.csv.parent.is_dir():
+        raise InputError(f"folder {options.csv.parent} of the table does not exist: make it")
+    points, exact = chart.measure(options.scene)
+    print(chart.report(options.scene, points, exact))
+    if options.csv:
+        chart.write_csv(points, options.csv)
+        print(f"table: {options.csv}")
+    if options.output:
+        chart.draw(options.scene, points, chart.front(chart.own(points)), exact.error,
+                   options.output)
+        print(f"picture: {options.output}")
     return 0
 
 
