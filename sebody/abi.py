@@ -93,17 +93,24 @@ def call_kernel(typingctx, address, task, count, stride, width, arrays):
 
 @intrinsic
 def borrowed(typingctx, arrays):
-    """The same tuple of arrays without ownership: no reference counting in the loop's inner parts.
+    """The same tuple of arrays (or of such tuples) without ownership.
 
-    The caller keeps the arrays alive; counting costs as much as a small element otherwise.
+    No reference counting in the loop's inner parts: it costs as much as a small element. The caller
+    keeps the arrays alive.
     """
     def codegen(context, builder, sig, args):
-        whole = args[0]
-        for k, kind in enumerate(sig.args[0]):
-            array = context.make_array(kind)(context, builder, builder.extract_value(whole, k))
-            array.meminfo = cgutils.get_null_value(array.meminfo.type)
-            array.parent = cgutils.get_null_value(array.parent.type)
-            whole = builder.insert_value(whole, array._getvalue(), k)
-        return whole
+        return _without_owner(context, builder, sig.args[0], args[0])
 
     return arrays(arrays), codegen
+
+
+def _without_owner(context, builder, kind, value):
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        array.meminfo = cgutils.get_null_value(array.meminfo.type)
+        array.parent = cgutils.get_null_value(array.parent.type)
+        return array._getvalue()
+    for k, inner in enumerate(kind):
+        part = _without_owner(context, builder, inner, builder.extract_value(value, k))
+        value = builder.insert_value(value, part, k)
+    return value

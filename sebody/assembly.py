@@ -10,7 +10,7 @@ from .abi import LANES, padded
 from .dense import padded_columns
 from .errors import InputError
 from .kernels import element_kernel
-from .links import link_arrays
+from .links import Links, link_arrays, with_entries
 from .model import Model, Superelement
 from .numbering import Numbering, coordinates, number
 from .reduction import ReducedBody
@@ -59,15 +59,7 @@ class System(NamedTuple):
     functions: NDArray      # (items, 3) addresses of compiled histories, 0 for a table
     prescribed: NDArray     # (k, 3) coordinate, item, 1 for rotations
     prescribed_factor: NDArray
-    # positions at the ends of rigid links, see sebody.links
-    hanging: NDArray
-    arms: NDArray
-    arm_vectors: NDArray
-    linked_elements: NDArray
-    linked_maps: NDArray
-    linked_blocks: NDArray
-    linked_entries: NDArray
-    arm_entries: NDArray
+    links: Links
     relaxed: NDArray        # (1,) 1 where constraints are redundant
     damped: NDArray         # (1,) 1 where a superelement has structural damping
 
@@ -113,8 +105,6 @@ def build(model: Model) -> tuple[System, Numbering]:
     links, linked_row, linked_column = link_arrays(model, numbering, batches, axes["turned"])
     entries, rows, columns, diagonal, pattern = places(
         np.concatenate([row, linked_row]), np.concatenate([column, linked_column]), numbering.free)
-    links["linked_entries"], links["arm_entries"] = np.split(
-        entries[len(row):], [len(linked_row) - links.pop("arm_entry_count")])
     widths = [b.width for b in batches]
     sizes = [len(b.rows) for b in batches]
     integers = np.array
@@ -139,7 +129,8 @@ def build(model: Model) -> tuple[System, Numbering]:
         is_multiplier=multiplier,
         rotation_at=_rotation_starts(model, numbering), **axes,
         dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering),
-        **_items(numbering), **links, relaxed=np.zeros(1, dtype=np.int64),
+        **_items(numbering), links=with_entries(links, entries[len(row):]),
+        relaxed=np.zeros(1, dtype=np.int64),
         damped=integers([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for b in batches for owner in b.owners]
     starts = _starts([b.width for b in batches for _ in b.rows])

@@ -323,7 +323,7 @@ def _compile_loop() -> float:
 
     began = time.perf_counter()
     for model in (build(elements=4).model, _planar_model()):
-        simulate(model, 0.01, 0.02).energy_balance()
+        simulate(model, 0.01, 0.02).summary()
     return time.perf_counter() - began
 
 

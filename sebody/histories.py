@@ -11,7 +11,6 @@ import numpy as np
 from numba import cfunc, njit, types
 from numba.core.errors import NumbaError
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from .errors import InputError
 
@@ -89,6 +88,8 @@ def motion(source: "ArrayLike | tuple[Callable, Callable, Callable] | History") 
     if len(times) < 2:
         raise InputError("the motion of a drive has one row: give at least two rows (t, value), "
                          "or fix the node")
+    from scipy.interpolate import CubicSpline  # takes 0.2 s to import
+
     spline = CubicSpline(times, values, bc_type="clamped")
     return History(tuple(times), (*(tuple(c) for c in spline.c[::-1].T),
                                   (values[-1], 0.0, 0.0, 0.0)))

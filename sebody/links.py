@@ -8,6 +8,8 @@ The second-order term of the force is in the matrix, gyroscopic terms of the pos
 acceleration are not: of order h in an iteration matrix, nothing in a converged step.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -17,22 +19,39 @@ from .model import Model
 from .numbering import Numbering
 
 
-def link_arrays(model: Model, numbering: Numbering, batches: list,
-                turned: NDArray) -> tuple[dict[str, NDArray], NDArray, NDArray]:
-    """Arrays of `assembly.System`, and rows and columns of the additional matrix entries.
+class Links(NamedTuple):
+    """Rigid links as arrays: constant during a run.
 
     ==================  ============================================================================
     hanging             (k, 4) first coordinate, that of the root, first and last + 1 of the arms
     arms                (m, 2) number of the rotation matrix, first coordinate of the rotation
     arm_vectors         (m, d)
-    linked_elements     (e, 7) start of the matrix among the element matrices, width w, width W with
+    elements            (e, 7) start of the matrix among the element matrices, width w, width W with
                         links replaced, start in maps, in entries, first and last + 1 of the blocks
-    linked_maps         of w local unknowns, which of the W it is; -1 for hanging ones; then of each
+    maps                of w local unknowns, which of the W it is; -1 for hanging ones; then of each
                         block that of its root and of its arms
-    linked_blocks       (b, 4) first local unknown, which of `hanging`, start in maps, frame in
+    blocks              (b, 4) first local unknown, which of `hanging`, start in maps, frame in
                         whose axes the root is solved for, or -1
+    entries             matrix entries of the elements with links, W x W each
+    arm_entries         matrix entries of the second-order terms, of each arm
+    dimension           (1,) coordinates of a position
     ==================  ============================================================================
     """
+
+    hanging: NDArray
+    arms: NDArray
+    arm_vectors: NDArray
+    elements: NDArray
+    maps: NDArray
+    blocks: NDArray
+    entries: NDArray
+    arm_entries: NDArray
+    dimension: NDArray
+
+
+def link_arrays(model: Model, numbering: Numbering, batches: list,
+                turned: NDArray) -> tuple[Links, NDArray, NDArray]:
+    """Links without their matrix entries, and rows and columns of these."""
     d = model.dimension
     hanging, arms, vectors = [], [], []
     for triplet in numbering.hanging:
@@ -68,11 +87,18 @@ def link_arrays(model: Model, numbering: Numbering, batches: list,
 
     def table(values, width):
         return np.array(values, dtype=np.int64).reshape(-1, width)
-    arrays = {"hanging": table(hanging, 4), "arms": table(arms, 2),
-              "arm_vectors": np.array(vectors, dtype=float).reshape(-1, d),
-              "linked_elements": table(elements, 7), "linked_maps": table(maps, 1).ravel(),
-              "linked_blocks": table(blocks, 4), "arm_entry_count": len(arms) * size**2}
-    return arrays, table(rows, 1).ravel(), table(columns, 1).ravel()
+    none = np.zeros(0, dtype=np.int64)
+    links = Links(table(hanging, 4), table(arms, 2),
+                  np.array(vectors, dtype=float).reshape(-1, d), table(elements, 7),
+                  table(maps, 1).ravel(), table(blocks, 4), none, none, np.array([d]))
+    return links, table(rows, 1).ravel(), table(columns, 1).ravel()
+
+
+def with_entries(links: Links, entries: NDArray) -> Links:
+    """The links with the places of their matrix entries."""
+    turning = 3 if links.dimension[0] == 3 else 1
+    own, of_arms = np.split(entries, [len(entries) - len(links.arms) * turning**2])
+    return links._replace(entries=own, arm_entries=of_arms)
 
 
 def _expanded(unknowns, which, hanging, arms, frame_of, d, turning, at_map):
@@ -97,17 +123,17 @@ def _expanded(unknowns, which, hanging, arms, frame_of, d, turning, at_map):
 
 
 @njit(cache=True, error_model="numpy")
-def place_hanging(system, q, v, a, R):
+def place_hanging(links, q, v, a, R):
     """Positions, velocities and accelerations at the ends of the links."""
-    spatial = system.dimension[0] == 3
-    for k in range(system.hanging.shape[0]):
-        x, root = system.hanging[k, 0], system.hanging[k, 1]
-        for i in range(system.dimension[0]):
+    spatial = links.dimension[0] == 3
+    for k in range(links.hanging.shape[0]):
+        x, root = links.hanging[k, 0], links.hanging[k, 1]
+        for i in range(links.dimension[0]):
             q[x + i], v[x + i], a[x + i] = q[root + i], v[root + i], a[root + i]
-        for m in range(system.hanging[k, 2], system.hanging[k, 3]):
-            c, r = system.arms[m, 1], system.arm_vectors[m]
+        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+            c, r = links.arms[m, 1], links.arm_vectors[m]
             if spatial:
-                _place_in_space(at(pointer_to(R), 9 * system.arms[m, 0]), r, c, x, q, v, a)
+                _place_in_space(at(pointer_to(R), 9 * links.arms[m, 0]), r, c, x, q, v, a)
             else:
                 s, t = _turned(q[c], r)
                 q[x] += s
@@ -142,17 +168,17 @@ def _turned(angle, r):
 
 
 @njit(cache=True, error_model="numpy")
-def pull_back(system, q, R, residual):
+def pull_back(links, q, R, residual):
     """Add the forces at the ends of the links to those on root and rotations."""
-    spatial = system.dimension[0] == 3
-    for k in range(system.hanging.shape[0]):
-        x, root = system.hanging[k, 0], system.hanging[k, 1]
-        for i in range(system.dimension[0]):
+    spatial = links.dimension[0] == 3
+    for k in range(links.hanging.shape[0]):
+        x, root = links.hanging[k, 0], links.hanging[k, 1]
+        for i in range(links.dimension[0]):
             residual[root + i] += residual[x + i]
-        for m in range(system.hanging[k, 2], system.hanging[k, 3]):
-            c, r = system.arms[m, 1], system.arm_vectors[m]
+        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+            c, r = links.arms[m, 1], links.arm_vectors[m]
             if spatial:
-                f = _in_body(at(pointer_to(R), 9 * system.arms[m, 0]), residual, x)
+                f = _in_body(at(pointer_to(R), 9 * links.arms[m, 0]), residual, x)
                 moment = _cross(r[0], r[1], r[2], f[0], f[1], f[2])
                 for i in range(3):
                     residual[c + i] += moment[i]
@@ -169,94 +195,100 @@ def _in_body(R, f, x):
 
 
 @njit(cache=True, error_model="numpy")
-def add_expanded(system, state, k, J):
+def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
     """Add the matrix J of an element with links, its rows and columns replaced."""
-    w, wide = system.linked_elements[k, 1], system.linked_elements[k, 2]
-    maps, entry = system.linked_elements[k, 3], system.linked_elements[k, 4]
-    half, whole = np.zeros((w, wide)), np.zeros((wide, wide))
+    w, wide = links.elements[k, 1], links.elements[k, 2]
+    maps, entry = links.elements[k, 3], links.elements[k, 4]
+    G = pointer_to(expansion)
+    half, whole = at(G, 9), at(G, 9 + w * wide)
+    for i in range(w * wide + wide * wide):
+        half[i] = 0.0
     for i in range(w):
-        to = system.linked_maps[maps + i]
-        if to >= 0:
-            for row in range(w):
-                half[row, to] += J[row * w + i]
-    for b in range(system.linked_elements[k, 5], system.linked_elements[k, 6]):
-        first = system.linked_blocks[b, 0]
-        G, to = _replacement(system, state, b, True)
-        for row in range(w):
-            for i in range(G.shape[0]):
-                for j in range(G.shape[1]):
-                    half[row, to[j]] += J[row * w + first + i] * G[i, j]
+        to = links.maps[maps + i]
+        for row in range(w if to >= 0 else 0):
+            half[row * wide + to] += J[row * w + i]
+    for b in range(links.elements[k, 5], links.elements[k, 6]):
+        _add_part(links, b, J, w, half, wide, True, frames, q, R, T, G)
     for i in range(w):
-        to_row = system.linked_maps[maps + i]
-        if to_row >= 0:
-            for j in range(wide):
-                whole[to_row, j] += half[i, j]
-    for b in range(system.linked_elements[k, 5], system.linked_elements[k, 6]):
-        first = system.linked_blocks[b, 0]
-        G, to = _replacement(system, state, b, False)
-        for i in range(G.shape[0]):
-            for r in range(G.shape[1]):
-                for j in range(wide):
-                    whole[to[r], j] += G[i, r] * half[first + i, j]
-    for i in range(wide):
-        for j in range(wide):
-            state.matrix[system.linked_entries[entry + i * wide + j]] += whole[i, j]
+        to = links.maps[maps + i]
+        for j in range(wide if to >= 0 else 0):
+            whole[to * wide + j] += half[i * wide + j]
+    for b in range(links.elements[k, 5], links.elements[k, 6]):
+        _add_part(links, b, half, w, whole, wide, False, frames, q, R, T, G)
+    for i in range(wide * wide):
+        matrix[links.entries[entry + i]] += whole[i]
 
 
 @njit(cache=True, error_model="numpy")
-def _replacement(system, state, b, column):
-    """Derivative of a hanging position by root and rotations, and where these are."""
-    d, k = system.dimension[0], system.linked_blocks[b, 1]
-    maps, frame = system.linked_blocks[b, 2], system.linked_blocks[b, 3]
-    first, last = system.hanging[k, 2], system.hanging[k, 3]
-    turning = 3 if d == 3 else 1
-    G = np.zeros((d, d + turning * (last - first)))
-    to = np.zeros(G.shape[1], dtype=np.int64)
-    for i in range(d):
-        to[i] = system.linked_maps[maps] + i
-        for j in range(d):
-            G[i, j] = 1.0 * (i == j) if frame < 0 else state.frames[9 * frame + 3 * i + j]
-    for m in range(first, last):
-        c, r = d + turning * (m - first), system.arm_vectors[m]
-        for j in range(turning):
-            to[c + j] = system.linked_maps[maps + 1 + m - first] + j
-        if d == 2:
-            s, t = _turned(state.q[system.arms[m, 1]], r)
-            G[0, c], G[1, c] = -t, s
-            continue
-        number = system.arms[m, 0]
-        R = state.R[9 * number:9 * number + 9].copy().reshape(3, 3)
-        S = np.array([[0.0, r[2], -r[1]], [-r[2], 0.0, r[0]], [r[1], -r[0], 0.0]])
-        A = R @ S
+def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
+    """Columns, then rows, of a hanging position, given to root and rotations."""
+    d = links.dimension[0]
+    first, hung, maps = (links.blocks[b, 0], links.blocks[b, 1],
+                         links.blocks[b, 2])
+    arms = links.hanging[hung, 3] - links.hanging[hung, 2]
+    for part in range(arms + 1):
+        count = _replacement(links, b, part, column, frames, q, R, T, G)
+        to = links.maps[maps + part]
+        for i in range(d):
+            for j in range(count):
+                g = G[3 * i + j]
+                if column:
+                    for row in range(w):
+                        target[row * wide + to + j] += source[row * w + first + i] * g
+                else:
+                    for c in range(wide):
+                        target[(to + j) * wide + c] += g * source[(first + i) * wide + c]
+
+
+@njit(cache=True, error_model="numpy")
+def _replacement(links, b, part, column, frames, q, rotations, operators, G):
+    """Derivative of a hanging position by its root (part 0) or the rotation of an arm.
+
+    Returns its number of columns; three numbers a row in G.
+    """
+    d, hung, frame = links.dimension[0], links.blocks[b, 1], links.blocks[b, 3]
+    if part == 0:
+        for i in range(d):
+            for j in range(d):
+                G[3 * i + j] = 1.0 * (i == j) if frame < 0 else frames[9 * frame + 3 * i + j]
+        return d
+    m = links.hanging[hung, 2] + part - 1
+    r = links.arm_vectors[m]
+    if d == 2:
+        s, t = _turned(q[links.arms[m, 1]], r)
+        G[0], G[3] = -t, s
+        return 1
+    R, T = (at(pointer_to(rotations), 9 * links.arms[m, 0]),
+            at(pointer_to(operators), 9 * links.arms[m, 0]))
+    for i in range(3):
+        x, y, z = R[3 * i], R[3 * i + 1], R[3 * i + 2]
+        x, y, z = z * r[1] - y * r[2], x * r[2] - z * r[0], y * r[0] - x * r[1]
         if column:
-            A = A @ state.T[9 * number:9 * number + 9].copy().reshape(3, 3)
-        for i in range(3):
-            for j in range(3):
-                G[i, c + j] = A[i, j]
-    return G, to
+            x, y, z = (x * T[0] + y * T[3] + z * T[6], x * T[1] + y * T[4] + z * T[7],
+                       x * T[2] + y * T[5] + z * T[8])
+        G[3 * i], G[3 * i + 1], G[3 * i + 2] = x, y, z
+    return 3
 
 
 @njit(cache=True, error_model="numpy")
-def add_second_order(system, state, forces):
+def add_second_order(links, place, q, rotations, operators, forces, matrix):
     """Change of the pulled-back moments as the arms turn and the forces stay."""
-    place, d = state.coefficients[2], system.dimension[0]
-    for k in range(system.hanging.shape[0]):
-        x = system.hanging[k, 0]
-        for m in range(system.hanging[k, 2], system.hanging[k, 3]):
-            r = system.arm_vectors[m]
+    d = links.dimension[0]
+    for k in range(links.hanging.shape[0]):
+        x = links.hanging[k, 0]
+        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+            r = links.arm_vectors[m]
             if d == 2:
-                s, t = _turned(state.q[system.arms[m, 1]], r)
-                state.matrix[system.arm_entries[m]] -= place * (s * forces[x] + t * forces[x + 1])
+                s, t = _turned(q[links.arms[m, 1]], r)
+                matrix[links.arm_entries[m]] -= place * (s * forces[x] + t * forces[x + 1])
                 continue
-            number = system.arms[m, 0]
-            f = _in_body(at(pointer_to(state.R), 9 * number), forces, x)
+            R, T = (at(pointer_to(rotations), 9 * links.arms[m, 0]),
+                    at(pointer_to(operators), 9 * links.arms[m, 0]))
+            f = _in_body(R, forces, x)
             along = r[0] * f[0] + r[1] * f[1] + r[2] * f[2]
-            T = state.T[9 * number:9 * number + 9].copy().reshape(3, 3)
-            A = np.zeros((3, 3))
             for i in range(3):
                 for j in range(3):
-                    A[i, j] = f[i] * r[j] - (along if i == j else 0.0)
-            A = A @ T
-            for i in range(3):
-                for j in range(3):
-                    state.matrix[system.arm_entries[9 * m + 3 * i + j]] += place * A[i, j]
+                    change = -along * T[3 * i + j]
+                    for c in range(3):
+                        change += f[i] * r[c] * T[3 * c + j]
+                    matrix[links.arm_entries[9 * m + 3 * i + j]] += place * change

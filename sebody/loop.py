@@ -82,6 +82,7 @@ class State(NamedTuple):
     residual: NDArray       # in body axes
     forces: NDArray         # the same, of the last matrix and in global axes, for links
     correction: NDArray
+    expansion: NDArray      # scratch of links
     matrix: NDArray         # entries by columns or in blocks, there its factors; in body axes
     scale: NDArray          # of the unknowns: the scaled matrix has a unit diagonal
     weight: NDArray         # its inverse: corrections are measured in it, multipliers included
@@ -205,16 +206,22 @@ def assemble(level, system, state, residual):
     status = run_kernels(task, bodies, batches, system, state)
     if status != 0:
         return status
+    sum_forces(system, state, residual)
+    if level == TURNED or level == RENEWED:
+        sum_matrices(system, state, residual)
+    return 0
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def sum_forces(system, state, residual):
+    """Sum of the element forces, those on rigid links pulled back."""
     for i in range(residual.size):
         residual[i] = 0.0
     sums, unknowns = pointer_to(residual), pointer_to(system.g_unknown)
     for k in range(system.g_unknown.size):
         sums[unknowns[k]] += state.g[k]
-    if system.hanging.shape[0] > 0:
-        pull_back(system, state.q, state.R, residual)
-    if level == TURNED or level == RENEWED:
-        sum_matrices(system, state, residual)
-    return 0
+    if system.links.hanging.shape[0] > 0:
+        pull_back(system.links, state.q, state.R, residual)
 
 
 @njit(cache=True, error_model="numpy")
@@ -226,7 +233,7 @@ def sum_matrices(system, state, forces):
         state.matrix[system.padding[k]] = 1.0
     matrix, J = pointer_to(state.matrix), pointer_to(state.turned)
     block, blocks = 0, system.turned_blocks.shape[0]
-    linked, links = 0, system.linked_elements.shape[0]
+    linked, links = 0, system.links.elements.shape[0]
     for b in range(system.address.size):
         width = system.width[b]
         for element in range(system.count[b]):
@@ -237,14 +244,16 @@ def sum_matrices(system, state, forces):
             while block < blocks and system.turned_blocks[block, 0] == start:
                 _turn_block(system.turned_blocks[block], system.dimension[0], J, state.frames)
                 block += 1
-            if linked < links and system.linked_elements[linked, 0] == start:
-                add_expanded(system, state, linked, state.turned)
+            if linked < links and system.links.elements[linked, 0] == start:
+                add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
+                             state.matrix, state.expansion)
                 linked += 1
                 continue
             for k in range(width * width):
                 matrix[entries[k]] += J[k]
     if links > 0:
-        add_second_order(system, state, forces)
+        add_second_order(system.links, state.coefficients[2], state.q, state.R, state.T, forces,
+                         state.matrix)
 
 
 @njit(cache=True, error_model="numpy")
@@ -423,8 +432,8 @@ def turn_rotations(system, state):
         x, y, z = dq[first], dq[first + 1], dq[first + 2]
         q[first], q[first + 1], q[first + 2] = x, y, z
         turn(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
-    if system.hanging.shape[0] > 0:
-        place_hanging(system, state.q, state.v, state.a, state.R)
+    if system.links.hanging.shape[0] > 0:
+        place_hanging(system.links, state.q, state.v, state.a, state.R)
 
 
 @njit(cache=True, error_model="numpy")
@@ -572,7 +581,8 @@ def set_powers(system, state):
 @njit(cache=True, error_model="numpy")
 def add_prescribed_powers(system, state):
     """What moves coordinates in a prescribed way bears the forces on them."""
-    assemble(FORCES, system, state, state.residual)
+    run_kernels(RESIDUAL, 0, system.address.size, system, state)
+    sum_forces(system, state, state.residual)
     for k in range(system.prescribed.shape[0]):
         state.powers[system.prescribed[k, 1]] = 0.0
     for k in range(system.prescribed.shape[0]):
@@ -667,7 +677,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             reason = assemble(level, system, state, state.residual)
             if reason != NO_REASON:
                 continue
-            if level != FORCES and system.hanging.shape[0] > 0:
+            if level != FORCES and system.links.hanging.shape[0] > 0:
                 for i in range(state.residual.size):
                     state.forces[i] = state.residual[i]
             to_body_axes(system, state.frames, state.residual, False)

@@ -48,7 +48,7 @@ def start(model: Model, system: System, numbering: Numbering, state: State) -> S
     loop.set_loads(system, state.loads, 0.0)
     state.loads_old[:] = state.loads
     loop.move_prescribed(system, state)
-    place_hanging(system, state.q, state.v, state.a, state.R)
+    place_hanging(system.links, state.q, state.v, state.a, state.R)
     multipliers = np.flatnonzero(system.is_multiplier)
     state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
     _evaluate(system, state, loop.RENEWED)
@@ -68,7 +68,7 @@ def start(model: Model, system: System, numbering: Numbering, state: State) -> S
     state.a[solved & moving] = answer[solved & moving]
     state.q[~moving] = answer[~moving]
     state.aux[solved & moving] = answer[solved & moving]
-    place_hanging(system, state.q, state.v, state.a, state.R)
+    place_hanging(system.links, state.q, state.v, state.a, state.R)
     state.frames_old[:] = state.frames
     system.relaxed[0] = int(bool(solver.redundant))
     loop.set_powers(system, state)
@@ -120,7 +120,7 @@ def _fit_velocities(model: Model, system: System, numbering: Numbering, state: S
     answer[multipliers] = 0.0
     loop.to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
-    place_hanging(system, state.q, state.v, state.a, state.R)
+    place_hanging(system.links, state.q, state.v, state.a, state.R)
     given = [t for t in triplets if t.given]
     for triplet in given:
         change = np.abs(answer[_places(numbering, triplet)]).max()

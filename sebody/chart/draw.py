@@ -42,5 +42,6 @@ def draw(scene: str, points: list["Point"], line: list["Point"], limit: float,
     axes.set_title(f"{scene}: error against time", loc="left")
     axes.grid(color="#e6e9ef", which="both", linewidth=0.5)
     axes.set_axisbelow(True)
-    axes.legend(frameon=False, fontsize=8, loc="upper right")
+    axes.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0.0, 0.08))
+    axes.margins(x=0.1)
     figure.savefig(path, dpi=130)
