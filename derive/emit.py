@@ -65,6 +65,8 @@ def superelement_text(kernel: Superelement) -> str:
     printer.operations = printer.products = 0
     tangent = printer.lines(kernel.tangent)
     seeds = (templates.SEEDS_PLANAR if planar else templates.SEEDS_SPATIAL).strip("\n").split("\n")
+    damping, friction = ((t.strip("\n").split("\n") if layout.damped else [])
+                         for t in (templates.DAMPING, templates.FRICTION))
     text = "\n".join([*before, *residual, *energy, *tangent, *seeds])
     rows = [row for row in ROWS if re.search(rf"\b{row}\b", text) or row in ("qe", "ve", "ae")]
     calls = {name for name in ("columns_times", "inverse_3") if name in text}
@@ -89,4 +91,7 @@ def superelement_text(kernel: Superelement) -> str:
         column_operations=printer.operations, column_products=printer.products, leaves=leaves,
         rows=indented(row_lines, 1), residual_before=indented(before, 2),
         axes=indented(frame_axes(planar), 2), residual=indented(residual, 2),
+        damping="\n" * layout.damped + indented(damping, 2),
+        friction="\n" * layout.damped + indented(friction, 3), damped=layout.damped,
+        names="ENERGY, HEADER, " + "POWERS, " * layout.damped + "SIGNATURE, TANGENT, at, padded",
         energy=indented(energy, 3), seeds=indented(seeds, 4), tangent=indented(tangent, 4))

@@ -4,7 +4,7 @@ import re
 from typing import NamedTuple
 
 LETTER = {"full": "f", "translation": "t", "rotation": "r"}
-PATTERN = re.compile(r"(planar-)?(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?")
+PATTERN = re.compile(r"(planar-)?(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?(d)?")
 
 
 class LayoutError(ValueError):
@@ -22,20 +22,23 @@ class Layout(NamedTuple):
     nodes: tuple[str, ...]      # what each boundary node keeps: full, translation or rotation
     planar: bool = False        # motion in a plane: (x, y) and one angle in place of triplets
     modes: int | None = None    # number of internal modes, where it is pinned
+    damped: bool = False        # with structural damping: twice the tangent, so only where wanted
 
     @classmethod
     def parse(cls, name: str) -> "Layout":
-        """Read a name such as ``f2``, ``f2t1``, ``t8``, ``planar-f2`` or ``f2m4`` (four modes)."""
+        """Read a name such as ``f2``, ``planar-f2``, ``f2t1``, ``f2m4`` (four modes) or ``f2d``."""
         match = PATTERN.fullmatch(name)
         if not match:
             raise LayoutError(f"layout {name!r} is unknown: write counts of full, translation-only "
                               "and rotation-only nodes, such as f2, f2t1, f2r1, t8 or planar-f2, "
-                              "and m with the number of internal modes to pin it, as in f2m4")
+                              "m with the number of internal modes to pin it, as in f2m4, and d "
+                              "for structural damping")
         nodes = []
         for part, kind in zip(match.groups()[1:4], LETTER, strict=True):
             nodes += [kind] * int(part[1:]) if part else []
         modes = match.group(5)
-        layout = cls(tuple(nodes), bool(match.group(1)), None if modes is None else int(modes))
+        layout = cls(tuple(nodes), bool(match.group(1)), None if modes is None else int(modes),
+                     bool(match.group(6)))
         if not layout.positions:
             raise LayoutError(f"layout {name!r} keeps no position: a superelement needs at least "
                               "one node with translations to place its frame")
@@ -46,7 +49,8 @@ class Layout(NamedTuple):
         """Canonical name; the order of the nodes does not enter."""
         counts = [(LETTER[k], self.nodes.count(k)) for k in LETTER]
         pinned = "" if self.modes is None else f"m{self.modes}"
-        return "planar-" * self.planar + "".join(f"{c}{n}" for c, n in counts if n) + pinned
+        return ("planar-" * self.planar + "".join(f"{c}{n}" for c, n in counts if n) + pinned
+                + "d" * self.damped)
 
     @property
     def positions(self) -> int:

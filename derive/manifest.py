@@ -10,6 +10,7 @@ from .catalogue import ELEMENTS as CATALOGUE
 SUPERELEMENTS = (
     # layout, frame, inertia option; pinned numbers of modes where beams mostly need no others
     ("f2", "converged_mean", "b"),
+    ("f2d", "converged_mean", "b"),
     ("f2m4", "converged_mean", "b"),
     ("f2m8", "converged_mean", "b"),
     ("f2", "mean", "b"),
@@ -22,6 +23,7 @@ SUPERELEMENTS = (
     ("t8", "positions", "b"),
     ("f8", "converged_mean", "b"),
     ("planar-f2", "converged_mean", "b"),
+    ("planar-f2d", "converged_mean", "b"),
     ("planar-f2m2", "converged_mean", "b"),
     ("planar-f2m4", "converged_mean", "b"),
     ("planar-f2", "converged_mean", "a"),

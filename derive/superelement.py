@@ -74,8 +74,9 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
 
 
 def _kept(part, layout: Layout) -> tuple[Step, ...]:
-    """Steps without those over rotations, where a layout has none."""
-    kept = [s for s in part if layout.rotations or getattr(s, "over", "") != "rotation"]
+    """Steps without those over rotations or of damping, where a layout has none."""
+    kept = [s for s in part if (layout.rotations or getattr(s, "over", "") != "rotation")
+            and (layout.damped or not isinstance(s, When))]
     return tuple(s._replace(steps=_kept(s.steps, layout)) if isinstance(s, When) else s
                  for s in kept)
 

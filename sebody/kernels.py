@@ -37,21 +37,25 @@ def load(name: str) -> ModuleType | None:
     return module
 
 
-def superelement_kernel(layout: str, frame: str, inertia: str, modes: int) -> ModuleType:
+def superelement_kernel(layout: str, frame: str, inertia: str, modes: int,
+                        damped: bool = False) -> ModuleType:
     """The kernel of a layout, frame and inertia option: one for this number of modes, or for any.
+
+    Structural damping has kernels of its own.
 
     Raises
     ------
     InputError
         If it has not been generated; the message gives the command that makes it.
     """
-    names = [f"superelement_{layout}{pinned}_{frame}_{inertia}".replace("-", "_")
+    d = "d" * damped
+    names = [f"superelement_{layout}{pinned}{d}_{frame}_{inertia}".replace("-", "_")
              for pinned in (f"m{modes}", "")]
     module = load(names[0]) or load(names[1])
     if module is None:
-        raise InputError(f"there is no kernel for layout {layout!r}, frame {frame!r}, inertia "
+        raise InputError(f"there is no kernel for layout {layout + d!r}, frame {frame!r}, inertia "
                          f"{inertia!r}: make it with\n    python -m sebody.derive "
-                         f"{layout}:{frame}:{inertia}")
+                         f"{layout}{d}:{frame}:{inertia}")
     return module
 
 

@@ -160,7 +160,7 @@ class Model(Joints, Forces):
             alpha, alpha_r = _weights_of_node(name, placed, frame_node)
         layout = layout_name(placed)
         kernel = superelement_kernel(layout, "converged_mean" if frame == "node" else frame,
-                                     inertia, placed.modes)
+                                     inertia, placed.modes, placed.damping is not None)
         self.bodies[name] = Superelement(name, placed, nodes, frame, inertia, layout, alpha,
                                          alpha_r, kernel, np.zeros(placed.modes))
         return self.bodies[name]

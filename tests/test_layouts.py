@@ -126,7 +126,7 @@ def test_pinned_number_of_modes_changes_speed_alone(monkeypatch, pinned, modes, 
     assert body.kernel.__name__.endswith(f"superelement_{pinned}_converged_mean_b")
     fast = simulate(own, 0.01, 1.0)
     monkeypatch.setattr(model_module, "superelement_kernel",
-                        lambda layout, frame, inertia, _: superelement_kernel(
+                        lambda layout, frame, inertia, *_: superelement_kernel(
                             layout, frame, inertia, -1))
     free = make(modes)
     body, = free.bodies.values()
