@@ -109,8 +109,9 @@ def build(model: Model) -> tuple[System, Numbering]:
     sizes = [len(b.rows) for b in batches]
     integers = np.array
     multiplier = np.zeros(numbering.total + LANES)
-    for k, first in numbering.multipliers.items():
-        multiplier[first:first + model.joints[k].multipliers] = 1.0
+    for joint in model.joints:
+        first = numbering.multipliers[id(joint)]
+        multiplier[first:first + joint.multipliers] = 1.0
     system = System(
         address=integers([b.kernel.kernel.address for b in batches]),
         count=integers(sizes), stride=integers([len(b.rows[0]) for b in batches]),
@@ -200,7 +201,7 @@ def _element_batches(numbering: Numbering, constants: list,
         if element.mode is not None:
             unknowns.append(numbering.modes[element.mode[0]] + element.mode[1])
         if element.multipliers:
-            first = numbering.first_multiplier[id(element)]
+            first = numbering.multipliers[id(element)]
             unknowns += range(first, first + element.multipliers)
         key = element.kind, len(unknowns)
         batch = batches.setdefault(key, Batch(element_kernel(element.kind), len(unknowns), [], [],

@@ -112,8 +112,7 @@ class Model(Joints, Forces):
         position = None if keeps == "rotation" else (
             at.position if at is not None else
             Triplet(f"{name}.position", point, np.zeros(self.dimension)))
-        rotation = None if keeps == "translation" else Triplet(
-            f"{name}.rotation", np.zeros(self.rotation_size), np.zeros(self.rotation_size))
+        rotation = None if keeps == "translation" else self._rotation(f"{name}.rotation")
         self.nodes[name] = Node(name, point, position, rotation)
         return self.nodes[name]
 
@@ -352,13 +351,15 @@ class Model(Joints, Forces):
 
     def _ground(self, node: Node) -> Node:
         """A fixed node at the place of another one."""
-        ground = Node(f"ground at {node.name}", node.point, *(
-            Triplet(f"ground.{kind}", start, np.zeros(size), fixed=True)
-            for kind, start, size in (("position", node.point, self.dimension),
-                                      ("rotation", np.zeros(self.rotation_size),
-                                       self.rotation_size))))
+        ground = Node(f"ground at {node.name}", node.point,
+                      Triplet("ground.position", node.point, np.zeros(self.dimension), fixed=True),
+                      self._rotation("ground.rotation", fixed=True))
         self.grounds.append(ground)
         return ground
+
+    def _rotation(self, name: str, fixed: bool = False) -> Triplet:
+        return Triplet(name, np.zeros(self.rotation_size), np.zeros(self.rotation_size), fixed,
+                       turns=True)
 
     def triplets(self) -> list[Triplet]:
         """All triplets, each once."""

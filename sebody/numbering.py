@@ -17,14 +17,13 @@ class Numbering(NamedTuple):
     triplets: dict[int, int]            # id(triplet) -> first coordinate
     rotations: dict[int, int]           # id(triplet) -> number of its rotation matrix
     modes: dict[str, int]               # superelement -> first modal amplitude
-    multipliers: dict[int, int]         # joint -> first multiplier
-    first_multiplier: dict[int, int]    # id(joint) -> the same
+    multipliers: dict[int, int]         # id(joint) -> first multiplier
     names: list[str]                    # of every coordinate
     hanging: list[Triplet]              # positions at the ends of rigid links
     items: dict[int, int]               # id(joint, load or spring) -> item
     item_names: list[str]               # of what has a history or does work
     histories: list[History]            # of every item
-    prescribed: list[tuple[int, int, int, float]]   # coordinate, item, is a rotation, factor
+    prescribed: list[tuple[int, int, int, float]]   # coordinate, item, 1 if it turns R, factor
     forces_at: dict[int, int] = {}      # id(body, joint or load) -> its first force in State.g
 
 
@@ -56,10 +55,10 @@ def number(model: Model) -> Numbering:
             names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
 
     def place_joints() -> None:
-        for k, joint in enumerate(model.joints):
-            if k not in multipliers and all(id(p) in at or not p.solved for t in joint.triplets
-                                            for p in t.parents()):
-                multipliers[k] = len(names)
+        for joint in model.joints:
+            parents = [p for t in joint.triplets for p in t.parents()]
+            if id(joint) not in multipliers and all(id(p) in at or not p.solved for p in parents):
+                multipliers[id(joint)] = len(names)
                 names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
 
     for number_, (name, triplets, count) in enumerate(parts):
@@ -85,11 +84,10 @@ def number(model: Model) -> Numbering:
     rotations = {}
     if not model.planar:
         for triplet in used:
-            if triplet.name.endswith("rotation"):
+            if triplet.turns:
                 rotations.setdefault(id(triplet), len(rotations))
-    return Numbering(free, len(names), at, rotations, modes, multipliers,
-                     {id(model.joints[k]): first for k, first in multipliers.items()}, names,
-                     hanging, *_items(model, at))
+    return Numbering(free, len(names), at, rotations, modes, multipliers, names, hanging,
+                     *_items(model, at))
 
 
 def _parts(model: Model) -> list[tuple[str, list[Triplet], int]]:
@@ -132,11 +130,10 @@ def _items(model: Model, at: dict[int, int]) -> tuple[dict, list, list, list]:
             items[id(body)] = len(names)
             names.append(f"damping of {body.name}")
             histories.append(History())
-    for triplet in {id(t): t for n in model.nodes.values() for t in (n.position, n.rotation)
-                    if t is not None}.values():
-        turning = int(triplet.name.endswith("rotation"))
+    for triplet in model.triplets():
+        turning = int(triplet.turns and not model.planar)
         for number_, (direction, history) in enumerate(triplet.motions, 1):
-            prescribed += [(at[id(triplet)] + k, len(names), turning and not model.planar, d)
+            prescribed += [(at[id(triplet)] + k, len(names), turning, d)
                            for k, d in enumerate(direction) if d != 0.0]
             names.append(f"motion{f' {number_}' * (number_ > 1)} of {triplet.name}")
             histories.append(history)

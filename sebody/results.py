@@ -5,13 +5,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from . import loop
-from .abi import ENERGY, POTENTIAL
+from .abi import POTENTIAL
 from .assembly import System
-from .audit import Forces, constraint_residuals, forces
+from .audit import Forces, constraint_residuals, energies, forces
 from .errors import InputError
 from .loop import State
 from .model import Model
@@ -26,6 +25,7 @@ NODE_QUANTITIES = ("position", "rotation", "velocity", "angular_velocity", "acce
                    "reaction", "reaction_moment")
 SYSTEM_QUANTITIES = {"energy.kinetic": 0, "energy.strain": 1, "momentum": slice(2, 5),
                      "angular_momentum": slice(5, 8), "energy.potential": POTENTIAL}
+CONSTRAINTS = ("constraints.position", "constraints.velocity")
 
 
 @dataclass(eq=False)
@@ -53,6 +53,7 @@ class Result:
     start: Start | None = None
     _energies: NDArray | None = field(default=None, repr=False)
     _forces: Forces | None = field(default=None, repr=False)
+    _constraints: NDArray | None = field(default=None, repr=False)
 
     @classmethod
     def of(cls, run: "Simulation") -> "Result":
@@ -105,9 +106,8 @@ class Result:
             return self.recorded("works").sum(axis=1)
         if name in SYSTEM_QUANTITIES:
             return self._energy_table()[:, SYSTEM_QUANTITIES[name]]
-        if name.startswith("constraints."):
-            gaps, rates = constraint_residuals(self, self.forces())
-            return gaps if name == "constraints.position" else rates
+        if name in CONSTRAINTS:
+            return self._residuals()[:, CONSTRAINTS.index(name)]
         owner, _, quantity = name.rpartition(".")
         bodies = self.model.bodies | self.model.rigid_bodies
         if owner in self.model.bodies and quantity == "modes":
@@ -124,8 +124,7 @@ class Result:
                 f"{name!r} is unknown: nodes are {', '.join(self.model.nodes)}; of bodies "
                 f"({', '.join(bodies)}) there are modes and forces; of joints multipliers; of "
                 f"{', '.join(self.numbering.item_names) or 'loads'} work; of the model t, "
-                f"energy.external_work, constraints.position, constraints.velocity, "
-                f"{', '.join(SYSTEM_QUANTITIES)}")
+                f"energy.external_work, {', '.join((*CONSTRAINTS, *SYSTEM_QUANTITIES))}")
         if quantity not in NODE_QUANTITIES:
             raise InputError(f"{quantity!r} is unknown: a node has {', '.join(NODE_QUANTITIES)}")
         return self._of_node(owner, quantity)
@@ -145,9 +144,9 @@ class Result:
         return self.forces().elements[:, first:first + width]
 
     def _multipliers(self, name: str) -> NDArray:
-        rows = [i for k, j in enumerate(self.model.joints) if j.name == name
-                for i in range(self.numbering.multipliers[k],
-                               self.numbering.multipliers[k] + j.multipliers)]
+        firsts = [(self.numbering.multipliers[id(j)], j.multipliers) for j in self.model.joints
+                  if j.name == name]
+        rows = [first + k for first, count in firsts for k in range(count)]
         return self.recorded("q")[:, rows]
 
     def _of_node(self, name: str, quantity: str) -> NDArray:
@@ -166,31 +165,33 @@ class Result:
         v = self.recorded("v")
         if self.model.planar:
             return (self.recorded("q") if quantity == "rotation" else v)[:, first]
-        k = self.numbering.rotations[id(triplet)]
-        R = self.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
+        R = self._turned(triplet)
         return R if quantity == "rotation" else np.einsum("nij,nj->ni", R, v[:, part])
+
+    def _turned(self, triplet: Triplet) -> NDArray:
+        """Rotation matrices of a rotation in space, (n, 3, 3)."""
+        k = self.numbering.rotations[id(triplet)]
+        return self.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
 
     def _reaction(self, triplet: Triplet, part: slice) -> NDArray:
         """What the support of a fixed or prescribed triplet exerts, in global axes."""
-        values = self.forces().sums[:, part]
-        if triplet.solved:
+        if not triplet.fixed:
             raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
                              "reaction; a joint's force is in its multipliers")
-        if self.model.planar or id(triplet) not in self.numbering.rotations:
+        values = self.forces().sums[:, part]
+        if id(triplet) not in self.numbering.rotations:
             return values
-        k = self.numbering.rotations[id(triplet)]
-        R = self.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
-        return np.einsum("nij,nj->ni", R, values)
+        return np.einsum("nij,nj->ni", self._turned(triplet), values)
 
     def _energy_table(self) -> NDArray:
         if self._energies is None:
-            self._energies = np.zeros((len(self.t), self.state.energy.size))
-            now = self.state.now.copy()
-            status = _evaluate_energies(self.system, self.state, self.rows, self._energies)
-            self.state.now[:] = now
-            if status:
-                raise InputError("the energies of a recorded state cannot be evaluated")
+            self._energies = energies(self)
         return self._energies
+
+    def _residuals(self) -> NDArray:
+        if self._constraints is None:
+            self._constraints = constraint_residuals(self)
+        return self._constraints
 
     def energy_balance(self) -> float:
         """Largest drift of kinetic + strain + potential - work, relative to the largest energy."""
@@ -253,16 +254,3 @@ class Result:
 
 def _vector(values: NDArray) -> str:
     return "(" + ", ".join(f"{v:.4g}" for v in values) + ")"
-
-
-@njit(cache=True, error_model="numpy")
-def _evaluate_energies(system, state, rows, out):
-    """Energies and momentum of the bodies and springs in every recorded state."""
-    for k in range(len(rows)):
-        state.now[:] = rows[k]
-        state.energy[:] = 0.0
-        status = loop.run_kernels(ENERGY, 0, system.address.size, system, state)
-        if status != 0:
-            return status
-        out[k] = state.energy
-    return 0

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from . import loop
 from .assembly import System
 from .errors import InputError
+from .linear import Scaled
 from .links import place_hanging
 from .loop import State
 from .model import Model
@@ -26,7 +26,6 @@ REASONS = {
 SMALL = 1e-8            # residuals of constraints, relative to lengths and velocities
 HEAVY = 1e10            # mass that keeps velocities the user gave
 LARGEST = 3000          # unknowns up to which redundant constraints are sorted out
-SINGULAR = 1e-13
 
 
 class Start(NamedTuple):
@@ -144,93 +143,74 @@ def _places(numbering: Numbering, triplet: Triplet) -> NDArray:
     return np.arange(first, first + triplet.start.size)
 
 
-def _scaled(matrix: csc_matrix) -> tuple[csc_matrix, NDArray]:
-    scale = 1.0 / np.sqrt(np.maximum(abs(matrix).max(axis=0).toarray().ravel(), 1e-300))
-    return csc_matrix(matrix.multiply(scale[:, None]).multiply(scale[None, :])), scale
-
-
 def _least(matrix: csc_matrix, demand: NDArray, numbering: Numbering) -> NDArray:
     """Solution of least norm, where the matrix is singular."""
-    scaled, scale = _scaled(matrix)
-    try:
-        factors = splu(scaled)
-        pivots = np.abs(factors.U.diagonal())
-        if pivots.min() >= SINGULAR * pivots.max():
-            return scale * factors.solve(scale * demand)
-    except RuntimeError:
-        pass
+    system = Scaled(matrix)
+    if system.regular:
+        return system.solve(demand)
     if numbering.free > LARGEST:
         raise InputError("the constraints are redundant and too many to be sorted out: remove "
                          "redundant joints")
-    return scale * np.linalg.lstsq(scaled.toarray(), scale * demand, rcond=1e-11)[0]
+    return system.least(demand)[0]
 
 
 class _Solver:
     """Solves for accelerations and multipliers; finds redundant constraints and missing mass."""
 
     def __init__(self, matrix: csc_matrix, numbering: Numbering, multipliers: NDArray):
-        self.matrix, self.numbering = matrix, numbering
-        self.scaled, self.scale = _scaled(matrix)
+        self.system, self.names = Scaled(matrix), numbering.names
         self.redundant: tuple[str, ...] = ()
-        self.factors = None
-        weakest = self._factorize()
-        if self.factors is None:
-            self._sort_out(multipliers, weakest)
+        if not self.system.regular:
+            self._sort_out(multipliers)
 
     def __call__(self, residual: NDArray) -> NDArray:
         """Accelerations and multipliers, of least norm where these are not unique."""
-        if self.factors is not None:
-            return self.scale * self.factors.solve(self.scale * residual)
-        demand = self.scale * residual
-        answer = np.linalg.lstsq(self.scaled.toarray(), demand, rcond=1e-11)[0]
-        left = np.abs(self.scaled @ answer - demand)
-        if left.max() > 1e-7 * max(np.abs(demand).max(), 1e-300):
+        if self.system.regular:
+            return self.system.solve(residual)
+        answer, left = self.system.least(residual)
+        if left.max() > 1e-7 * max(np.abs(self.system.scale * residual).max(), 1e-300):
             raise InputError(f"the constraints contradict each other at "
-                             f"{self.numbering.names[int(np.argmax(left))]}: they demand different "
+                             f"{self.names[int(np.argmax(left))]}: they demand different "
                              "accelerations of the same thing; remove a joint or a drive")
-        return self.scale * answer
+        return answer
 
-    def _factorize(self) -> str:
-        """Name of the unknown that makes the matrix singular, where it is."""
-        names = self.numbering.names
-        try:
-            factors = splu(self.scaled)
-        except RuntimeError:
-            return "an unknown"
-        pivots = np.abs(factors.U.diagonal())
-        weakest = int(np.argmin(pivots))
-        if pivots[weakest] < SINGULAR * pivots.max():
-            return names[int(np.argsort(factors.perm_c)[weakest])]
-        self.factors = factors
-        return ""
-
-    def _sort_out(self, multipliers: NDArray, weakest: str) -> None:
+    def _sort_out(self, multipliers: NDArray) -> None:
         """Redundant constraints have many answers, mass that is missing has none."""
-        names = self.numbering.names
-        if self.numbering.free > LARGEST:
-            raise InputError(f"the constraints or the mass are singular at {weakest}: remove "
+        names, weakest = self.names, self.system.weakest
+        if len(self.system.scale) > LARGEST:
+            raise InputError(f"the constraints or the mass are singular at "
+                             f"{'an unknown' if weakest is None else names[weakest]}: remove "
                              "redundant joints, give every body mass")
-        whole = self.scaled.toarray()
+        whole = self.system.matrix.toarray()
         kept = np.ones(len(whole), dtype=bool)
         kept[multipliers] = False
         constraints = whole[multipliers][:, kept]
-        rank, redundant = 0, []
-        if multipliers.size:
-            lengths = np.linalg.norm(constraints, axis=1)
-            R, order = qr(constraints.T / np.maximum(lengths, 1e-300), mode="r", pivoting=True)
-            diagonal = np.abs(np.diag(R))
-            rank = int((diagonal > 1e-9 * diagonal[0]).sum())
-            redundant = [names[multipliers[k]].partition(" of ")[2] for k in order[rank:]]
-            for k in np.flatnonzero(lengths == 0.0):
-                raise InputError(f"{names[multipliers[k]]} acts on nothing that can move: remove "
-                                 "the joint or free a node")
-        _, values, vectors = np.linalg.svd(constraints) if rank else (0, 0, np.eye(kept.sum()))
-        free = vectors[rank:]
-        mass = free @ whole[kept][:, kept] @ free.T
-        if len(mass):
-            values, modes = np.linalg.eigh((mass + mass.T) / 2)
-            if values[0] < 1e-12 * values[-1]:
-                name = names[np.flatnonzero(kept)[np.argmax(np.abs(modes[:, 0] @ free))]]
-                raise InputError(f"the mass is singular at {name}: nothing with mass moves with "
-                                 "it; give it a mass, fix it, or leave it out")
-        self.redundant = tuple(dict.fromkeys(redundant))
+        rank, self.redundant = self._redundant(constraints, multipliers)
+        free = np.linalg.svd(constraints)[2][rank:] if rank else np.eye(kept.sum())
+        self._check_mass(free, whole[kept][:, kept], np.flatnonzero(kept))
+
+    def _redundant(self, constraints: NDArray, multipliers: NDArray
+                   ) -> tuple[int, tuple[str, ...]]:
+        """Rank of the constraints and the joints that add nothing to it."""
+        if not multipliers.size:
+            return 0, ()
+        names, lengths = self.names, np.linalg.norm(constraints, axis=1)
+        for k in np.flatnonzero(lengths == 0.0):
+            raise InputError(f"{names[multipliers[k]]} acts on nothing that can move: remove "
+                             "the joint or free a node")
+        R, order = qr(constraints.T / lengths, mode="r", pivoting=True)
+        diagonal = np.abs(np.diag(R))
+        rank = int((diagonal > 1e-9 * diagonal[0]).sum())
+        return rank, tuple(dict.fromkeys(names[multipliers[k]].partition(" of ")[2]
+                                         for k in order[rank:]))
+
+    def _check_mass(self, free: NDArray, mass: NDArray, unknowns: NDArray) -> None:
+        """Whatever the constraints leave free must have mass."""
+        if not len(free):
+            return
+        mass = free @ mass @ free.T
+        values, modes = np.linalg.eigh((mass + mass.T) / 2)
+        if values[0] < 1e-12 * values[-1]:
+            name = self.names[unknowns[np.argmax(np.abs(modes[:, 0] @ free))]]
+            raise InputError(f"the mass is singular at {name}: nothing with mass moves with it; "
+                             "give it a mass, fix it, or leave it out")

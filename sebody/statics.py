@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from . import loop
 from .errors import InputError, SimulationError
 from .integrator import Simulation
+from .linear import Scaled
 from .model import Model
 from .results import Result
 from .start import REASONS, assembled
@@ -80,14 +80,13 @@ def _balance(run: Simulation, tolerance: float) -> bool:
     moving = system.is_multiplier[:n] == 0
     state.frames_old[:] = state.frames
     for _ in range(ITERATIONS):
-        matrix = stiffness(run)
+        matrix = Scaled(stiffness(run))
         residual = state.residual.copy()
         loop.to_body_axes(system, state.frames, residual, False)
         correction = np.zeros(run.numbering.total)
-        try:
-            correction[:n] = _solved(matrix, residual[:n])
-        except RuntimeError:        # SuperLU met a singular matrix
+        if matrix.factors is None:
             return False
+        correction[:n] = matrix.solve(residual[:n])
         loop.to_body_axes(system, state.frames, correction, True)
         change = np.abs(correction[:n][moving] / size[moving]).max()
         if not np.isfinite(change) or change > 1.0:
@@ -98,12 +97,6 @@ def _balance(run: Simulation, tolerance: float) -> bool:
         if change < tolerance:
             return True
     return False
-
-
-def _solved(matrix: csc_matrix, residual: NDArray) -> NDArray:
-    scale = 1.0 / np.sqrt(np.maximum(abs(matrix).max(axis=0).toarray().ravel(), 1e-300))
-    scaled = csc_matrix(matrix.multiply(scale[:, None]).multiply(scale[None, :]))
-    return scale * splu(scaled).solve(scale * residual)
 
 
 def _matrix(run: Simulation, mass: float, rate: float, place: float) -> csc_matrix:

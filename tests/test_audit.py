@@ -93,6 +93,14 @@ def test_summary_names_works_and_constraints():
     assert "solved for           initial velocity of centre.position (by 4.62)" in text
 
 
+def test_what_has_no_reaction_is_refused():
+    result = simulate(heavy_top.build().model, 1e-3, 0.01)
+    with pytest.raises(InputError, match="centre.position is free: only fixed and prescribed"):
+        result["centre.reaction"]           # it hangs on the pivot
+    with pytest.raises(InputError, match="'constraints.acceleration' is unknown: nodes are"):
+        result["constraints.acceleration"]
+
+
 def test_a_free_node_has_no_reaction():
     result = simulate(hanging_beam(True), 1e-3, 0.01)
     with pytest.raises(InputError, match="tip.position is free: only fixed and prescribed nodes"):

@@ -81,7 +81,6 @@ def multipliers_first(number):
             return {key: place.get(first, first) for key, first in firsts.items()}
         return old._replace(triplets=moved(old.triplets), modes=moved(old.modes),
                             multipliers=moved(old.multipliers),
-                            first_multiplier=moved(old.first_multiplier),
                             names=[old.names[i] for i in order])
     return changed
 
