@@ -2,7 +2,7 @@
 
 from sebody import Model
 from sebody.fem import Section
-from sebody.scenes.scene import Scene, divided_beam
+from sebody.scenes.scene import Scene
 
 SECTION = Section(area=9.0, inertia_y=6.75, inertia_z=6.75, torsion=11.387,
                   youngs_modulus=2.1e6, poisson_ratio=0.3, density=7.8e-3)
@@ -13,8 +13,9 @@ def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 4,
           elements: int = 20, frame_node: int = 0, bodies: int = 1) -> Scene:
     """The scene: beam of length 100 sqrt(2) along (1, 1, 0), hinged about z at its base."""
     model = Model()
-    base, *_ = divided_beam(model, (100.0, 100.0, 0.0), SECTION, bodies, modes, elements,
-                            frame=frame, inertia=inertia, frame_node=frame_node)
+    base, tip = model.node("base", (0.0, 0.0, 0.0)), model.node("tip", (100.0, 100.0, 0.0))
+    model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia,
+               frame_node=frame_node)
     model.revolute(base, axis=(0, 0, 1))
     model.torque(base, (0, 0, 1), TORQUE)
     return Scene("hinged-beam", "the paper's hinged beam, spun up by a torque at its base",

@@ -2,15 +2,15 @@
 
 from sebody import Model
 from sebody.scenes.hinged_beam import SECTION, TORQUE
-from sebody.scenes.scene import Scene, divided_beam
+from sebody.scenes.scene import Scene
 
 
 def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 2,
           elements: int = 20, bodies: int = 1) -> Scene:
     """The scene; two modes in the plane are what is left of the four of the spatial one."""
     model = Model(planar=True)
-    base, *_ = divided_beam(model, (100.0, 100.0), SECTION, bodies, modes, elements, frame=frame,
-                            inertia=inertia)
+    base, tip = model.node("base", (0.0, 0.0)), model.node("tip", (100.0, 100.0))
+    model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia)
     model.revolute(base)
     model.torque(base, 1.0, TORQUE)
     return Scene("planar-hinged-beam", "the paper's hinged beam in its plane", model, h=0.01,

@@ -3,13 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from sebody import InputError, Model, simulate
-from sebody.fem import Section, planar_beam, straight_beam
-from sebody.reduction import craig_bampton
-from sebody.triplets import Node
+from sebody import Model, simulate
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,31 +17,6 @@ class Scene:
     t_end: float
     base: str = "base"      # nodes that the standard picture shows
     tip: str = "tip"
-
-
-def divided_beam(model: Model, end: ArrayLike, section: Section, bodies: int, modes: int,
-                 elements: int, **options) -> list[Node]:
-    """A beam from the origin to `end` as equal superelements, from node "base" to node "tip".
-
-    With one finite element a body and no modes these are nonlinear beams, see `Model.beam`.
-
-    Raises
-    ------
-    InputError
-        Elements that cannot be divided among the bodies.
-    """
-    if bodies < 1 or elements % bodies:
-        raise InputError(f"{elements} elements cannot be divided among {bodies} bodies: give a "
-                         "multiple")
-    each, end = elements // bodies, np.asarray(end, dtype=float)
-    nodes = [model.node("base" if k == 0 else "tip" if k == bodies else f"beam {k}",
-                        k / bodies * end) for k in range(bodies + 1)]
-    line = planar_beam if model.planar else straight_beam
-    body = craig_bampton(line(nodes[0].point, nodes[1].point, section, each),
-                         [(0, "full"), (each, "full")], modes)
-    for k, pair in enumerate(zip(nodes, nodes[1:], strict=False)):
-        model.superelement("beam" if bodies == 1 else f"beam {k + 1}", body, pair, **options)
-    return nodes
 
 
 def main(build: Callable[[], Scene]) -> None:

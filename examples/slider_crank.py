@@ -6,9 +6,8 @@ the slider on its line.
 
 from math import cos, sin
 
-from sebody import InputError, Model
-from sebody.fem import Section, planar_beam
-from sebody.reduction import craig_bampton
+from sebody import Model
+from sebody.fem import Section
 from sebody.scenes.scene import Scene
 
 RADIUS, LENGTH, SPEED = 0.15, 0.3, 150.0
@@ -20,33 +19,20 @@ ELEMENTS = 24
 
 def build(bodies: int = 1, modes: int = 5, elements: int = ELEMENTS,
           frame: str = "converged_mean", inertia: str = "b") -> Scene:
-    """The scene: the rod is divided into equal superelements.
-
-    Raises
-    ------
-    InputError
-        Elements that cannot be divided among the bodies.
-    """
-    if bodies < 1 or elements % bodies:
-        raise InputError(f"{elements} elements cannot be divided among {bodies} bodies: give a "
-                         "multiple")
+    """The scene: the rod is divided into equal superelements."""
     model = Model(planar=True)
-    each = elements // bodies
-    nodes = [model.node("pin" if k == 0 else "slider" if k == bodies else f"rod {k}",
-                        (RADIUS + LENGTH * k / bodies, 0.0)) for k in range(bodies + 1)]
-    for k, ends in enumerate(zip(nodes, nodes[1:], strict=False)):
-        fe_model = planar_beam(ends[0].point, ends[1].point, SECTION, each)
-        model.superelement(f"rod {k + 1}", craig_bampton(fe_model, [(0, "full"), (each, "full")],
-                                                         modes), ends, frame=frame,
-                           inertia=inertia)
-    model.point_mass("slider", nodes[-1], SLIDER)
-    model.slider(nodes[-1], axis=(1.0, 0.0))
-    model.move(nodes[0], (RADIUS, 0.0), (lambda t: cos(SPEED * t) - 1.0,
-                                         lambda t: -SPEED * sin(SPEED * t),
-                                         lambda t: -SPEED**2 * cos(SPEED * t)))
-    model.move(nodes[0], (0.0, RADIUS), (lambda t: sin(SPEED * t),
-                                         lambda t: SPEED * cos(SPEED * t),
-                                         lambda t: -SPEED**2 * sin(SPEED * t)))
+    pin = model.node("pin", (RADIUS, 0.0))
+    slider = model.node("slider", (RADIUS + LENGTH, 0.0))
+    model.beam("rod", (pin, slider), SECTION, elements, bodies, modes, frame=frame,
+               inertia=inertia)
+    model.point_mass("slider", slider, SLIDER)
+    model.slider(slider, axis=(1.0, 0.0))
+    model.move(pin, (RADIUS, 0.0), (lambda t: cos(SPEED * t) - 1.0,
+                                    lambda t: -SPEED * sin(SPEED * t),
+                                    lambda t: -SPEED**2 * cos(SPEED * t)))
+    model.move(pin, (0.0, RADIUS), (lambda t: sin(SPEED * t),
+                                    lambda t: SPEED * cos(SPEED * t),
+                                    lambda t: -SPEED**2 * sin(SPEED * t)))
     model.rigid_velocity((0.0, RADIUS * SPEED), -SPEED * RADIUS / LENGTH, about=(RADIUS, 0.0))
     return Scene("slider-crank", "slider-crank with a flexible rod", model, h=2e-5,
                  t_end=0.08377580409572781, base="pin", tip="slider")

@@ -5,7 +5,7 @@ The joint is a fixed position triplet: the system has no constraint and no multi
 
 from sebody import Model
 from sebody.scenes.hinged_beam import SECTION
-from sebody.scenes.scene import Scene, divided_beam
+from sebody.scenes.scene import Scene
 
 LENGTH = 141.42
 TORQUE = [(0.0, 0.0), (0.2, 200.0), (10.0, 200.0), (10.2, 0.0)]
@@ -16,8 +16,9 @@ def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 8,
           elements: int = 20, frame_node: int = 0, bodies: int = 1) -> Scene:
     """The scene: a torque of impulse 2000 about z at the base, an impulse of 20 along z at 15."""
     model = Model()
-    base, *_, tip = divided_beam(model, (LENGTH, 0.0, 0.0), SECTION, bodies, modes, elements,
-                                 frame=frame, inertia=inertia, frame_node=frame_node)
+    base, tip = model.node("base", (0.0, 0.0, 0.0)), model.node("tip", (LENGTH, 0.0, 0.0))
+    model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia,
+               frame_node=frame_node)
     model.fix(base, "position")
     model.torque(base, (0, 0, 1), TORQUE)
     model.force(tip, (0, 0, 1), PUSH)

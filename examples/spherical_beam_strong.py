@@ -4,7 +4,7 @@ import math
 
 from sebody import Model
 from sebody.scenes.hinged_beam import SECTION, TORQUE
-from sebody.scenes.scene import Scene, divided_beam
+from sebody.scenes.scene import Scene
 
 
 def strike(t: float) -> float:
@@ -16,8 +16,8 @@ def build(F0: float = 2800.0, frame: str = "converged_mean", inertia: str = "b",
           modes: int = 4, elements: int = 20, bodies: int = 1) -> Scene:
     """The scene: torque of the hinged beam, then a force of peak `F0` along z at the tip."""
     model = Model()
-    base, *_, tip = divided_beam(model, (100.0, 100.0, 0.0), SECTION, bodies, modes, elements,
-                                 frame=frame, inertia=inertia)
+    base, tip = model.node("base", (0.0, 0.0, 0.0)), model.node("tip", (100.0, 100.0, 0.0))
+    model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia)
     model.fix(base, "position")
     model.torque(base, (0, 0, 1), TORQUE)
     model.force(tip, (0, 0, F0), strike)

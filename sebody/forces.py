@@ -133,9 +133,7 @@ class Forces:
         right angle.
         """
         a, b = self._pair(node, to, "bushing")
-        if np.abs(b.point - a.point).max() > 1e-9 * self._size():
-            raise InputError(f"bushing: nodes {a.name!r} and {b.name!r} start apart: give both the "
-                             "same point")
+        self._check_together(a, b, "bushing")
         sizes = self.dimension, self.dimension, self.rotation_size, self.rotation_size
         values = stiffness, damping, turning_stiffness, turning_damping
         constants = np.concatenate([np.broadcast_to(np.asarray(v, dtype=float), (size,))

@@ -7,8 +7,8 @@ built from equations alone.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import histories
 from .errors import InputError
-from .histories import motion
 from .triplets import Element, Node, Triplet, unit_vectors
 
 NEAR = 1e-9     # of the size of the model: nodes of a joint start together
@@ -133,7 +133,7 @@ class Joints:
         self._constrain("distance", self._kind("distance"), a, (a.position, b.position),
                         (np.array([length]),), 1)
 
-    def drive_angle(self, node: Node | str, motion_: object, axis: ArrayLike = (0.0, 0.0, 1.0),
+    def drive_angle(self, node: Node | str, motion: object, axis: ArrayLike = (0.0, 0.0, 1.0),
                     to: Node | str | None = None) -> None:
         """Prescribe the angle of `node` against `to` (the ground) about the axis they share.
 
@@ -142,34 +142,34 @@ class Joints:
 
         Parameters
         ----------
-        motion_ : table or tuple of three functions
+        motion : table or tuple of three functions
             See `sebody.histories.motion`; zero at the start [rad].
         """
         a, b = self._pair(node, to, "drive", ("rotation",))
-        history = self._starting_at_zero(motion(motion_), a)
+        history = self._starting_at_zero(histories.motion(motion), a)
         constants = ()
         if not self.planar:
             constants = self._axis(axis, "drive", a)[1:]
         self._constrain("angle", self._kind("turn_drive"), a, (a.rotation, b.rotation), constants,
                         1, history)
 
-    def drive_slide(self, node: Node | str, motion_: object, axis: ArrayLike,
+    def drive_slide(self, node: Node | str, motion: object, axis: ArrayLike,
                     to: Node | str | None = None) -> None:
         """Prescribe the way of `to` (a point of the ground) along an axis fixed in `node`.
 
         Parameters
         ----------
-        motion_ : table or tuple of three functions
+        motion : table or tuple of three functions
             Of the way from the start [length]; see `sebody.histories.motion`.
         """
         a, b = self._pair(node, to, "drive")
         e = self._direction(axis, "drive", a)
-        history = self._starting_at_zero(motion(motion_), a)
+        history = self._starting_at_zero(histories.motion(motion), a)
         self._constrain("slide", self._kind("slide_drive"), a,
                         (a.position, b.position, a.rotation),
                         (e, np.array([e @ (b.point - a.point)])), 1, history)
 
-    def move(self, node: Node | str, direction: ArrayLike, motion_: object,
+    def move(self, node: Node | str, direction: ArrayLike, motion: object,
              what: str = "position") -> None:
         """Prescribe the motion of a node: no unknown, no equation.
 
@@ -178,7 +178,7 @@ class Joints:
         direction : (3,), planar (2,); of a planar rotation a number
             The motion times this is added to the place (may be called again, for positions), or is
             the angle about this axis.
-        motion_ : table or tuple of three functions
+        motion : table or tuple of three functions
             See `sebody.histories.motion`; zero at the start.
         what : {'position', 'rotation'}
 
@@ -201,7 +201,7 @@ class Joints:
         if not np.linalg.norm(vector) > 0:
             raise InputError(f"motion of {triplet.name} has the direction {direction}: give one "
                              "that is not zero")
-        history = self._starting_at_zero(motion(motion_), node)
+        history = self._starting_at_zero(histories.motion(motion), node)
         self._hold(triplet)
         triplet.motions.append((vector, history))
 
@@ -226,9 +226,7 @@ class Joints:
     def _together(self, a: Node, b: Node, to: Node | str | None, what: str,
                   explicit: bool) -> None:
         """Both positions become one: shared or fixed, else by equations."""
-        if np.abs(b.point - a.point).max() > NEAR * self._size():
-            raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} start apart: give both the "
-                             "same point")
+        self._check_together(a, b, what)
         if explicit:
             if a.position is b.position:
                 raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} share their position "
@@ -244,6 +242,11 @@ class Joints:
             a.position.fixed = True
         elif a.position is not b.position:
             self._share(b.position, a.position, "position")
+
+    def _check_together(self, a: Node, b: Node, what: str) -> None:
+        if np.abs(b.point - a.point).max() > NEAR * self._size():
+            raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} start apart: give both the "
+                             "same point")
 
     def _share(self, gone: Triplet, kept: Triplet, kind: str) -> None:
         """Every node, joint and load with the one triplet gets the other."""

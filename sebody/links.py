@@ -34,7 +34,6 @@ class Links(NamedTuple):
                         whose axes the root is solved for, or -1
     entries             matrix entries of the elements with links, W x W each
     arm_entries         matrix entries of the second-order terms, of each arm
-    dimension           (1,) coordinates of a position
     ==================  ============================================================================
     """
 
@@ -46,7 +45,6 @@ class Links(NamedTuple):
     blocks: NDArray
     entries: NDArray
     arm_entries: NDArray
-    dimension: NDArray
 
 
 def link_arrays(model: Model, numbering: Numbering, batches: list,
@@ -90,13 +88,13 @@ def link_arrays(model: Model, numbering: Numbering, batches: list,
     none = np.zeros(0, dtype=np.int64)
     links = Links(table(hanging, 4), table(arms, 2),
                   np.array(vectors, dtype=float).reshape(-1, d), table(elements, 7),
-                  table(maps, 1).ravel(), table(blocks, 4), none, none, np.array([d]))
+                  table(maps, 1).ravel(), table(blocks, 4), none, none)
     return links, table(rows, 1).ravel(), table(columns, 1).ravel()
 
 
 def with_entries(links: Links, entries: NDArray) -> Links:
     """The links with the places of their matrix entries."""
-    turning = 3 if links.dimension[0] == 3 else 1
+    turning = 3 if links.arm_vectors.shape[1] == 3 else 1
     own, of_arms = np.split(entries, [len(entries) - len(links.arms) * turning**2])
     return links._replace(entries=own, arm_entries=of_arms)
 
@@ -125,10 +123,10 @@ def _expanded(unknowns, which, hanging, arms, frame_of, d, turning, at_map):
 @njit(cache=True, error_model="numpy")
 def place_hanging(links, q, v, a, R):
     """Positions, velocities and accelerations at the ends of the links."""
-    spatial = links.dimension[0] == 3
+    spatial = links.arm_vectors.shape[1] == 3
     for k in range(links.hanging.shape[0]):
         x, root = links.hanging[k, 0], links.hanging[k, 1]
-        for i in range(links.dimension[0]):
+        for i in range(links.arm_vectors.shape[1]):
             q[x + i], v[x + i], a[x + i] = q[root + i], v[root + i], a[root + i]
         for m in range(links.hanging[k, 2], links.hanging[k, 3]):
             c, r = links.arms[m, 1], links.arm_vectors[m]
@@ -170,10 +168,10 @@ def _turned(angle, r):
 @njit(cache=True, error_model="numpy")
 def pull_back(links, q, R, residual):
     """Add the forces at the ends of the links to those on root and rotations."""
-    spatial = links.dimension[0] == 3
+    spatial = links.arm_vectors.shape[1] == 3
     for k in range(links.hanging.shape[0]):
         x, root = links.hanging[k, 0], links.hanging[k, 1]
-        for i in range(links.dimension[0]):
+        for i in range(links.arm_vectors.shape[1]):
             residual[root + i] += residual[x + i]
         for m in range(links.hanging[k, 2], links.hanging[k, 3]):
             c, r = links.arms[m, 1], links.arm_vectors[m]
@@ -222,7 +220,7 @@ def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
 @njit(cache=True, error_model="numpy")
 def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
     """Columns, then rows, of a hanging position, given to root and rotations."""
-    d = links.dimension[0]
+    d = links.arm_vectors.shape[1]
     first, hung, maps = (links.blocks[b, 0], links.blocks[b, 1],
                          links.blocks[b, 2])
     arms = links.hanging[hung, 3] - links.hanging[hung, 2]
@@ -246,7 +244,7 @@ def _replacement(links, b, part, column, frames, q, rotations, operators, G):
 
     Returns its number of columns; three numbers a row in G.
     """
-    d, hung, frame = links.dimension[0], links.blocks[b, 1], links.blocks[b, 3]
+    d, hung, frame = links.arm_vectors.shape[1], links.blocks[b, 1], links.blocks[b, 3]
     if part == 0:
         for i in range(d):
             for j in range(d):
@@ -273,7 +271,7 @@ def _replacement(links, b, part, column, frames, q, rotations, operators, G):
 @njit(cache=True, error_model="numpy")
 def add_second_order(links, place, q, rotations, operators, forces, matrix):
     """Change of the pulled-back moments as the arms turn and the forces stay."""
-    d = links.dimension[0]
+    d = links.arm_vectors.shape[1]
     for k in range(links.hanging.shape[0]):
         x = links.hanging[k, 0]
         for m in range(links.hanging[k, 2], links.hanging[k, 3]):

@@ -165,45 +165,59 @@ class Model(Joints, Forces):
         return self.bodies[name]
 
     def beam(self, name: str, ends: tuple[Node | str, Node | str], section: Section,
-             elements: int, up: ArrayLike | None = None) -> list[Node]:
-        """A geometrically exact beam: the nonlinear reference for superelements.
+             elements: int, bodies: int | None = None, modes: int = 0,
+             up: ArrayLike | None = None, **placing) -> list[Node]:
+        """A straight beam as equal superelements; of one element each they are nonlinear beams.
 
         A superelement of one finite element, with the mean of its two rotations as frame, has the
-        strain energy of Simo and Reissner's beam: the rotation half way between the nodes sees the
-        chord, ``Gamma = R_m^T (x_b - x_a) / l - t``, and each node is turned by half of
-        ``log(R_a^T R_b)`` against it. The exact linear stiffness does not lock; with no shear
-        factor in the section it is that of Euler and Bernoulli.
+        strain energy of Simo and Reissner's geometrically exact beam: the rotation half way between
+        the nodes sees the chord, ``Gamma = R_m^T (x_b - x_a) / l - t``, and each node is turned by
+        half of ``log(R_a^T R_b)`` against it. The exact linear stiffness does not lock; with no
+        shear factor in the section it is that of Euler and Bernoulli. So beams without modes and
+        with as many bodies as elements are the nonlinear reference for superelements.
 
         Parameters
         ----------
         ends : two Nodes or str
-            Full nodes at the ends of the straight axis.
+            Full nodes at the ends of the axis.
         section : Section
         elements : int
+            Finite elements from end to end.
+        bodies : int, optional
+            Superelements; as many as elements by default.
+        modes : int
+            Internal modes of each.
         up : (3,), optional
             Direction of the section's y axis, see `sebody.fem.straight_beam`.
+        **placing
+            Arguments of `superelement`, such as ``frame``.
 
         Returns
         -------
         list of Node
-            All nodes from end to end, named ``<name> 1`` and so on between them.
+            All nodes from end to end, named ``<name> 1`` and so on between them. Superelements are
+            named alike; a single one is called `name`.
 
         Raises
         ------
         InputError
-            No element, or names that are taken.
+            No element, elements that cannot be divided among the bodies, or names that are taken.
         """
         first, last = (self._known(n) for n in ends)
+        bodies = elements if bodies is None else bodies
         if elements != int(elements) or elements < 1:
             raise InputError(f"beam {name!r} has {elements} elements: give a whole number >= 1")
-        step = (last.point - first.point) / elements
+        if bodies != int(bodies) or bodies < 1 or elements % bodies:
+            raise InputError(f"beam {name!r}: {elements} elements cannot be divided among {bodies} "
+                             "bodies: give a multiple")
+        step, each = (last.point - first.point) / bodies, elements // bodies
         nodes = [first, *(self.node(f"{name} {k}", first.point + k * step)
-                          for k in range(1, int(elements))), last]
-        fe_model = (planar_beam(first.point, first.point + step, section, 1) if self.planar else
-                    straight_beam(first.point, first.point + step, section, 1, up))
-        body = craig_bampton(fe_model, [(0, "full"), (1, "full")], 0)
+                          for k in range(1, bodies)), last]
+        fe_model = (planar_beam(first.point, first.point + step, section, each) if self.planar else
+                    straight_beam(first.point, first.point + step, section, each, up))
+        body = craig_bampton(fe_model, [(0, "full"), (each, "full")], modes)
         for k, pair in enumerate(zip(nodes, nodes[1:], strict=False), 1):
-            self.superelement(f"{name} {k}", body, pair)
+            self.superelement(name if bodies == 1 else f"{name} {k}", body, pair, **placing)
         return nodes
 
     def rigid_body(self, name: str, node: Node | str, mass: float, inertia: ArrayLike,

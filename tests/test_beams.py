@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, generalized_alpha, loop, simulate
 from sebody.abi import ENERGY
-from sebody.scenes import slider_crank, spherical_beam_strong, spin_up
+from sebody.scenes import hinged_beam, slider_crank, spherical_beam_strong, spin_up
 from sebody.scenes.hinged_beam import SECTION, TORQUE
 
 DATA = Path(__file__).parent / "data"
@@ -23,7 +23,8 @@ def spun(elements, turned=None, planar=False):
     turned = np.eye(3) if turned is None else turned
     model = Model(planar=planar)
     ends = model.node("base", np.zeros(d)), model.node("tip", (turned @ END)[:d])
-    model.beam("beam", ends, TIMOSHENKO, elements, None if planar else turned @ [-1.0, 1.0, 0.0])
+    model.beam("beam", ends, TIMOSHENKO, elements,
+               up=None if planar else turned @ [-1.0, 1.0, 0.0])
     axis = turned @ [0.0, 0.0, 1.0]
     model.revolute("base", axis)
     model.torque("base", 1.0 if planar else axis, TORQUE)
@@ -163,3 +164,10 @@ def test_slider_crank_against_quadratic_elements():
 def test_wrong_number_of_elements(elements):
     with pytest.raises(InputError, match="beam 'beam' has .* elements: give a whole number >= 1"):
         spun(elements)
+
+
+@pytest.mark.parametrize("bodies", [0, 3, 1.5])
+def test_wrong_number_of_bodies(bodies):
+    with pytest.raises(InputError, match="20 elements cannot be divided among .* bodies: give a "
+                                         "multiple"):
+        hinged_beam.build(bodies=bodies)

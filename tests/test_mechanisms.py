@@ -119,7 +119,7 @@ def deflections(bodies, modes):
     along = (slider - pin) / np.linalg.norm(slider - pin, axis=1)[:, None]
     normal = np.column_stack([-along[:, 1], along[:, 0]])
     if bodies == 1:
-        return shape_of_the_middle(result, scene.model.bodies["rod 1"], along)
+        return shape_of_the_middle(result, scene.model.bodies["rod"], along)
     middle = result[f"rod {bodies // 2}.position"]
     return ((middle - pin) * normal).sum(axis=1) / slider_crank.LENGTH
 
@@ -134,7 +134,7 @@ def shape_of_the_middle(result, body, along):
     row = shapes[fe_model.dofs(n // 2, "translation")[1]]
     chord = np.unwrap(np.arctan2(along[:, 1], along[:, 0]))
     turned = [result[f"{node}.rotation"] - chord for node in ("pin", "slider")]
-    coordinates = np.column_stack([np.zeros((len(chord), 4)), *turned, result["rod 1.modes"]])
+    coordinates = np.column_stack([np.zeros((len(chord), 4)), *turned, result["rod.modes"]])
     return coordinates @ row / slider_crank.LENGTH
 
 

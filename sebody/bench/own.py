@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from ..assembly import System
 from ..integrator import Simulation
+from ..kernels import element_kernel
 from ..results import Result
 from .measurement import Measurement
 from .references import tip_error
@@ -66,7 +67,6 @@ def flops_per_step(result: Result) -> float:
     """
     system, bodies = result.system, list(result.model.bodies.values())
     forces = sum(_kernel_flops(b.kernel, b.body.stiffness.shape[0]) for b in bodies)
-    from ..kernels import element_kernel
     forces += sum(element_kernel(item.kind).OPERATIONS["residual"][0]
                   for item in (*result.model.rigid_bodies.values(),
                                *result.model.joints, *result.model.loads))

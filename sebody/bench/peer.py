@@ -15,11 +15,11 @@ from importlib.util import find_spec
 
 from ..errors import InputError
 from .measurement import Measurement
+from .own import LOOPS
 from .references import tip_error
 
 NAME = "Exudyn"
 LINKS = (1, 4, 16, 64, 256)
-LOOPS = (2, 20)
 
 
 def available() -> bool:
