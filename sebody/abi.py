@@ -33,7 +33,6 @@ turns the variation of the step's increment into that of the rotation.
 
 from llvmlite import ir
 from numba import njit, types
-from numba.core import cgutils
 from numba.extending import intrinsic
 
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
@@ -89,28 +88,3 @@ def call_kernel(typingctx, address, task, count, stride, width, arrays):
                             scalars + pointers)
 
     return signature, codegen
-
-
-@intrinsic
-def borrowed(typingctx, arrays):
-    """The same tuple of arrays (or of such tuples) without ownership.
-
-    No reference counting in the loop's inner parts: it costs as much as a small element. The caller
-    keeps the arrays alive.
-    """
-    def codegen(context, builder, sig, args):
-        return _without_owner(context, builder, sig.args[0], args[0])
-
-    return arrays(arrays), codegen
-
-
-def _without_owner(context, builder, kind, value):
-    if isinstance(kind, types.Array):
-        array = context.make_array(kind)(context, builder, value)
-        array.meminfo = cgutils.get_null_value(array.meminfo.type)
-        array.parent = cgutils.get_null_value(array.parent.type)
-        return array._getvalue()
-    for k, inner in enumerate(kind):
-        part = _without_owner(context, builder, inner, builder.extract_value(value, k))
-        value = builder.insert_value(value, part, k)
-    return value

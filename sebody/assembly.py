@@ -1,5 +1,6 @@
 """Numbering of the unknowns and the flat arrays the compiled loop runs on."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ from numpy.typing import NDArray
 
 from . import elimination
 from .abi import LANES, padded
+from .arrays import Arrays
 from .dense import padded_columns
 from .errors import InputError
 from .kernels import element_kernel
@@ -19,7 +21,8 @@ from .triplets import Element
 DENSE_LIMIT = 24        # above this many unknowns elimination by blocks is faster than an inverse
 
 
-class System(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class System(Arrays):
     """A model as arrays: constant during a run."""
 
     # batches of equal elements: kernel, count, index stride, unknowns an element, and where the

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.sparse import csc_matrix, diags_array
@@ -142,7 +143,7 @@ class Simulation:
             if progress and code in (loop.CHUNK, loop.DONE):
                 progress(self.time / t_end if t_end else 1.0)
         self.records.append(
-            record._replace(rows=record.rows[:self.state.control[loop.RECORDED]]))
+            replace(record, rows=record.rows[:self.state.control[loop.RECORDED]]))
         if code == loop.FAILED:
             self.failure = self._explain()
             raise SimulationError(self.failure, self.result())

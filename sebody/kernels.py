@@ -1,8 +1,11 @@
 """Find and load generated kernels by name: the shipped ones, then the user's directory."""
 
+import gc
 import importlib.util
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -19,9 +22,26 @@ def user_directory() -> Path:
     return Path(os.environ.get("SEBODY_KERNELS") or Path.home() / ".sebody" / "kernels")
 
 
+@contextmanager
+def without_collector() -> Iterator[None]:
+    """No garbage collection: it takes a quarter of a compilation and frees nothing there."""
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
+
+
 @cache
 def load(name: str) -> ModuleType | None:
     """The module of a kernel, compiled (or read from Numba's cache) on import; None if absent."""
+    with without_collector():
+        return _load(name)
+
+
+def _load(name: str) -> ModuleType | None:
     try:
         return import_module(f"sebody.generated.{name}")
     except ModuleNotFoundError as error:

@@ -8,18 +8,20 @@ The second-order term of the force is in the matrix, gyroscopic terms of the pos
 acceleration are not: of order h in an iteration matrix, nothing in a converged step.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from .abi import at, pointer_to
+from .arrays import Arrays
 from .model import Model
 from .numbering import Numbering
 
 
-class Links(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Links(Arrays):
     """Rigid links as arrays: constant during a run.
 
     ==================  ============================================================================
@@ -96,7 +98,7 @@ def with_entries(links: Links, entries: NDArray) -> Links:
     """The links with the places of their matrix entries."""
     turning = 3 if links.arm_vectors.shape[1] == 3 else 1
     own, of_arms = np.split(entries, [len(entries) - len(links.arms) * turning**2])
-    return links._replace(entries=own, arm_entries=of_arms)
+    return replace(links, entries=own, arm_entries=of_arms)
 
 
 def _expanded(unknowns, which, hanging, arms, frame_of, d, turning, at_map):

@@ -7,6 +7,7 @@ The unknowns of a step are the increments dq (rotations: R exp(dTheta)) and the 
 matrix is kept in body axes and reused until convergence asks for a new one.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -24,10 +25,10 @@ from .abi import (
     TANGENT,
     VELOCITY,
     at,
-    borrowed,
     call_kernel,
     pointer_to,
 )
+from .arrays import Arrays
 from .dense import columns_times
 from .histories import cubic_at
 from .links import add_expanded, add_second_order, place_hanging, pull_back
@@ -52,7 +53,8 @@ MEMORY = 0.99           # for the size of the accelerations, a step
 RELAXATION = 1e-7       # of redundant constraints, in the scaled iteration matrix alone
 
 
-class State(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class State(Arrays):
     """Everything a restart needs, and scratch memory."""
 
     now: NDArray            # one block of what is recorded: the next seven are parts of it
@@ -104,7 +106,8 @@ CLOCKS = 11
 CONTROLS = 17
 
 
-class Record(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Record(Arrays):
     """What is kept of the output steps."""
 
     rows: NDArray           # a copy of State.now each
@@ -645,7 +648,6 @@ def cut_step(state, reason):
 @njit(cache=True, error_model="numpy")
 def advance(system, state, record, scheme, last_grid, chunk, dense):
     """Run until `last_grid`, for at most `chunk` steps, or until Python is asked for something."""
-    system, state, record = borrowed(system), borrowed(state), borrowed(record)
     control, clock = state.control, state.clock
     n = system.diagonal.size
     steps = 0

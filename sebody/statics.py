@@ -1,5 +1,6 @@
 """Static equilibrium under loads applied in steps, and small vibrations about any state."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -65,11 +66,11 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0,
         state.now[:] = kept
         step /= 2
         if step < SMALLEST:
-            run.records[0] = run.records[0]._replace(rows=np.array(rows))
+            run.records[0] = replace(run.records[0], rows=np.array(rows))
             message = (f"no equilibrium was found above {share:.4g} of the load: the structure may "
                        "buckle there, or a mechanism is free to move; use more steps or supports")
             raise SimulationError(message, run.result())
-    run.records[0] = run.records[0]._replace(rows=np.array(rows))
+    run.records[0] = replace(run.records[0], rows=np.array(rows))
     return run.result()
 
 
