@@ -3,6 +3,7 @@
 import math
 
 from sebody import Model
+from sebody.histories import with_corners
 from sebody.scenes.hinged_beam import SECTION, TORQUE
 from sebody.scenes.scene import Scene
 
@@ -20,7 +21,7 @@ def build(F0: float = 2800.0, frame: str = "converged_mean", inertia: str = "b",
     model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia)
     model.fix(base, "position")
     model.torque(base, (0, 0, 1), TORQUE)
-    model.force(tip, (0, 0, F0), strike)
+    model.force(tip, (0, 0, F0), with_corners(strike, (15.0, 15.1)))
     return Scene("spherical-beam-strong", "fast beam on a spherical joint, struck at its tip",
                  model, h=0.0025, t_end=30.0)
 

@@ -1,9 +1,11 @@
 """Flexible multibody dynamics with superelements (Cardona, 2000)."""
 
+from .accuracy import simulate_within
 from .errors import InputError, SebodyError, SimulationError
 from .integrator import Simulation, generalized_alpha, hht, simulate
 from .model import Model
 from .results import Result
+from .tolerance import Tolerance
 
 __all__ = ["InputError", "Model", "Result", "SebodyError", "Simulation", "SimulationError",
-           "generalized_alpha", "hht", "simulate"]
+           "Tolerance", "generalized_alpha", "hht", "simulate", "simulate_within"]

@@ -5,6 +5,8 @@ takes a minute. Members are read without reference counts, which cost as much as
 """
 
 from dataclasses import fields
+from hashlib import sha256
+from pathlib import Path
 
 import numpy as np
 from numba import typeof, types
@@ -19,6 +21,18 @@ from numba.extending import (
     typeof_impl,
     unbox,
 )
+
+
+def _sources() -> str:
+    """Hash of all compiled modules: part of every compiled type.
+
+    Numba's cache sees changes of the file a function is in, not of what that calls.
+    """
+    texts = [path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))]
+    return sha256(b"".join(text for text in texts if b"\n@njit" in text)).hexdigest()[:12]
+
+
+SOURCES = _sources()
 
 
 class Arrays:
@@ -48,12 +62,12 @@ class View(types.Type):
     """The compiled type of a group."""
 
     def __init__(self, name: str, members: tuple):
-        self.members = members
+        self.members, self.sources = members, SOURCES
         super().__init__(f"View({name})")
 
     @property
     def key(self) -> tuple:
-        return self.name, self.members
+        return self.name, self.members, self.sources
 
     def place(self, name: str) -> tuple[int, types.Type] | None:
         """Word and type of a member."""

@@ -59,6 +59,7 @@ class System(Arrays):
     table_at: NDArray       # (items + 1,) where each table starts
     table_times: NDArray
     table_cubics: NDArray   # (rows, 4), see sebody.histories
+    corners: NDArray        # times at which a table has a corner, ascending
     functions: NDArray      # (items, 3) addresses of compiled histories, 0 for a table
     prescribed: NDArray     # (k, 3) coordinate, item, 1 for rotations
     prescribed_factor: NDArray
@@ -307,6 +308,7 @@ def _items(numbering: Numbering) -> dict[str, NDArray]:
             "table_times": np.array([t for h in histories for t in h.times], dtype=float),
             "table_cubics": np.array([c for h in histories for c in h.cubics],
                                      dtype=float).reshape(-1, 4),
+            "corners": np.unique([t for h in histories for t in h.corners]),
             "functions": np.array([h.addresses for h in histories],
                                   dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in numbering.prescribed],

@@ -9,9 +9,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from . import loop
 from .abi import ENERGY
 from .errors import InputError
+from .evaluate import assemble, run_kernels, set_loads
+from .state import FORCES, RATES
 
 if TYPE_CHECKING:
     from .results import Result
@@ -79,7 +80,7 @@ def _evaluate_energies(system, state, rows, out):
     for k in range(len(rows)):
         state.now[:] = rows[k]
         state.energy[:] = 0.0
-        status = loop.run_kernels(ENERGY, 0, system.address.size, system, state)
+        status = run_kernels(ENERGY, 0, system.address.size, system, state)
         if status != 0:
             return status
         out[k] = state.energy
@@ -90,8 +91,8 @@ def _evaluate_energies(system, state, rows, out):
 def _evaluate_forces(system, state, rows, elements, sums):
     for k in range(len(rows)):
         state.now[:] = rows[k]
-        loop.set_loads(system, state.loads, state.now[0])
-        status = loop.assemble(loop.FORCES, system, state, state.residual)
+        set_loads(system, state.loads, state.now[0])
+        status = assemble(FORCES, system, state, state.residual)
         if status != 0:
             return status
         elements[k], sums[k] = state.g, state.residual
@@ -102,9 +103,9 @@ def _evaluate_forces(system, state, rows, elements, sums):
 def _evaluate_constraints(system, state, rows, out):
     for k in range(len(rows)):
         state.now[:] = rows[k]
-        loop.set_loads(system, state.loads, state.now[0])
-        for j, level in enumerate((loop.FORCES, loop.RATES)):
-            status = loop.assemble(level, system, state, state.residual)
+        set_loads(system, state.loads, state.now[0])
+        for j, level in enumerate((FORCES, RATES)):
+            status = assemble(level, system, state, state.residual)
             if status != 0:
                 return status
             for i in range(system.diagonal.size):

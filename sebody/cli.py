@@ -65,6 +65,14 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the standard picture")
     run.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
     run.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
+    run.add_argument("--accuracy", type=float, metavar="E",
+                     help="allowed error of the run, of the model's extent and in radians: steps "
+                          "are chosen, --step is the grid of the output")
+    run.add_argument("--index", type=int, default=None, metavar="I",
+                     help="2: constraints hold for velocities, too (default 3, with --accuracy 2)")
+    run.add_argument("--save", type=Path, metavar="FILE.npz", help="save the state to go on from")
+    run.add_argument("--resume", type=Path, metavar="FILE.npz",
+                     help="go on from a saved state, with its step, scheme and accuracy")
     run.add_argument("--rho", type=float, default=0.9, metavar="R",
                      help="spectral radius of generalized-alpha at infinity (default 0.9)")
     run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
@@ -113,7 +121,10 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
-    from .integrator import generalized_alpha, simulate
+    from .accuracy import simulate_within
+    from .integrator import Simulation, generalized_alpha
+    from .restart import resume, save
+    from .tolerance import Tolerance
 
     h = scene.h if options.step is None else options.step
     t_end = scene.t_end if options.t_end is None else options.t_end
@@ -121,9 +132,19 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
         raise InputError(f"the end time is {t_end}: give a number >= 0")
     progress = Progress()
     try:
-        return simulate(scene.model, h, t_end, generalized_alpha(options.rho), progress=progress)
+        if options.accuracy is not None:
+            scheme = generalized_alpha(options.rho, index=options.index or 2)
+            return simulate_within(scene.model, h, t_end, Tolerance(options.accuracy), scheme,
+                                   progress)
+        run = (resume(scene.model, options.resume) if options.resume else
+               Simulation(scene.model, h, generalized_alpha(options.rho,
+                                                            index=options.index or 3)))
+        run.run_to(t_end, progress)
     finally:
         progress.close()
+    if options.save:
+        print(f"state                {save(run, options.save)}")
+    return run.result()
 
 
 def _check_outputs(options: argparse.Namespace) -> None:
@@ -136,6 +157,11 @@ def _check_outputs(options: argparse.Namespace) -> None:
     if options.plot:
         from .plot import check_picture
         check_picture(options.plot)
+    if options.accuracy is not None and (options.save or options.resume):
+        raise InputError("--accuracy repeats the run with finer steps: leave out --save and "
+                         "--resume")
+    if options.resume and options.step is not None:
+        raise InputError("--resume goes on with the step that was saved: leave out --step")
 
 
 def _build(name: str, changes: Sequence[str]) -> "Scene":

@@ -4,7 +4,7 @@ Every history is a piecewise cubic or three compiled functions: value and two ra
 value alone, drives all three.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,7 @@ class History:
     times: tuple[float, ...] = (0.0,)
     cubics: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0, 0.0),)
     functions: tuple = ()       # keeps the compiled functions alive
+    corners: tuple[float, ...] = ()     # times at which its rate jumps
 
     @property
     def addresses(self) -> tuple[int, int, int]:
@@ -52,8 +53,23 @@ def history(source: "ArrayLike | Callable[[float], float] | History | None") -> 
         return History(functions=(_compiled(source, "load history"),))
     times, values = _table(source, "load history")
     slopes = np.append(np.diff(values) / np.diff(times), 0.0)
-    return History(tuple(times), tuple((v, s, 0.0, 0.0) for v, s in zip(values, slopes,
-                                                                      strict=True)))
+    cubics = tuple((v, s, 0.0, 0.0) for v, s in zip(values, slopes, strict=True))
+    bends = np.diff(slopes, prepend=0.0) != 0.0
+    return History(tuple(times), cubics, corners=tuple(times[bends]))
+
+
+def with_corners(function: Callable[[float], float], corners: Sequence[float]) -> History:
+    """A function of time and the times at which it is not smooth: variable steps end there.
+
+    Raises
+    ------
+    InputError
+        A function Numba cannot compile, or times that are no numbers.
+    """
+    times = np.asarray(corners, dtype=float)
+    if times.ndim != 1 or not np.isfinite(times).all():
+        raise InputError(f"corners are {corners}: give a list of times")
+    return History(functions=(_compiled(function, "load history"),), corners=tuple(times.tolist()))
 
 
 def clock() -> History:

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from . import loop
 from .abi import POTENTIAL
 from .assembly import System
 from .audit import Forces, constraint_residuals, energies, forces
 from .errors import InputError
-from .loop import State
 from .model import Model
 from .numbering import Numbering
 from .start import Start
+from .state import CUTS, ITERATIONS, MATRICES, STEPS, State, recorded_parts
 from .triplets import Triplet
 
 if TYPE_CHECKING:
@@ -51,6 +50,8 @@ class Result:
     seconds: float
     failure: str = ""
     start: Start | None = None
+    error: float | None = None      # estimated, in what is allowed: see sebody.accuracy
+    all_seconds: float = 0.0        # of the runs that led to it, too
     _energies: NDArray | None = field(default=None, repr=False)
     _forces: Forces | None = field(default=None, repr=False)
     _constraints: NDArray | None = field(default=None, repr=False)
@@ -63,8 +64,8 @@ class Result:
                    run.start)
 
     def recorded(self, name: str) -> NDArray:
-        """History of one of `loop.recorded_parts`, (n, size)."""
-        parts = loop.recorded_parts(self.numbering.total, len(self.numbering.rotations),
+        """History of one of `recorded_parts`, (n, size)."""
+        parts = recorded_parts(self.numbering.total, len(self.numbering.rotations),
                                     len(self.model.bodies), len(self.numbering.histories))
         return self.rows[:, parts[name]]
 
@@ -76,22 +77,22 @@ class Result:
     @property
     def steps(self) -> int:
         """Accepted steps, cut ones included."""
-        return int(self.state.control[loop.STEPS])
+        return int(self.state.control[STEPS])
 
     @property
     def cuts(self) -> int:
         """Steps that were cut because Newton's iteration did not converge."""
-        return int(self.state.control[loop.CUTS])
+        return int(self.state.control[CUTS])
 
     @property
     def matrices(self) -> int:
         """Iteration matrices made."""
-        return int(self.state.control[loop.MATRICES])
+        return int(self.state.control[MATRICES])
 
     @property
     def iterations_per_step(self) -> float:
         """Newton iterations a step."""
-        return float(self.state.control[loop.ITERATIONS]) / max(self.steps, 1)
+        return float(self.state.control[ITERATIONS]) / max(self.steps, 1)
 
     @property
     def microseconds_per_step(self) -> float:
@@ -242,6 +243,9 @@ class Result:
                          f"{self['constraints.velocity'].max():.1e}")
         lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
                   for k, name in enumerate(self.numbering.item_names)]
+        if self.error is not None:
+            lines.insert(2, f"error                {self.error:.2f} of the tolerance, estimated; "
+                            f"{1e3 * self.all_seconds:.3g} ms with the coarser runs before")
         if self.start and self.start.changed:
             lines.append("solved for           initial velocity of "
                          + ", ".join(f"{name} (by {change:.3g})"

@@ -7,21 +7,39 @@ from numpy.typing import NDArray
 from scipy.linalg import qr
 from scipy.sparse import csc_matrix
 
-from . import loop
 from .assembly import System
 from .errors import InputError
+from .evaluate import (
+    assemble,
+    move_prescribed,
+    set_loads,
+    set_powers,
+    to_body_axes,
+    turn_rotations,
+)
 from .linear import Scaled
 from .links import place_hanging
-from .loop import State
 from .model import Model
 from .numbering import Numbering
+from .state import (
+    HALF_TURN,
+    INACCURATE,
+    NO_FRAME,
+    NOT_FINITE,
+    RATES,
+    RENEWED,
+    SLOW,
+    START,
+    State,
+)
 from .triplets import Triplet
 
 REASONS = {
-    loop.HALF_TURN: "a node is turned by nearly half a turn against its body's frame",
-    loop.NO_FRAME: "the search for a body's frame did not end",
-    loop.NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
-    loop.SLOW: "Newton's iteration did not converge",
+    HALF_TURN: "a node is turned by nearly half a turn against its body's frame",
+    NO_FRAME: "the search for a body's frame did not end",
+    NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
+    SLOW: "Newton's iteration did not converge",
+    INACCURATE: "the error of a step is above the tolerance",
 }
 SMALL = 1e-8            # residuals of constraints, relative to lengths and velocities
 HEAVY = 1e10            # mass that keeps velocities the user gave
@@ -44,34 +62,61 @@ def start(model: Model, system: System, numbering: Numbering, state: State) -> S
         Positions off their joints, given velocities that do not fit, constraints that contradict
         each other, an unknown without mass.
     """
-    loop.set_loads(system, state.loads, 0.0)
+    set_loads(system, state.loads, 0.0)
     state.loads_old[:] = state.loads
-    loop.move_prescribed(system, state)
+    move_prescribed(system, state)
     place_hanging(system.links, state.q, state.v, state.a, state.R)
     multipliers = np.flatnonzero(system.is_multiplier)
     state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
-    _evaluate(system, state, loop.RENEWED)
+    _evaluate(system, state, RENEWED)
     gaps = state.residual[multipliers]
     matrix = assembled(system, state)
     _check(gaps, np.abs(state.q).max(), "position", multipliers, numbering,
            "start from a state the joints allow")
     solver = _Solver(matrix, numbering, multipliers)
     changed = _fit_velocities(model, system, numbering, state, matrix, multipliers)
-    _evaluate(system, state, loop.START)
-    loop.to_body_axes(system, state.frames, state.residual, False)
-    answer = np.zeros(numbering.total)
-    answer[:numbering.free] = -solver(state.residual[:numbering.free].copy())
-    loop.to_body_axes(system, state.frames, answer, True)
-    moving = system.is_multiplier[:numbering.total] == 0
-    solved = np.arange(numbering.total) < numbering.free
-    state.a[solved & moving] = answer[solved & moving]
-    state.q[~moving] = answer[~moving]
-    state.aux[solved & moving] = answer[solved & moving]
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    _accelerate(system, numbering, state, solver)
+    state.aux[:numbering.free] = state.a[:numbering.free]
     state.frames_old[:] = state.frames
     system.relaxed[0] = int(bool(solver.redundant))
-    loop.set_powers(system, state)
+    set_powers(system, state)
     return Start(changed, solver.redundant)
+
+
+def _accelerate(system: System, numbering: Numbering, state: State, solver: "_Solver") -> None:
+    """Accelerations and multipliers of a state."""
+    moving = system.is_multiplier[:numbering.total] == 0
+    solved = np.arange(numbering.total) < numbering.free
+    state.a[solved & moving], state.q[~moving] = 0.0, 0.0
+    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    _evaluate(system, state, START)
+    to_body_axes(system, state.frames, state.residual, False)
+    answer = np.zeros(numbering.total)
+    answer[:numbering.free] = -solver(state.residual[:numbering.free].copy())
+    to_body_axes(system, state.frames, answer, True)
+    state.a[solved & moving], state.q[~moving] = answer[solved & moving], answer[~moving]
+    place_hanging(system.links, state.q, state.v, state.a, state.R)
+
+
+def acceleration_rates(system: System, numbering: Numbering, state: State, dt: float) -> NDArray:
+    """Rates of the accelerations at the start, by a difference over a short time."""
+    kept, loads = state.now.copy(), state.loads.copy()
+    state.R_old[:] = state.R
+    state.dq[:] = dt * state.v + 0.5 * dt * dt * state.a
+    state.q[:] += state.dq
+    state.v[:] += dt * state.a
+    set_loads(system, state.loads, dt)
+    move_prescribed(system, state)
+    turn_rotations(system, state)
+    state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
+    _evaluate(system, state, RENEWED)
+    multipliers = np.flatnonzero(system.is_multiplier)
+    _accelerate(system, numbering, state, _Solver(assembled(system, state), numbering, multipliers))
+    later = state.a.copy()
+    state.now[:], state.loads[:] = kept, loads
+    rates = (later - state.a) / dt
+    rates[numbering.free:] = 0.0
+    return rates
 
 
 def assembled(system: System, state: State) -> csc_matrix:
@@ -82,7 +127,7 @@ def assembled(system: System, state: State) -> csc_matrix:
 
 
 def _evaluate(system: System, state: State, level: int) -> None:
-    status = loop.assemble(level, system, state, state.residual)
+    status = assemble(level, system, state, state.residual)
     if status:
         raise InputError(f"the initial state cannot be evaluated: {REASONS[status]}")
 
@@ -117,7 +162,7 @@ def _fit_velocities(model: Model, system: System, numbering: Numbering, state: S
     answer = np.zeros(numbering.total)
     answer[:numbering.free] = _least(csc_matrix(weighted), demand, numbering)
     answer[multipliers] = 0.0
-    loop.to_body_axes(system, state.frames, answer, True)
+    to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
     place_hanging(system.links, state.q, state.v, state.a, state.R)
     given = [t for t in triplets if t.given]
@@ -134,7 +179,7 @@ def _fit_velocities(model: Model, system: System, numbering: Numbering, state: S
 
 
 def _rates(system: System, state: State, multipliers: NDArray) -> NDArray:
-    _evaluate(system, state, loop.RATES)
+    _evaluate(system, state, RATES)
     return state.residual[multipliers]
 
 

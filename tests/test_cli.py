@@ -41,6 +41,19 @@ def test_run_with_other_parameters(capsys):
     assert "steps                20 (0 cut), to t = 0.1" in out
 
 
+def test_run_with_an_accuracy(capsys):
+    assert cli.main(["run", "squeezer", "--step", "1e-4", "--t-end", "0.005", "--accuracy",
+                     "1e-3"]) == 0
+    assert re.search(r"error +0\.\d\d of the tolerance, estimated", capsys.readouterr().out)
+
+
+def test_run_stops_and_goes_on(tmp_path, capsys):
+    state = tmp_path / "state.npz"
+    assert cli.main(["run", "hinged-beam", "--t-end", "0.2", "--save", str(state)]) == 0
+    assert cli.main(["run", "hinged-beam", "--t-end", "0.5", "--resume", str(state)]) == 0
+    assert "steps                50 (0 cut), to t = 0.5" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("arguments, message", [
     (["triple-beam"], "scene 'triple-beam' is unknown: there are "),
     (["hinged-beam", "--set", "length=3"], "scene 'hinged-beam' has no parameter 'length': there "
@@ -54,6 +67,11 @@ def test_run_with_other_parameters(capsys):
     (["hinged-beam", "--output", "beam.txt"], "output file beam.txt must end in .npz"),
     (["hinged-beam", "--output", "nowhere/b.npz"], "folder nowhere of the output file does not"),
     (["hinged-beam", "--plot", "beam.exe"], "picture beam.exe must end in .png"),
+    (["hinged-beam", "--accuracy", "-1"], "tolerance relative is -1.0: give a number >= 0"),
+    (["hinged-beam", "--accuracy", "1e-3", "--save", "a.npz"], "--accuracy repeats the run with"),
+    (["hinged-beam", "--resume", "none.npz"], "restart file none.npz does not exist"),
+    (["hinged-beam", "--resume", "a.npz", "--step", "1"], "--resume goes on with the step that"),
+    (["hinged-beam", "--index", "1"], "index is 1: use 3, or 2 for the stabilised form"),
 ])
 def test_bad_input_is_named(arguments, message, capsys):
     assert cli.main(["run", *arguments]) == 2

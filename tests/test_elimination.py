@@ -6,7 +6,7 @@ from numba import njit
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
 
-from sebody import Simulation, assembly, elimination, loop
+from sebody import Simulation, assembly, elimination, state
 from sebody.abi import LANES, pointer_to
 from sebody.scenes import chain
 
@@ -89,7 +89,7 @@ def test_superlu_takes_over_at_small_pivots(monkeypatch):
     own = Simulation(chain.build(links=8).model, 0.01).run_to(0.3)
     monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
     exchanged = Simulation(chain.build(links=8).model, 0.01).run_to(0.3)
-    assert own.state.control[loop.PIVOTED] == 0 and exchanged.state.control[loop.PIVOTED] == 1
+    assert own.state.control[state.PIVOTED] == 0 and exchanged.state.control[state.PIVOTED] == 1
     for name in ("tip.position", "energy.strain", "energy.kinetic"):
         a, b = own.result()[name], exchanged.result()[name]
         assert np.abs(a - b).max() < 1e-9 * np.abs(a).max(), name

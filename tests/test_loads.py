@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from sebody import InputError, Model, Simulation, loop, simulate
+from sebody import InputError, Model, Simulation, evaluate, simulate
 from sebody.histories import History, history
 from sebody.scenes.hinged_beam import build
 
@@ -102,7 +102,7 @@ def test_histories():
 def amplitudes(run, t):
     """Amplitude and rates of every item at a time."""
     loads = np.zeros_like(run.state.loads)
-    loop.set_loads(run.system, loads, t)
+    evaluate.set_loads(run.system, loads, t)
     return loads.reshape(-1, 3)
 
 

@@ -7,8 +7,9 @@ import pytest
 from scipy.integrate import solve_bvp
 
 from sebody import InputError, Model, Simulation, SimulationError
+from sebody.linearization import vibrations
 from sebody.scenes.hinged_beam import SECTION
-from sebody.statics import equilibrium, vibrations
+from sebody.statics import equilibrium
 
 LENGTH = 100.0
 EI = SECTION.youngs_modulus * SECTION.inertia_z
