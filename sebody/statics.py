@@ -15,6 +15,7 @@ from .results import Result
 
 ITERATIONS = 25
 SMALLEST = 1.0 / 1024       # share of the load, below which its step is not cut
+PUSH = 1e-6                 # of the forces: that acts on what nothing holds
 
 
 def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = 1e-11,
@@ -79,17 +80,17 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
 def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
     """Newton's iteration with the exact tangent; False where it does not converge."""
     system, state, n = run.system, run.state, run.numbering.free
-    size = np.maximum(system.magnitude[:n], 1e-300)
-    moving = system.is_multiplier[:n] == 0
+    size = system.magnitude[:n]
+    sized = size > 0.0              # modes and multipliers follow
     state.frames_old[:] = state.frames
     for _ in range(ITERATIONS):
         spin.move(run)
         tangent, residual = rotating(run, spin)
         solver = Scaled(tangent)
         correction = np.zeros(run.numbering.total)
-        correction[:n] = _solution(solver, residual, spin)
+        correction[:n] = _solution(solver, residual)
         to_body_axes(system, state.frames, correction, True)
-        change = np.abs(correction[:n][moving] / size[moving]).max()
+        change = np.abs(correction[:n][sized] / size[sized]).max()
         if not np.isfinite(change) or change > 1.0:
             return False
         state.R_old[:], state.dq[:] = state.R, -correction
@@ -101,10 +102,10 @@ def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
     return False
 
 
-def _solution(solver: Scaled, residual: NDArray, spin: Spin) -> NDArray:
-    """Correction; what a spin leaves free, such as the angle about its axis, stays."""
-    if solver.regular or (not spin.turns and solver.factors is not None):
+def _solution(solver: Scaled, residual: NDArray) -> NDArray:
+    """Correction; what nothing holds and nothing pushes, such as the angle of a spin, stays."""
+    if solver.regular:
         return solver.solve(residual)
-    if not spin.turns:
-        return np.full(len(residual), np.nan)
-    return solver.least(residual)[0]
+    answer, left = solver.least(residual)
+    pushed = left.max() > PUSH * np.abs(solver.scale * residual).max() > 0.0
+    return np.full(len(residual), np.nan) if pushed else answer

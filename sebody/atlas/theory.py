@@ -1,0 +1,132 @@
+"""What theory says of linear beams in floating frames that turn or are pressed (unit beams).
+
+A cantilever of unit length, mass and bending stiffness is cut into equal bodies, each linear in a
+frame of its own that is turned by phi against the undeformed axis. A point s along a body with
+deflection v against the frame then moves by ``-s phi^2 / 2 - v phi`` along the axis, and the axial
+inertia or load that works on this is all the geometric stiffness there is. Hermite cells inside
+the bodies, every term of second order kept; nothing is shared with the kernels.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+from scipy.linalg import eigh, eigvals
+from scipy.optimize import brentq
+
+CELLS = 24              # of the whole beam, or three a body
+_POINTS, _WEIGHTS = leggauss(5)
+POINTS, WEIGHTS = (_POINTS + 1) / 2, _WEIGHTS / 2
+
+
+class Beam(NamedTuple):
+    """Matrices of the free unknowns: deflection and slope of every node but the first."""
+
+    stiffness: NDArray
+    mass: NDArray
+    spin: NDArray           # geometric stiffness of a unit angular velocity about the root
+    spin_b: NDArray         # the same with the inertia of option B and no internal modes
+    shortening: NDArray     # of the tip is ``w^T shortening w``, negative
+
+
+def cantilever(bodies: int, frame: str) -> Beam:
+    """Matrices for bodies whose frame follows the inboard ``node``, the ``chord`` or the ``mean``
+    of the slopes at the ends.
+    """
+    cells = max(CELLS // bodies, 3)
+    n, cell, length = 2 * (bodies * cells + 1), 1 / (bodies * cells), 1 / bodies
+    K, M = _hermite_matrices(bodies * cells, cell)
+    phi = _frame_slopes(bodies, cells, n, frame)
+    ends = [np.zeros((n, n))]           # axial shift of the ends of the bodies
+    spin, spin_b = np.zeros((n, n)), np.zeros((n, n))
+    for i in range(bodies):
+        at, p, x0 = 2 * i * cells, phi[i], i * length
+
+        def shift(s, w, start=ends[-1], p=p, at=at):
+            v = w - np.eye(len(p))[at] - s * p
+            return start - 0.5 * s * np.outer(p, p) - 0.5 * (np.outer(v, p) + np.outer(p, v))
+        for c in range(cells):
+            for g, weight in zip(POINTS, WEIGHTS, strict=True):
+                w, s = np.zeros(n), (c + g) * cell
+                w[at + 2 * c:at + 2 * c + 4] = hermite(g * cell, cell)
+                spin -= 2 * weight * cell * (x0 + s) * shift(s, w)
+        ends.append(shift(length, np.eye(n)[at + 2 * cells]))
+        s = POINTS * length
+        work = (WEIGHTS * length * (x0 + s)) @ hermite(s, length).T
+        spin_b -= 2 * (work[0] * ends[i] + work[2] * ends[i + 1])
+        for node, k in ((at, 1), (at + 2 * cells, 3)):
+            spin_b[node + 1, node + 1] += work[k]
+    return Beam(*(A[2:, 2:] for A in (K, M, spin, spin_b, ends[-1])))
+
+
+def hermite(s, length):
+    """Cubic shapes of deflection and slope at both ends."""
+    x = np.asarray(s) / length
+    return np.array([1 - 3 * x**2 + 2 * x**3, length * (x - 2 * x**2 + x**3),
+                     3 * x**2 - 2 * x**3, length * (x**3 - x**2)])
+
+
+def _hermite_matrices(count, h):
+    K, M = np.zeros((2 * count + 2,) * 2), np.zeros((2 * count + 2,) * 2)
+    s = POINTS * h
+    shapes = hermite(s, h)
+    bends = np.array([(12 * s / h - 6) / h**2, (6 * s / h - 4) / h, (6 - 12 * s / h) / h**2,
+                      (6 * s / h - 2) / h])
+    for c in range(count):
+        part = slice(2 * c, 2 * c + 4)
+        K[part, part] += h * (bends * WEIGHTS) @ bends.T
+        M[part, part] += h * (shapes * WEIGHTS) @ shapes.T
+    return K, M
+
+
+def _frame_slopes(bodies, cells, n, frame):
+    phi = np.zeros((bodies, n))
+    for i in range(bodies):
+        a, b = 2 * i * cells, 2 * (i + 1) * cells
+        if frame == "node":
+            phi[i, a + 1] = 1.0
+        elif frame == "chord":
+            phi[i, a], phi[i, b] = -bodies, bodies
+        else:
+            phi[i, a + 1] = phi[i, b + 1] = 0.5
+    return phi
+
+
+def flap(beam: Beam, eta: float, option_b: bool = False) -> float:
+    """Lowest frequency out of the plane of the spin, zero where it is not stable."""
+    spin = beam.spin_b if option_b else beam.spin
+    return float(np.sqrt(max(eigh(beam.stiffness + eta**2 * spin, beam.mass,
+                                  eigvals_only=True)[0], 0.0)))
+
+
+def divergence(beam: Beam, option_b: bool = False) -> float:
+    """Spin at which the lowest motion in the plane diverges, infinite where none does."""
+    spin = beam.spin_b if option_b else beam.spin
+    largest = eigh(beam.mass - spin, beam.stiffness, eigvals_only=True)[-1]
+    return float(1 / np.sqrt(largest)) if largest > 0 else np.inf
+
+
+def euler_load(beam: Beam) -> float:
+    """Dead load along the axis that buckles the cantilever, infinite where none does."""
+    largest = eigh(-2 * beam.shortening, beam.stiffness, eigvals_only=True)[-1]
+    return float(1 / largest) if largest > 1e-6 else np.inf
+
+
+def beck_load(beam: Beam, highest: float = 80.0) -> float:
+    """Load that follows the tip and makes the cantilever flutter, infinite above `highest`."""
+    follower = 2 * beam.shortening.copy()
+    follower[-2, -1] += 1.0         # the load turns with the slope of the tip
+
+    def stable(load):
+        """Least distance of neighbouring frequencies, negative where they have met."""
+        squares = eigvals(beam.stiffness + load * follower, beam.mass)
+        squares = squares[np.argsort(squares.real)][:4]
+        return -np.abs(squares.imag).max() if np.abs(squares.imag).max() > 1e-6 * np.abs(
+            squares).max() else 1.0
+    loads = np.linspace(1.0, highest, 160)
+    bad = [load for load in loads if stable(load) < 0]
+    if not bad:
+        return np.inf
+    return float(brentq(lambda load: np.sign(stable(load)), bad[0] - loads[1] + loads[0], bad[0],
+                        xtol=1e-4))
