@@ -1,10 +1,11 @@
-"""Command line: ``sebody run``, ``list``, ``check``, ``bench`` and ``warm``."""
+"""Command line: ``sebody run``, ``list``, ``check``, ``bench``, ``chart``, ``atlas``, ``warm``."""
 
 import argparse
 import ast
 import inspect
 import sys
 import time
+import warnings
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from importlib import import_module
@@ -12,7 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .errors import InputError, SimulationError
+from .errors import InputError, LimitWarning, SimulationError
 
 if TYPE_CHECKING:
     from sebody.scenes.scene import Scene
@@ -93,6 +94,10 @@ def _parser() -> argparse.ArgumentParser:
     chart.add_argument("scene", metavar="SCENE", help="name of a scene that has a chart")
     chart.add_argument("--output", type=Path, metavar="FILE.png", help="draw it")
     chart.add_argument("--csv", type=Path, metavar="FILE.csv", help="write the points")
+    atlas = commands.add_parser("atlas", help="where methods fail: theory and measurement")
+    atlas.set_defaults(command=_atlas)
+    atlas.add_argument("cases", nargs="*", metavar="CASE", help="all of them by default")
+    atlas.add_argument("--output", type=Path, metavar="FILE.png", help="draw the page of pictures")
     warm = commands.add_parser("warm", help="compile everything that is shipped")
     warm.set_defaults(command=_warm)
     return parser
@@ -131,6 +136,7 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
     if not 0.0 <= t_end < float("inf"):
         raise InputError(f"the end time is {t_end}: give a number >= 0")
     progress = Progress()
+    warnings.simplefilter("ignore", LimitWarning)   # the summary has them
     try:
         if options.accuracy is not None:
             scheme = generalized_alpha(options.rho, index=options.index or 2)
@@ -317,6 +323,25 @@ def _chart(options: argparse.Namespace) -> int:
                    options.output)
         print(f"picture: {options.output}")
     return 0
+
+
+def _atlas(options: argparse.Namespace) -> int:
+    from . import atlas
+
+    if options.output:
+        from .plot import check_picture
+        check_picture(options.output)
+    unknown = [name for name in options.cases if name not in atlas.CASES]
+    if unknown:
+        atlas.explore(unknown[0])
+    findings = []
+    for name in options.cases or atlas.CASES:
+        findings.append(atlas.explore(name))
+        print(f"{name}: {atlas.report(findings[-1])}\n", flush=True)
+    if options.output:
+        atlas.draw(findings, options.output)
+        print(f"picture: {options.output}")
+    return 0 if all(row.passed for f in findings for row in f.rows) else 1
 
 
 def _warm(options: argparse.Namespace) -> int:

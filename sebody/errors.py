@@ -9,6 +9,10 @@ class InputError(SebodyError, ValueError):
     """Input that cannot be used; the message names the offending thing and the remedy."""
 
 
+class LimitWarning(UserWarning):
+    """A run is outside what its model or scheme can tell; the message names limit and remedy."""
+
+
 class SimulationError(SebodyError):
     """A run that stopped; `result` holds what it computed until then."""
 

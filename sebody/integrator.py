@@ -44,6 +44,7 @@ from .state import (
     recorded_parts,
 )
 from .tolerance import Tolerance
+from .watch import Watch
 
 FIRST_STEP = 1e-3       # of the output grid, where nothing is accelerated at the start
 
@@ -136,6 +137,8 @@ class Simulation:
         self.dense = self.numbering.free <= DENSE_LIMIT
         self.state = _initial_state(model, self.system, self.numbering, self.h, self.dense)
         self.records: list[Record] = []
+        self.watch = Watch()
+        self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
         self.seconds = 0.0
         self.failure = ""
         self._factors = None
@@ -190,6 +193,7 @@ class Simulation:
                 progress(self.time / t_end if t_end else 1.0)
         self.records.append(
             replace(record, rows=record.rows[:self.state.control[RECORDED]]))
+        self.watch.look(self, self.records[-1].rows)
         if code == FAILED:
             self.failure = self._explain()
             raise SimulationError(self.failure, self.result())

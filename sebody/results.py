@@ -52,6 +52,7 @@ class Result:
     start: Start | None = None
     error: float | None = None      # estimated, in what is allowed: see sebody.accuracy
     all_seconds: float = 0.0        # of the runs that led to it, too
+    warnings: tuple[str, ...] = ()  # what the run was warned of, see sebody.watch
     _energies: NDArray | None = field(default=None, repr=False)
     _forces: Forces | None = field(default=None, repr=False)
     _constraints: NDArray | None = field(default=None, repr=False)
@@ -61,7 +62,7 @@ class Result:
         """Everything a simulation has recorded so far."""
         rows = np.concatenate([record.rows for record in run.records])
         return cls(run.model, run.numbering, run.system, run.state, rows, run.seconds, run.failure,
-                   run.start)
+                   run.start, warnings=tuple(run.watch.messages))
 
     def recorded(self, name: str) -> NDArray:
         """History of one of `recorded_parts`, (n, size)."""
@@ -253,6 +254,7 @@ class Result:
         if self.start and self.start.redundant:
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
                          + ": multipliers are those of least norm")
+        lines += [f"WARNING              {message}" for message in self.warnings]
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
 
 

@@ -27,6 +27,7 @@ class Beam(NamedTuple):
     mass: NDArray
     spin: NDArray           # geometric stiffness of a unit angular velocity about the root
     spin_b: NDArray         # the same with the inertia of option B and no internal modes
+    plane_b: NDArray        # with it in the plane of the spin, mass included: options A and B
     shortening: NDArray     # of the tip is ``w^T shortening w``, negative
 
 
@@ -39,7 +40,7 @@ def cantilever(bodies: int, frame: str) -> Beam:
     K, M = _hermite_matrices(bodies * cells, cell)
     phi = _frame_slopes(bodies, cells, n, frame)
     ends = [np.zeros((n, n))]           # axial shift of the ends of the bodies
-    spin, spin_b = np.zeros((n, n)), np.zeros((n, n))
+    spin, spin_b, plane_b = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
     for i in range(bodies):
         at, p, x0 = 2 * i * cells, phi[i], i * length
 
@@ -57,7 +58,14 @@ def cantilever(bodies: int, frame: str) -> Beam:
         spin_b -= 2 * (work[0] * ends[i] + work[2] * ends[i + 1])
         for node, k in ((at, 1), (at + 2 * cells, 3)):
             spin_b[node + 1, node + 1] += work[k]
-    return Beam(*(A[2:, 2:] for A in (K, M, spin, spin_b, ends[-1])))
+        # velocities of the nodes in the axes of the frame, which are turned by phi
+        moves, lines = np.eye(n)[[at, at + 2 * cells]], np.array([1 - POINTS, POINTS])
+        for X, k, move, end in zip((x0, x0 + length), (0, 2), moves, ends[i:], strict=True):
+            plane_b -= work[k] * (2 * end + np.outer(p, move) + np.outer(move, p)
+                                  - X * np.outer(p, p))
+        across = moves - np.outer([x0, x0 + length], p)
+        plane_b -= length * across.T @ (lines * WEIGHTS) @ lines.T @ across
+    return Beam(*(A[2:, 2:] for A in (K, M, spin, spin_b, plane_b, ends[-1])))
 
 
 def hermite(s, length):
@@ -102,8 +110,8 @@ def flap(beam: Beam, eta: float, option_b: bool = False) -> float:
 
 def divergence(beam: Beam, option_b: bool = False) -> float:
     """Spin at which the lowest motion in the plane diverges, infinite where none does."""
-    spin = beam.spin_b if option_b else beam.spin
-    largest = eigh(beam.mass - spin, beam.stiffness, eigvals_only=True)[-1]
+    inertia = -beam.plane_b if option_b else beam.mass - beam.spin
+    largest = eigh(inertia, beam.stiffness, eigvals_only=True)[-1]
     return float(1 / np.sqrt(largest)) if largest > 0 else np.inf
 
 

@@ -1,0 +1,119 @@
+"""High spin and high loads: where linear bodies are too soft, or never buckle."""
+
+import numpy as np
+
+from ..errors import SimulationError
+from ..integrator import simulate
+from ..scenes import spin_up
+from .beams import grows, onset, pressed, spinning
+from .finding import Finding, Row
+from .theory import beck_load, cantilever, divergence, euler_load
+
+COUNTS = (1, 2, 4, 8)
+# deepest tip deflection of the spin-up, exact floating-frame inertia: benchmarks of the literature
+DEEPEST = {("node", 4): -0.5562, ("node", 8): -0.5393, ("chord", 4): -0.5390, ("chord", 8): -0.5356}
+EXACT = -0.5337
+
+
+def spurious_divergence() -> Finding:
+    """Spin at which a cantilever in its plane diverges; a beam never does."""
+    finding = Finding(
+        "divergence at high spin",
+        "A beam stiffens as it turns and never diverges in its plane. A linear body does not: it "
+        "diverges where W^2 times its inertia exceeds its stiffness. The limit grows with the "
+        "number of bodies.",
+        "Warns once when the spin of a body exceeds its own limit, and says to divide it.",
+        "bodies", "spin of divergence, W sqrt(rho A L^4 / EI)", logarithmic="xy")
+    for frame in ("node", "mean"):
+        found = []
+        for n in COUNTS:
+            theory = divergence(cantilever(n, frame), option_b=True)
+            measured = onset(lambda eta, n=n, frame=frame: grows(
+                lambda: spinning(n, frame, eta), eta), 0.7 * theory, 1.3 * theory, 7)
+            finding.rows.append(Row(f"{frame} frame, {n} bodies", theory, measured, 2e-3))
+            found.append(measured)
+        finding.curves[f"{frame} frame, measured"] = COUNTS, found
+        finding.curves[f"{frame} frame, exact inertia"] = COUNTS, [
+            divergence(cantilever(n, frame)) for n in COUNTS]
+    finding.curves["chord frame, exact inertia"] = COUNTS, [
+        divergence(cantilever(n, "chord")) for n in COUNTS]
+    return finding
+
+
+def spin_up_outcomes() -> Finding:
+    """The spin-up of Kane's arm: bounded or not, and how deep the tip bends."""
+    finding = Finding(
+        "spin-up of a flexible arm",
+        "One body with its frame at the root diverges when the speed passes its first frequency, "
+        "2.91 rad/s. With two it survives to 4.45, with four and eight the deflection converges "
+        "to that of the beam, -0.534.",
+        "Runs on with a warning; a node that turns by more than 168 degrees stops the run.",
+        "time [s]", "tip deflection")
+    for frame, n, allowed in (("node", 4, 0.01), ("node", 8, 0.005), ("mean", 4, 0.01),
+                              ("mean", 8, 0.005)):
+        t, v = _deflection(n, frame)
+        theory = DEEPEST["chord" if frame == "mean" else frame, n]
+        finding.rows.append(Row(f"{frame} frame, {n} bodies: deepest", theory, v.min(), allowed))
+        finding.curves[f"{frame} frame, {n} bodies"] = t, v
+    t, v = _deflection(1, "node")
+    lost = np.flatnonzero(np.abs(v) > 8.0 / 2)
+    finding.rows.append(Row("node frame, 1 body: bent by half its length", 1.0,
+                            float(lost.size > 0), 0.0))
+    finding.curves["node frame, 1 body"] = t, np.clip(v, -2.0, 2.0)
+    t, v = _deflection(2, "node")
+    finding.rows.append(Row("node frame, 2 bodies: stays below half its length", 1.0,
+                            float(np.abs(v).max() < 4.0), 0.0))
+    return finding
+
+
+def _deflection(bodies: int, frame: str):
+    scene = spin_up.build("kane", bodies, frame="node" if frame == "node" else "converged_mean")
+    try:
+        result = simulate(scene.model, 0.01, scene.t_end)
+    except SimulationError as error:
+        result = error.result
+    angle = np.array([spin_up.turning(4.0)[0](t) for t in result.t])
+    x, y = result["tip.position"].T
+    return result.t, y * np.cos(angle) - x * np.sin(angle)
+
+
+def buckling() -> Finding:
+    """Dead load along a cantilever."""
+    finding = Finding(
+        "Euler's load",
+        "Bodies that are linear in their frames buckle where the frames turn: not at all with one "
+        "body and the frame at its root, at 3 EI/L^2 with a chord, and at pi^2/4 in the limit.",
+        "Finds no stable equilibrium beyond the load and says so.",
+        "bodies", "load / (EI/L^2)", logarithmic="x")
+    for frame in ("node", "mean"):
+        found = []
+        for n in COUNTS:
+            theory = euler_load(cantilever(n, frame))
+            measured = onset(lambda p, n=n, frame=frame: grows(
+                lambda: pressed(n, frame, p, False, 0)), 1.5, 6.0, 19)
+            finding.rows.append(Row(f"{frame} frame, {n} bodies", theory, measured, 2e-3))
+            found.append(measured)
+        finding.curves[f"{frame} frame"] = COUNTS, found
+    finding.curves["beam"] = COUNTS, [np.pi**2 / 4] * len(COUNTS)
+    return finding
+
+
+def flutter() -> Finding:
+    """A load that follows the tip of a cantilever."""
+    finding = Finding(
+        "Beck's load",
+        "A beam flutters at 20.05 EI/L^2. One linear body does not flutter below 80, two at 24 "
+        "(chord) to 39 (node); the load converges from above with the square of their number.",
+        "Eigenvalues of the linearisation show it; a simulation flutters, without a warning.",
+        "bodies", "load / (EI/L^2)", logarithmic="x")
+    for frame in ("node", "mean"):
+        found = []
+        for n in COUNTS[1:]:
+            theory = beck_load(cantilever(n, frame))
+            measured = onset(lambda p, n=n, frame=frame: grows(
+                lambda: pressed(n, frame, p, True, 6 // n + 1)), 15.0, 60.0, 31)
+            finding.rows.append(Row(f"{frame} frame, {n} bodies", theory, measured, 0.01))
+            found.append(measured)
+        finding.curves[f"{frame} frame"] = COUNTS[1:], found
+    finding.curves["beam"] = COUNTS[1:], [20.0509536] * 3
+    return finding
