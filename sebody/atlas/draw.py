@@ -6,6 +6,7 @@ from .finding import Finding
 
 COLORS = ("#c8452d", "#3c6fb6", "#2a7f62", "#b58a1b", "#8a4fa3", "#1f2a44", "#9aa5b8")
 COLUMNS = 3
+MOST_TICKS = 7          # that are written one by one
 
 
 def draw(findings: list[Finding], path: str | Path) -> None:
@@ -24,6 +25,10 @@ def draw(findings: list[Finding], path: str | Path) -> None:
                       linewidth=1.0)
         for axis in finding.logarithmic:
             getattr(axes, f"set_{axis}scale")("log")
+        points = max((x for x, _ in finding.curves.values()), key=len)
+        if "x" in finding.logarithmic and len(points) < MOST_TICKS:
+            axes.set_xticks(points, [f"{x:g}" for x in points], minor=False)
+            axes.minorticks_off()
         axes.set_title(finding.title, loc="left", fontsize=10)
         axes.set_xlabel(finding.xlabel, fontsize=8)
         axes.set_ylabel(finding.ylabel, fontsize=8)

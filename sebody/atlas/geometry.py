@@ -162,13 +162,17 @@ def negative_weights() -> Finding:
         "Nodes at 1/4 and 1/2 of a beam give the weights 0 and 1, at 0 and 1/4 the weights -1 and "
         "2: the frame is extrapolated, and one end turns twice as far against it as the ends "
         "against each other. Energy is kept to second order as with any weights.",
-        "Uses them; the refusal of half a turn comes the earlier.",
+        "Uses them; half a turn is refused at half the relative rotation.",
         "step [s]", "drift of energy, relative", logarithmic="xy")
     model = Model()
     _beam(model, 10.0, 0, 1)
     weights = model.bodies["beam"].alpha
     finding.rows += [Row("weight of the first node", -1.0, weights[0], 1e-9),
                      Row("weight of the second node", 2.0, weights[1], 1e-9)]
+    angles = np.arange(70.0, 100.0, 1.0)
+    refused = [_status(model, angle) != 0 for angle in angles]
+    finding.rows.append(Row("first refused relative rotation [deg]", LIMIT / 2,
+                            angles[int(np.argmax(refused))], 1.0 / (LIMIT / 2)))
     steps = (0.02, 0.01, 0.005, 0.0025)
     drifts = [_tumbling(h) for h in steps]
     finding.curves["measured"] = steps, drifts
