@@ -138,9 +138,10 @@ def sum_forces(system, state, residual):
 
 @njit(cache=True, error_model="numpy")
 def take_rates(system, state):
-    """Residuals of the constraints' rates in place of those of the constraints, kept in `gaps`.
+    """Residuals of the constraints' rates in place of those of the constraints.
 
-    Rates are divided by their derivative by an increment: the matrix stays as it is.
+    Rates are divided by their derivative by an increment: the matrix stays as it is. In `gaps` is
+    what the correction of the rates will leave of the constraints.
     """
     status = run_kernels(VELOCITY, system.first_joint[0], system.address.size, system, state)
     n, residual = system.diagonal.size, state.residual
@@ -151,6 +152,8 @@ def take_rates(system, state):
         unknown = system.g_unknown[k]
         if system.is_multiplier[unknown] > 0.0:
             residual[unknown] += state.g[k] / state.coefficients[1]
+    for i in range(n):
+        state.gaps[i] -= residual[i] * system.is_multiplier[i]
     return status
 
 

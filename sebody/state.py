@@ -47,7 +47,7 @@ class State(Arrays):
     residual: NDArray       # in body axes
     forces: NDArray         # the same, of the last matrix and in global axes, for links
     correction: NDArray
-    gaps: NDArray           # residuals of the constraints, where `residual` has those of rates
+    gaps: NDArray           # of the constraints, where `residual` has those of their rates
     shift: NDArray          # correction of positions that velocities do not follow
     expansion: NDArray      # scratch of links
     matrix: NDArray         # entries by columns or in blocks, there its factors; in body axes

@@ -53,13 +53,14 @@ def accurate(system, state, scheme):
         control[HELD] = 0
         control[REJECTED] += 1
         return False
-    same = (h / clock[CHOSEN]) ** 3     # less than one before a corner
-    largest = max(error / max(same, 1e-3), MEMORY * clock[LARGEST_ERROR])
+    same = h / clock[CHOSEN]            # less than one before a corner
+    largest = max(error / max(same * same * same, 1e-3), MEMORY * clock[LARGEST_ERROR])
     control[HELD] += 1
-    factor = min(LONGEST, (AIM / max(largest, 1e-300)) ** (1.0 / 3.0))
-    if factor >= (GAIN if control[HELD] >= PATIENCE else LONGEST):
+    gain = GAIN if control[HELD] >= PATIENCE else LONGEST
+    if largest * gain * gain * gain <= AIM:
+        factor = min(LONGEST, (AIM / max(largest, 1e-300)) ** (1.0 / 3.0))
         clock[CHOSEN] *= factor
-        largest *= factor ** 3
+        largest *= factor * factor * factor
         control[HELD] = 0
     clock[LARGEST_ERROR] = largest
     return True
