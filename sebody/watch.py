@@ -4,7 +4,7 @@ Checked on few of the recorded states, after the compiled loop: it costs the loo
 """
 
 import warnings
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from .model import Superelement
 
 LINEAR = 0.3            # rad, local rotation up to which stiffness is linear, see README
-SAMPLES = 100           # states of a stretch of a run that are looked at
+STATES = 3000           # of bodies that are looked at in a stretch of a run,
+FEWEST, MOST = 10, 200  # rows of them
 FLAT = 1e-3             # smallest to largest spread of nodes that a frame can live on
 
 
@@ -28,7 +29,7 @@ class Watch:
     def __init__(self) -> None:
         self.messages: list[str] = []
         self._said: set[str] = set()
-        self._limits: dict[tuple, float] = {}
+        self._groups: list[Group] | None = None
 
     def say(self, key: str, message: str) -> None:
         """Warn, unless the same was said before."""
@@ -54,36 +55,62 @@ class Watch:
 
     def look(self, run: "Simulation", rows: NDArray) -> None:
         """Compare recorded states with the limits of every body."""
-        if not len(rows) or not run.model.bodies:
+        if not len(rows):
             return
-        rows = rows[::max(1, len(rows) // SAMPLES)]
+        if self._groups is None:
+            self._groups = _grouped(run)
+        most = min(max(FEWEST, STATES // max(len(run.model.bodies), 1)), MOST)
+        rows = rows[::-(-len(rows) // most)]
         parts = recorded_parts(run.numbering.total, len(run.numbering.rotations),
                                len(run.model.bodies), len(run.numbering.histories))
-        for k, (name, body) in enumerate(run.model.bodies.items()):
-            frames = rows[:, parts["frames"]].reshape(len(rows), -1, 9)[:, k].reshape(-1, 3, 3)
-            turned, spins = _motion(run, rows, parts, body, frames)
-            if turned > LINEAR and f"turn {name}" not in self._said:
-                self.say(f"turn {name}", f"local rotation {turned:.2g} rad of body {name!r} "
+        for group in self._groups:
+            turned, spins = _motion(run.model.planar, group, rows, parts)
+            for k in np.flatnonzero(turned > LINEAR):
+                name = group.bodies[k].name
+                self.say(f"turn {name}", f"local rotation {turned[k]:.2g} rad of body {name!r} "
                          f"exceeds the linear range, {LINEAR} rad: divide it")
-            if f"spin {name}" not in self._said:
-                self._watch_spin(name, body, spins)
+            speeds = np.linalg.norm(spins, axis=2)
+            for k in np.flatnonzero(speeds.max(axis=0) > group.least):
+                row = int(np.argmax(speeds[:, k]))
+                self._compare(group.bodies[k], spins[row, k], speeds[row, k])
 
-    def _watch_spin(self, name: str, body: "Superelement", spins: NDArray) -> None:
-        speed = np.linalg.norm(spins, axis=1)
-        fastest = int(np.argmax(speed))
-        if speed[fastest] > self._least(name, body):
-            limit = spin_limit(body, spins[fastest] / speed[fastest])
-            if speed[fastest] > limit:
-                self.say(f"spin {name}", f"spin {speed[fastest]:.3g} rad/s is above the limit "
-                         f"{limit:.3g} of body {name!r}, whose stiffness does not grow with it: "
-                         "divide it in two")
+    def _compare(self, body: "Superelement", spin: NDArray, speed: float) -> None:
+        if f"spin {body.name}" in self._said:
+            return
+        limit = spin_limit(body, spin / speed)
+        if speed > limit:
+            self.say(f"spin {body.name}", f"spin {speed:.3g} rad/s is above the limit {limit:.3g} "
+                     f"of body {body.name!r}, whose stiffness does not grow with it: divide it in "
+                     "two")
 
-    def _least(self, name: str, body: "Superelement") -> float:
-        """A lower bound of the limit for any axis: stiffness against all inertia."""
-        key = id(body.body), body.frame
-        if key not in self._limits:
-            self._limits[key] = spin_limit(body, None)
-        return self._limits[key]
+
+class Group(NamedTuple):
+    """Bodies with the same number of moving rotations, m each."""
+
+    bodies: list["Superelement"]
+    frames: NDArray         # (b,) which frame is theirs
+    places: NDArray         # (b, m) first coordinates of the rotations
+    rotations: NDArray      # (b, m) which matrices, in space
+    weights: NDArray        # (b, m)
+    least: NDArray          # (b,) lower bounds of the limits of spin
+
+
+def _grouped(run: "Simulation") -> list[Group]:
+    found: dict[int, list] = {}
+    limits: dict[tuple, float] = {}
+    numbering = run.numbering
+    for k, body in enumerate(run.model.bodies.values()):
+        parts = [(numbering.triplets[id(t)], numbering.rotations.get(id(t), 0), weight)
+                 for t, weight in zip(body.rotations, body.alpha_r, strict=True)
+                 if id(t) in numbering.triplets]
+        key = id(body.body), body.frame, tuple(body.alpha_r)
+        if key not in limits:
+            limits[key] = spin_limit(body, None)
+        if parts:
+            found.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True),
+                                                     limits[key]))
+    return [Group(list(bodies), *map(np.array, columns))
+            for bodies, *columns in (zip(*rows, strict=True) for rows in found.values())]
 
 
 def spin_limit(body: "Superelement", axis: NDArray | None) -> float:
@@ -145,29 +172,20 @@ def _spread(body: "Superelement") -> float:
     return float(extents[1] / extents[0]) if len(extents) > 1 and extents[0] > 0 else 0.0
 
 
-def _motion(run: "Simulation", rows: NDArray, parts: dict, body: "Superelement",
-            frames: NDArray) -> tuple[float, NDArray]:
-    """Largest local rotation, and the spin of the frame in its own axes, (n, 3) or (n, 1)."""
-    q, v = rows[:, parts["q"]], rows[:, parts["v"]]
-    numbering = run.numbering
-    triplets = [t for t in body.rotations if id(t) in numbering.triplets]
-    if not triplets:
-        return 0.0, np.zeros((len(rows), 1))
-    weights = dict(zip(map(id, body.rotations), body.alpha_r, strict=True))
-    turned, spins = 0.0, 0.0
-    for triplet in triplets:
-        at = numbering.triplets[id(triplet)]
-        if run.model.planar:
-            frame = np.arctan2(frames[:, 1, 0], frames[:, 0, 0])
-            local = np.abs(np.angle(np.exp(1j * (q[:, at] - frame))))
-            spins = spins + weights[id(triplet)] * v[:, at:at + 1]
-        else:
-            k = numbering.rotations[id(triplet)]
-            R = rows[:, parts["R"]][:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
-            relative = np.einsum("nji,njk->nik", frames, R)
-            trace = np.clip((np.trace(relative, axis1=1, axis2=2) - 1) / 2, -1.0, 1.0)
-            local = np.arccos(trace)
-            spins = spins + weights[id(triplet)] * np.einsum("nij,nj->ni", relative,
-                                                             v[:, at:at + 3])
-        turned = max(turned, float(local.max()))
-    return turned, spins
+def _motion(planar: bool, group: Group, rows: NDArray, parts: dict) -> tuple[NDArray, NDArray]:
+    """Largest local rotations, (b,), and spins of the frames in their own axes, (n, b, 3 or 1)."""
+    n, shape = len(rows), group.places.shape
+    frames = rows[:, parts["frames"]].reshape(n, -1, 3, 3)[:, group.frames]
+    v = rows[:, parts["v"]]
+    if planar:
+        angles = np.arctan2(frames[..., 1, 0], frames[..., 0, 0])
+        turns = rows[:, parts["q"]][:, group.places] - angles[..., None]
+        local = np.abs(np.angle(np.exp(1j * turns)))
+        return local.max(axis=(0, 2)), (group.weights * v[:, group.places]).sum(axis=2)[..., None]
+    R = rows[:, parts["R"]].reshape(n, -1, 3, 3)[:, group.rotations]
+    relative = np.swapaxes(frames, 2, 3)[:, :, None] @ R
+    cosines = (np.trace(relative, axis1=3, axis2=4) - 1.0) / 2.0
+    local = np.arccos(np.clip(cosines, -1.0, 1.0))
+    rates = v[:, group.places[..., None] + np.arange(3)].reshape(n, *shape, 3, 1)
+    spins = (group.weights[..., None] * (relative @ rates)[..., 0]).sum(axis=2)
+    return local.max(axis=(0, 2)), spins

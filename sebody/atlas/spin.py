@@ -1,5 +1,7 @@
 """High spin and high loads: where linear bodies are too soft, or never buckle."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..errors import SimulationError
@@ -27,15 +29,10 @@ def spurious_divergence() -> Finding:
         "number of bodies.",
         "Warns once when the spin of a body exceeds its own limit, and says to divide it.",
         "bodies", "spin of divergence, W sqrt(rho A L^4 / EI)", logarithmic="xy")
+    _by_bodies(finding, lambda n, frame: divergence(cantilever(n, frame), option_b=True),
+               lambda n, frame, theory: onset(lambda eta: grows(
+                   lambda: spinning(n, frame, eta), eta), 0.7 * theory, 1.3 * theory, 7), 2e-3)
     for frame in ("node", "mean"):
-        found = []
-        for n in COUNTS:
-            theory = divergence(cantilever(n, frame), option_b=True)
-            measured = onset(lambda eta, n=n, frame=frame: grows(
-                lambda: spinning(n, frame, eta), eta), 0.7 * theory, 1.3 * theory, 7)
-            finding.rows.append(Row(f"{frame} frame, {n} bodies", theory, measured, 2e-3))
-            found.append(measured)
-        finding.curves[f"{frame} frame, measured"] = COUNTS, found
         finding.curves[f"{frame} frame, exact inertia"] = COUNTS, [
             divergence(cantilever(n, frame)) for n in COUNTS]
     finding.curves["chord frame, exact inertia"] = COUNTS, [
@@ -87,15 +84,9 @@ def buckling() -> Finding:
         "body and the frame at its root, at 3 EI/L^2 with a chord, and at pi^2/4 in the limit.",
         "Finds no stable equilibrium beyond the load and says so.",
         "bodies", "load / (EI/L^2)", logarithmic="x")
-    for frame in ("node", "mean"):
-        found = []
-        for n in COUNTS:
-            theory = euler_load(cantilever(n, frame))
-            measured = onset(lambda p, n=n, frame=frame: grows(
-                lambda: pressed(n, frame, p, False, 0)), 1.5, 6.0, 19)
-            finding.rows.append(Row(f"{frame} frame, {n} bodies", theory, measured, 2e-3))
-            found.append(measured)
-        finding.curves[f"{frame} frame"] = COUNTS, found
+    _by_bodies(finding, lambda n, frame: euler_load(cantilever(n, frame)),
+               lambda n, frame, _: onset(lambda p: grows(
+                   lambda: pressed(n, frame, p, False, 0)), 1.5, 6.0, 19), 2e-3)
     finding.curves["beam"] = COUNTS, [np.pi**2 / 4] * len(COUNTS)
     return finding
 
@@ -108,14 +99,20 @@ def flutter() -> Finding:
         "(chord) to 39 (node); the load converges from above with the square of their number.",
         "Eigenvalues of the linearisation show it; a simulation flutters, without a warning.",
         "bodies", "load / (EI/L^2)", logarithmic="x")
+    _by_bodies(finding, lambda n, frame: beck_load(cantilever(n, frame)),
+               lambda n, frame, _: onset(lambda p: grows(
+                   lambda: pressed(n, frame, p, True, 6 // n + 1)), 15.0, 80.0, 27), 0.01)
+    finding.curves["beam"] = COUNTS, [20.0509536] * len(COUNTS)
+    return finding
+
+
+def _by_bodies(finding: Finding, theory: Callable[[int, str], float],
+               measured: Callable[[int, str, float], float], within: float) -> None:
+    """A row for every frame and number of bodies, a curve for every frame."""
     for frame in ("node", "mean"):
         found = []
         for n in COUNTS:
-            theory = beck_load(cantilever(n, frame))
-            measured = onset(lambda p, n=n, frame=frame: grows(
-                lambda: pressed(n, frame, p, True, 6 // n + 1)), 15.0, 80.0, 27)
-            finding.rows.append(Row(f"{frame} frame, {n} bodies", theory, measured, 0.01))
-            found.append(measured)
-        finding.curves[f"{frame} frame"] = COUNTS, found
-    finding.curves["beam"] = COUNTS, [20.0509536] * len(COUNTS)
-    return finding
+            expected = theory(n, frame)
+            found.append(measured(n, frame, expected))
+            finding.rows.append(Row(f"{frame} frame, bodies: {n}", expected, found[-1], within))
+        finding.curves[f"{frame} frame, measured"] = COUNTS, found
