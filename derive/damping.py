@@ -8,22 +8,21 @@ options is another thing: velocities, not rates of deformation.)
 from .frames import origin_stage
 from .kinematics import elastic_rotation_variation, local_displacement
 from .quantities import Quantities
-from .stages import Linearizer, Product, Stage, Step, Text, When
+from .stages import Damping, Linearizer, Product, Stage, Step, Text
 
-CONDITION = "damped"
 FRICTION = Product("damping force, friction = Cbar eta", "C", "eta", "friction")
 
 
-def damping(q: Quantities) -> When:
+def damping(q: Quantities) -> Damping:
     """Rates of deformation and the damping forces, added to the elastic ones."""
-    return When("structural damping", CONDITION, (*_rates(q), FRICTION, _added("")))
+    return Damping("structural damping", (*_rates(q), FRICTION, _added("")))
 
 
-def linearized_damping(q: Quantities, chain: Linearizer) -> When:
+def linearized_damping(q: Quantities, chain: Linearizer) -> Damping:
     """Their differentials; velocities must have been moved before."""
     steps: list[Step] = [chain.stage(step) for step in _rates(q)]
-    return When("differential: structural damping", CONDITION,
-                (*steps, FRICTION.differential(), _added("d")))
+    return Damping("differential: structural damping",
+                   (*steps, FRICTION.differential(), _added("d")))
 
 
 def _rates(q: Quantities) -> tuple[Stage, ...]:

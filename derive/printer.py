@@ -10,6 +10,7 @@ from sympy.printing.pycode import PythonCodePrinter
 
 from .layouts import Layout
 from .stages import (
+    Damping,
     Product,
     Quantity,
     Solve,
@@ -17,7 +18,6 @@ from .stages import (
     Stage,
     Step,
     Text,
-    When,
     name_functions,
     solve_matrix,
 )
@@ -69,7 +69,7 @@ class StepPrinter:
         out = []
         for step in steps:
             text = {Stage: self._stage, Product: self._product, Solve: self._solve,
-                    Text: self._text, When: self._when}[type(step)](step)
+                    Text: self._text, Damping: self._damping}[type(step)](step)
             if text:
                 out += [f"# {step.title}", *text]
         return out
@@ -190,12 +190,8 @@ class StepPrinter:
                                               self.layout.rotations)
         return self._wrap(step.over, list(step.lines))
 
-    def _when(self, step: When) -> list[str]:
-        """A branch, whose arithmetic is not counted: most bodies do not take it."""
-        counted = self.operations, self.products
-        lines = [f"if {step.condition}:", *_indent(self.lines(step.steps))]
-        self.operations, self.products = counted
-        return lines
+    def _damping(self, step: Damping) -> list[str]:
+        return self.lines(step.steps)
 
     def _count(self, over: str, expressions: list) -> None:
         times = {"element": 1, "mode": 0, "position": self.layout.positions,

@@ -132,15 +132,14 @@ class Text(NamedTuple):
     operations: int = 0         # arithmetic of one pass, for the operation count
 
 
-class When(NamedTuple):
-    """Steps that are taken only where a condition of the kernel holds."""
+class Damping(NamedTuple):
+    """Steps that only layouts with structural damping have."""
 
     title: str
-    condition: str
     steps: tuple
 
 
-Step = Stage | Product | Solve | Text | When
+Step = Stage | Product | Solve | Text | Damping
 
 
 class Linearizer:

@@ -24,7 +24,7 @@ from .kinematics import (
 )
 from .layouts import Layout, LayoutError
 from .quantities import Quantities
-from .stages import Linearizer, Product, Space, Stage, Step, Text, When, along_own, cross
+from .stages import Damping, Linearizer, Product, Space, Stage, Step, Text, along_own, cross
 from .variation import check_same, differential
 
 
@@ -76,8 +76,8 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
 def _kept(part, layout: Layout) -> tuple[Step, ...]:
     """Steps without those over rotations or of damping, where a layout has none."""
     kept = [s for s in part if (layout.rotations or getattr(s, "over", "") != "rotation")
-            and (layout.damped or not isinstance(s, When))]
-    return tuple(s._replace(steps=_kept(s.steps, layout)) if isinstance(s, When) else s
+            and (layout.damped or not isinstance(s, Damping))]
+    return tuple(s._replace(steps=_kept(s.steps, layout)) if isinstance(s, Damping) else s
                  for s in kept)
 
 

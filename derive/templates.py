@@ -89,17 +89,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
 '''
 
 DAMPING = '''
-damped = masses[1] != 0.0
-C = at(masses, 2)
+C = at(masses, 1)
 '''
 
 FRICTION = '''
-if damped:
-    lost = 0.0
-    for i in range(n):
-        strain -= 0.5*y[i]*friction[i]
-        lost -= eta[i]*friction[i]
-    energies[POWERS + index[first + 2]] = lost
+lost = 0.0
+for i in range(n):
+    strain -= 0.5*y[i]*friction[i]
+    lost -= eta[i]*friction[i]
+energies[POWERS + index[first + 2]] = lost
 '''
 
 # position rows and columns of a matrix are in the axes of the frame, where it hardly changes

@@ -27,8 +27,8 @@ DAMPED = True        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 35
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (1070, 3),
-              "column": (2047, 3)}
+OPERATIONS = {"residual": (1272, 4),
+              "column": (2563, 4)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_broadcast": "f8dde8dac8a7",
@@ -110,8 +110,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mass_rows = at(mass_columns, 3*padded(n))
         mc = at(mass_rows, n*padded(3))
         masses = at(mc, 3)
-        damped = masses[1] != 0.0
-        C = at(masses, 2)
+        C = at(masses, 1)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -245,66 +244,65 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for i in range(n):
             s[i] -= weight[i]
         # structural damping
-        if damped:
-            # origin of the frame, (14)
-            v0_x = v0_y = v0_z = 0.0
-            for i in range(N_POSITIONS):
-                i3 = 3*i
-                vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                alpha = alphas[i]
-                v0_x += alpha*vs_x
-                v0_y += alpha*vs_y
-                v0_z += alpha*vs_z
-            # rates of the elastic displacements
-            for i in range(N_POSITIONS):
-                i3 = 3*i
-                vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                t17 = X_y + u_y
-                t18 = X_z + u_z
-                t19 = X_x + u_x
-                eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
-                eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
-                eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
-            # rates of the elastic rotations
-            for j in range(N_ROTATIONS):
-                j3 = ROTATIONS + 3*j
-                psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-                Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-                e0 = e0s[j]
-                t20 = Om0_y*psi_z
-                t21 = Om_y*psi_z
-                t22 = Om0_x*psi_y
-                t23 = Om0_y*psi_x - t22
-                t24 = e0*psi_y
-                t25 = Om_x*psi_z
-                t26 = Om_z*psi_x
-                t27 = t25 - t26
-                t28 = e0*psi_z
-                t29 = Om_x*psi_y
-                t30 = Om_y*psi_x - t29
-                t31 = Om0_x*psi_z
-                t32 = Om0_z*psi_x
-                t33 = t31 - t32
-                t34 = e0*psi_x
-                t35 = Om_z*psi_y - t21
-                t36 = Om0_z*psi_y - t20
-                eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                    e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-                eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                    t30*t34 + (0.5)*t31 - 0.5*t32)
-                eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27
-                    + e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
-            # rates of the internal modes
-            for k in range(MODES, n):
-                vm = ve[k]
-                eta[k] = vm
-            # damping force, friction = Cbar eta
-            columns_times(C, eta, friction, n, n)
-            # forces conjugate to y, damping included
-            for i in range(n):
-                s[i] += friction[i]
+        # origin of the frame, (14)
+        v0_x = v0_y = v0_z = 0.0
+        for i in range(N_POSITIONS):
+            i3 = 3*i
+            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+            alpha = alphas[i]
+            v0_x += alpha*vs_x
+            v0_y += alpha*vs_y
+            v0_z += alpha*vs_z
+        # rates of the elastic displacements
+        for i in range(N_POSITIONS):
+            i3 = 3*i
+            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+            X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
+            u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
+            t17 = X_y + u_y
+            t18 = X_z + u_z
+            t19 = X_x + u_x
+            eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
+            eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
+            eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
+        # rates of the elastic rotations
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + 3*j
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
+            e0 = e0s[j]
+            t20 = Om0_y*psi_z
+            t21 = Om_y*psi_z
+            t22 = Om0_x*psi_y
+            t23 = Om0_y*psi_x - t22
+            t24 = e0*psi_y
+            t25 = Om_x*psi_z
+            t26 = Om_z*psi_x
+            t27 = t25 - t26
+            t28 = e0*psi_z
+            t29 = Om_x*psi_y
+            t30 = Om_y*psi_x - t29
+            t31 = Om0_x*psi_z
+            t32 = Om0_z*psi_x
+            t33 = t31 - t32
+            t34 = e0*psi_x
+            t35 = Om_z*psi_y - t21
+            t36 = Om0_z*psi_y - t20
+            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
+                e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
+            eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
+                t30*t34 + (0.5)*t31 - 0.5*t32)
+            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27 +
+                e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+        # rates of the internal modes
+        for k in range(MODES, n):
+            vm = ve[k]
+            eta[k] = vm
+        # damping force, friction = Cbar eta
+        columns_times(C, eta, friction, n, n)
+        # forces conjugate to y, damping included
+        for i in range(n):
+            s[i] += friction[i]
         # momentum, p = Mbar ydot
         columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
@@ -425,12 +423,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
-            if damped:
-                lost = 0.0
-                for i in range(n):
-                    strain -= 0.5*y[i]*friction[i]
-                    lost -= eta[i]*friction[i]
-                energies[POWERS + index[first + 2]] = lost
+            lost = 0.0
+            for i in range(n):
+                strain -= 0.5*y[i]*friction[i]
+                lost -= eta[i]*friction[i]
+            energies[POWERS + index[first + 2]] = lost
             # energies
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
@@ -689,104 +686,101 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: structural damping
-                if damped:
-                    # differential: origin of the frame, (14)
-                    dv0_x = dv0_y = dv0_z = 0.0
-                    for i in range(N_POSITIONS):
-                        i3 = 3*i
-                        alpha = alphas[i]
-                        dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                        dv0_x += alpha*dvs_x
-                        dv0_y += alpha*dvs_y
-                        dv0_z += alpha*dvs_z
-                    # differential: rates of the elastic displacements
-                    for i in range(N_POSITIONS):
-                        i3 = 3*i
-                        X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                        u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                        du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                        dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                        t119 = X_y + u_y
-                        t120 = X_z + u_z
-                        t121 = X_x + u_x
-                        deta[i3] = (-Om0_y*du_z + Om0_z*du_y - dOm0_y*t120 + dOm0_z*t119 - dv0_x +
-                            dvs_x)
-                        deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t120 - dOm0_z*t121 -
-                            dv0_y + dvs_y)
-                        deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t119 + dOm0_y*t121 -
-                            dv0_z + dvs_z)
-                    # differential: rates of the elastic rotations
-                    for j in range(N_ROTATIONS):
-                        j3 = ROTATIONS + 3*j
-                        psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-                        Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-                        dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
-                        dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                        e0 = e0s[j]
-                        e1 = e1s[j]
-                        t122 = Om0_y*dpsi_z
-                        t123 = Om_y*dpsi_z
-                        t124 = dOm0_y*psi_z
-                        t125 = dOm_y*psi_z
-                        t126 = -Om0_x*psi_y + Om0_y*psi_x
-                        t127 = dpsi_y*e0
-                        t128 = Om_x*psi_z - Om_z*psi_x
-                        t129 = dpsi_z*e0
-                        t130 = -Om_x*psi_y + Om_y*psi_x
-                        t131 = Om0_x*psi_z - Om0_z*psi_x
-                        t132 = Om0_x*dpsi_y
-                        t133 = dOm0_x*psi_y
-                        t134 = Om0_y*dpsi_x + dOm0_y*psi_x - t132 - t133
-                        t135 = e0*psi_y
-                        t136 = Om_x*dpsi_z
-                        t137 = dOm_x*psi_z
-                        t138 = Om_z*dpsi_x
-                        t139 = dOm_z*psi_x
-                        t140 = t136 + t137 - t138 - t139
-                        t141 = e0*psi_z
-                        t142 = Om_x*dpsi_y
-                        t143 = dOm_x*psi_y
-                        t144 = Om_y*dpsi_x + dOm_y*psi_x - t142 - t143
-                        t145 = Om0_x*dpsi_z
-                        t146 = dOm0_x*psi_z
-                        t147 = Om0_z*dpsi_x
-                        t148 = dOm0_z*psi_x
-                        t149 = t145 + t146 - t147 - t148
-                        t150 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                        t151 = e1*t150
-                        t152 = psi_y*t151
-                        t153 = psi_z*t151
-                        t154 = dpsi_x*e0
-                        t155 = -Om_y*psi_z + Om_z*psi_y
-                        t156 = -Om0_y*psi_z + Om0_z*psi_y
-                        t157 = e0*psi_x
-                        t158 = Om_z*dpsi_y + dOm_z*psi_y - t123 - t125
-                        t159 = Om0_z*dpsi_y + dOm0_z*psi_y - t122 - t124
-                        t160 = psi_x*t151
-                        deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                            (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t130 +
-                            dpsi_z*e0*t131 + e0*psi_y*t144 + e0*psi_z*t149 + e1*psi_y*t130*t150 +
-                            e1*psi_z*t131*t150 - 0.5*t122 - 0.5*t123 - 0.5*t124 - 0.5*t125 -
-                            t126*t127 - t126*t152 - t128*t129 - t128*t153 - t134*t135 - t140*t141)
-                        deta[j3 + 1] = (-dOm0_y + dOm_y + t126*t154 + t126*t160 + t129*t155 -
-                            t129*t156 - t130*t154 - t130*t160 + t134*t157 + (0.5)*t136 +
-                            (0.5)*t137 - 0.5*t138 - 0.5*t139 + t141*t158 - t141*t159 - t144*t157 +
-                            (0.5)*t145 + (0.5)*t146 - 0.5*t147 - 0.5*t148 + t153*t155 - t153*t156)
-                        deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x +
-                            (0.5)*dOm0_y*psi_x - dOm0_z + (0.5)*dOm_y*psi_x + dOm_z +
-                            dpsi_x*e0*t128 + dpsi_y*e0*t156 + e0*psi_x*t140 + e0*psi_y*t159 +
-                            e1*psi_x*t128*t150 + e1*psi_y*t150*t156 - t127*t155 - t131*t154 -
-                            t131*t160 - 0.5*t132 - 0.5*t133 - t135*t158 - 0.5*t142 - 0.5*t143 -
-                            t149*t157 - t152*t155)
-                    # differential: rates of the internal modes
-                    for k in range(MODES, n):
-                        dvm = dve[k]
-                        deta[k] = dvm
-                    # differential: damping force, friction = Cbar eta
-                    columns_times(C, deta, dfriction, n, n)
-                    # forces conjugate to y, damping included
-                    for i in range(n):
-                        ds[i] += dfriction[i]
+                # differential: origin of the frame, (14)
+                dv0_x = dv0_y = dv0_z = 0.0
+                for i in range(N_POSITIONS):
+                    i3 = 3*i
+                    alpha = alphas[i]
+                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
+                    dv0_x += alpha*dvs_x
+                    dv0_y += alpha*dvs_y
+                    dv0_z += alpha*dvs_z
+                # differential: rates of the elastic displacements
+                for i in range(N_POSITIONS):
+                    i3 = 3*i
+                    X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
+                    u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
+                    du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
+                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
+                    t119 = X_y + u_y
+                    t120 = X_z + u_z
+                    t121 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t120 + dOm0_z*t119 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t120 - dOm0_z*t121 - dv0_y +
+                        dvs_y)
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t119 + dOm0_y*t121 - dv0_z +
+                        dvs_z)
+                # differential: rates of the elastic rotations
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + 3*j
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                    Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
+                    dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
+                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
+                    e0 = e0s[j]
+                    e1 = e1s[j]
+                    t122 = Om0_y*dpsi_z
+                    t123 = Om_y*dpsi_z
+                    t124 = dOm0_y*psi_z
+                    t125 = dOm_y*psi_z
+                    t126 = -Om0_x*psi_y + Om0_y*psi_x
+                    t127 = dpsi_y*e0
+                    t128 = Om_x*psi_z - Om_z*psi_x
+                    t129 = dpsi_z*e0
+                    t130 = -Om_x*psi_y + Om_y*psi_x
+                    t131 = Om0_x*psi_z - Om0_z*psi_x
+                    t132 = Om0_x*dpsi_y
+                    t133 = dOm0_x*psi_y
+                    t134 = Om0_y*dpsi_x + dOm0_y*psi_x - t132 - t133
+                    t135 = e0*psi_y
+                    t136 = Om_x*dpsi_z
+                    t137 = dOm_x*psi_z
+                    t138 = Om_z*dpsi_x
+                    t139 = dOm_z*psi_x
+                    t140 = t136 + t137 - t138 - t139
+                    t141 = e0*psi_z
+                    t142 = Om_x*dpsi_y
+                    t143 = dOm_x*psi_y
+                    t144 = Om_y*dpsi_x + dOm_y*psi_x - t142 - t143
+                    t145 = Om0_x*dpsi_z
+                    t146 = dOm0_x*psi_z
+                    t147 = Om0_z*dpsi_x
+                    t148 = dOm0_z*psi_x
+                    t149 = t145 + t146 - t147 - t148
+                    t150 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t151 = e1*t150
+                    t152 = psi_y*t151
+                    t153 = psi_z*t151
+                    t154 = dpsi_x*e0
+                    t155 = -Om_y*psi_z + Om_z*psi_y
+                    t156 = -Om0_y*psi_z + Om0_z*psi_y
+                    t157 = e0*psi_x
+                    t158 = Om_z*dpsi_y + dOm_z*psi_y - t123 - t125
+                    t159 = Om0_z*dpsi_y + dOm0_z*psi_y - t122 - t124
+                    t160 = psi_x*t151
+                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t130 +
+                        dpsi_z*e0*t131 + e0*psi_y*t144 + e0*psi_z*t149 + e1*psi_y*t130*t150 +
+                        e1*psi_z*t131*t150 - 0.5*t122 - 0.5*t123 - 0.5*t124 - 0.5*t125 - t126*t127
+                        - t126*t152 - t128*t129 - t128*t153 - t134*t135 - t140*t141)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t126*t154 + t126*t160 + t129*t155 -
+                        t129*t156 - t130*t154 - t130*t160 + t134*t157 + (0.5)*t136 + (0.5)*t137 -
+                        0.5*t138 - 0.5*t139 + t141*t158 - t141*t159 - t144*t157 + (0.5)*t145 +
+                        (0.5)*t146 - 0.5*t147 - 0.5*t148 + t153*t155 - t153*t156)
+                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t128 + dpsi_y*e0*t156 +
+                        e0*psi_x*t140 + e0*psi_y*t159 + e1*psi_x*t128*t150 + e1*psi_y*t150*t156 -
+                        t127*t155 - t131*t154 - t131*t160 - 0.5*t132 - 0.5*t133 - t135*t158 -
+                        0.5*t142 - 0.5*t143 - t149*t157 - t152*t155)
+                # differential: rates of the internal modes
+                for k in range(MODES, n):
+                    dvm = dve[k]
+                    deta[k] = dvm
+                # differential: damping force, friction = Cbar eta
+                columns_times(C, deta, dfriction, n, n)
+                # forces conjugate to y, damping included
+                for i in range(n):
+                    ds[i] += dfriction[i]
                 # differential: momentum, p = Mbar ydot
                 columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot

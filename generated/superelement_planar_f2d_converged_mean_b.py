@@ -26,8 +26,8 @@ DAMPED = True        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 33
 # arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (344, 3),
-              "column": (167, 3)}
+OPERATIONS = {"residual": (368, 4),
+              "column": (199, 4)}
 # content of what this file calls: Numba's cache does not see changes in other files
 LEAVES = {
     "_broadcast": "f8dde8dac8a7",
@@ -94,8 +94,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mass_rows = at(mass_columns, 2*padded(n))
         mc = at(mass_rows, n*padded(2))
         masses = at(mc, 2)
-        damped = masses[1] != 0.0
-        C = at(masses, 2)
+        C = at(masses, 1)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -179,37 +178,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for i in range(n):
             s[i] -= weight[i]
         # structural damping
-        if damped:
-            # origin of the frame, (14)
-            v0_x = v0_y = 0.0
-            for i in range(N_POSITIONS):
-                i3 = 2*i
-                vs_x, vs_y = yd[i3], yd[i3 + 1]
-                alpha = alphas[i]
-                v0_x += alpha*vs_x
-                v0_y += alpha*vs_y
-            # rates of the elastic displacements
-            for i in range(N_POSITIONS):
-                i3 = 2*i
-                vs_x, vs_y = yd[i3], yd[i3 + 1]
-                X_x, X_y = X[i3], X[i3 + 1]
-                u_x, u_y = y[i3], y[i3 + 1]
-                eta[i3] = Om0_z*(X_y + u_y) - v0_x + vs_x
-                eta[i3 + 1] = Om0_z*(-X_x - u_x) - v0_y + vs_y
-            # rates of the elastic rotations
-            for j in range(N_ROTATIONS):
-                j3 = ROTATIONS + j
-                Om_z = ve[j3]
-                eta[j3] = -Om0_z + Om_z
-            # rates of the internal modes
-            for k in range(MODES, n):
-                vm = ve[k]
-                eta[k] = vm
-            # damping force, friction = Cbar eta
-            columns_times(C, eta, friction, n, n)
-            # forces conjugate to y, damping included
-            for i in range(n):
-                s[i] += friction[i]
+        # origin of the frame, (14)
+        v0_x = v0_y = 0.0
+        for i in range(N_POSITIONS):
+            i3 = 2*i
+            vs_x, vs_y = yd[i3], yd[i3 + 1]
+            alpha = alphas[i]
+            v0_x += alpha*vs_x
+            v0_y += alpha*vs_y
+        # rates of the elastic displacements
+        for i in range(N_POSITIONS):
+            i3 = 2*i
+            vs_x, vs_y = yd[i3], yd[i3 + 1]
+            X_x, X_y = X[i3], X[i3 + 1]
+            u_x, u_y = y[i3], y[i3 + 1]
+            eta[i3] = Om0_z*(X_y + u_y) - v0_x + vs_x
+            eta[i3 + 1] = Om0_z*(-X_x - u_x) - v0_y + vs_y
+        # rates of the elastic rotations
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + j
+            Om_z = ve[j3]
+            eta[j3] = -Om0_z + Om_z
+        # rates of the internal modes
+        for k in range(MODES, n):
+            vm = ve[k]
+            eta[k] = vm
+        # damping force, friction = Cbar eta
+        columns_times(C, eta, friction, n, n)
+        # forces conjugate to y, damping included
+        for i in range(n):
+            s[i] += friction[i]
         # momentum, p = Mbar ydot
         columns_times(M, yd, p, n, n)
         # inertia force, pd = Mbar yddot
@@ -277,12 +275,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 kinetic += 0.5*yd[i]*p[i]
                 strain += 0.5*y[i]*s[i]
-            if damped:
-                lost = 0.0
-                for i in range(n):
-                    strain -= 0.5*y[i]*friction[i]
-                    lost -= eta[i]*friction[i]
-                energies[POWERS + index[first + 2]] = lost
+            lost = 0.0
+            for i in range(n):
+                strain -= 0.5*y[i]*friction[i]
+                lost -= eta[i]*friction[i]
+            energies[POWERS + index[first + 2]] = lost
             # energies
             gamma_x, gamma_y = gamma[0], gamma[1]
             d_x, d_y = d[0], d[1]
@@ -421,38 +418,37 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dyd[k] = dvm
                     dydd[k] = dam
                 # differential: structural damping
-                if damped:
-                    # differential: origin of the frame, (14)
-                    dv0_x = dv0_y = 0.0
-                    for i in range(N_POSITIONS):
-                        i3 = 2*i
-                        alpha = alphas[i]
-                        dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]
-                        dv0_x += alpha*dvs_x
-                        dv0_y += alpha*dvs_y
-                    # differential: rates of the elastic displacements
-                    for i in range(N_POSITIONS):
-                        i3 = 2*i
-                        X_x, X_y = X[i3], X[i3 + 1]
-                        u_x, u_y = y[i3], y[i3 + 1]
-                        du_x, du_y = dy[i3], dy[i3 + 1]
-                        dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]
-                        deta[i3] = Om0_z*du_y + dOm0_z*(X_y + u_y) - dv0_x + dvs_x
-                        deta[i3 + 1] = -Om0_z*du_x + dOm0_z*(-X_x - u_x) - dv0_y + dvs_y
-                    # differential: rates of the elastic rotations
-                    for j in range(N_ROTATIONS):
-                        j3 = ROTATIONS + j
-                        dOm_z = dve[j3]
-                        deta[j3] = -dOm0_z + dOm_z
-                    # differential: rates of the internal modes
-                    for k in range(MODES, n):
-                        dvm = dve[k]
-                        deta[k] = dvm
-                    # differential: damping force, friction = Cbar eta
-                    columns_times(C, deta, dfriction, n, n)
-                    # forces conjugate to y, damping included
-                    for i in range(n):
-                        ds[i] += dfriction[i]
+                # differential: origin of the frame, (14)
+                dv0_x = dv0_y = 0.0
+                for i in range(N_POSITIONS):
+                    i3 = 2*i
+                    alpha = alphas[i]
+                    dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]
+                    dv0_x += alpha*dvs_x
+                    dv0_y += alpha*dvs_y
+                # differential: rates of the elastic displacements
+                for i in range(N_POSITIONS):
+                    i3 = 2*i
+                    X_x, X_y = X[i3], X[i3 + 1]
+                    u_x, u_y = y[i3], y[i3 + 1]
+                    du_x, du_y = dy[i3], dy[i3 + 1]
+                    dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]
+                    deta[i3] = Om0_z*du_y + dOm0_z*(X_y + u_y) - dv0_x + dvs_x
+                    deta[i3 + 1] = -Om0_z*du_x + dOm0_z*(-X_x - u_x) - dv0_y + dvs_y
+                # differential: rates of the elastic rotations
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + j
+                    dOm_z = dve[j3]
+                    deta[j3] = -dOm0_z + dOm_z
+                # differential: rates of the internal modes
+                for k in range(MODES, n):
+                    dvm = dve[k]
+                    deta[k] = dvm
+                # differential: damping force, friction = Cbar eta
+                columns_times(C, deta, dfriction, n, n)
+                # forces conjugate to y, damping included
+                for i in range(n):
+                    ds[i] += dfriction[i]
                 # differential: momentum, p = Mbar ydot
                 columns_times(M, dyd, dp, n, n)
                 # differential: inertia force, pd = Mbar yddot

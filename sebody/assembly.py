@@ -181,12 +181,8 @@ def _body_constants(body: Superelement) -> NDArray:
     return np.concatenate([body.alpha, fit, body.alpha_r, local.ravel(),
                            padded_columns(reduced.stiffness), padded_columns(reduced.mass),
                            *mass_constants(reduced, body.alpha @ points),
-                           *_damping_constants(reduced.damping)])
-
-
-def _damping_constants(damping: NDArray | None) -> list[NDArray]:
-    """Whether there is any, then the matrix."""
-    return [np.zeros(1)] if damping is None else [np.ones(1), padded_columns(damping)]
+                           *([] if reduced.damping is None else
+                             [padded_columns(reduced.damping)])])
 
 
 def mass_constants(body: ReducedBody, origin: NDArray) -> list[NDArray]:

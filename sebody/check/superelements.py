@@ -70,8 +70,7 @@ def constants_row(alpha, fit, alpha_r, X, S, M, of_translations, moment, mass,
     """Constants of a superelement as its kernel reads them; see `Constants`."""
     return np.concatenate([alpha, fit, alpha_r, X.ravel(), padded_columns(S), padded_columns(M),
                            padded_columns(of_translations), padded_columns(of_translations.T),
-                           moment, [mass], [float(C is not None and C.any())],
-                           padded_columns(np.zeros_like(S) if C is None else C)])
+                           moment, [mass], padded_columns(np.zeros_like(S) if C is None else C)])
 
 
 def without(case: Case, what: str) -> Case:
@@ -152,7 +151,7 @@ def constant_ends(case: Case) -> NDArray:
     module, n, d = case.module, case.n, 2 if case.planar else 3
     npos, matrix = module.N_POSITIONS, n * padded(n)
     return np.cumsum([npos, npos, module.N_ROTATIONS, module.ROTATIONS, matrix, matrix,
-                      d * padded(n), n * padded(d), d, 1, 1, matrix])
+                      d * padded(n), n * padded(d), d, 1, matrix])
 
 
 class Constants:
@@ -205,7 +204,7 @@ def energies(case: Case) -> float:
 def damping_power(case: Case) -> float:
     """Power of the structural damping against its force on the unknowns times their velocity."""
     calm = case._replace(constants=case.constants.copy())
-    calm.constants[constant_ends(case)[9]] = 0.0
+    calm.constants[constant_ends(case)[9]:] = 0.0
     force = evaluate(case, RESIDUAL)[0] - evaluate(calm, RESIDUAL)[0]
     return abs(evaluate(case, ENERGY)[2][POWERS] / (-force @ case.v) - 1)
 
@@ -224,7 +223,7 @@ def damping_of_rigid_motion(case: Case) -> float:
         v[at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ spin
     rigid = case._replace(v=v)
     calm = rigid._replace(constants=case.constants.copy())
-    calm.constants[constant_ends(case)[9]] = 0.0
+    calm.constants[constant_ends(case)[9]:] = 0.0
     general = evaluate(case, RESIDUAL)[0] - evaluate(case._replace(
         constants=calm.constants), RESIDUAL)[0]
     force = evaluate(rigid, RESIDUAL)[0] - evaluate(calm, RESIDUAL)[0]
