@@ -7,6 +7,7 @@ import numpy as np
 from .errors import SimulationError
 from .integrator import Simulation
 from .model import Model
+from .numbering import turning
 from .results import Result
 from .state import Scheme
 from .tolerance import Tolerance
@@ -77,16 +78,11 @@ def difference(one: Result, other: Result, allowed: Tolerance) -> float:
     """Largest root mean square of the difference of two runs on one grid, in what is allowed."""
     system, spatial = one.system, not one.model.planar
     size = np.maximum(system.magnitude, 0.0)
-    turning = np.zeros(len(size), dtype=bool)
-    turns = {node.rotation for node in one.model.nodes.values()} - {None}
-    for triplet in turns:
-        first = one.numbering.triplets.get(id(triplet))
-        if first is not None:
-            turning[first:first + triplet.start.size] = True
+    turns = turning(one.model, one.numbering)
     if spatial:
-        size = np.where(turning, 0.0, size)     # these are in the matrices
+        size = np.where(turns, 0.0, size)       # these are in the matrices
     q = one.recorded("q") - other.recorded("q")
-    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, turning)
+    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, turns)
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
     return float(max(found.max(), (angles / (allowed.relative + allowed.rotation)).max(initial=0)))

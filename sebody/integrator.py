@@ -13,7 +13,7 @@ from .abi import LANES, POWERS, padded
 from .assembly import DENSE_LIMIT, System, build, work_size
 from .errors import InputError, SimulationError
 from .model import Model
-from .numbering import Numbering
+from .numbering import Numbering, turning
 from .results import Result
 from .start import REASONS, Start, acceleration_rates, assembled, start
 from .state import (
@@ -216,10 +216,8 @@ class Simulation:
     def _choose_steps(self, tolerance: Tolerance) -> None:
         """Steps by their error; the first one is short against what accelerations allow."""
         n, state = self.numbering.free, self.state
-        turning = np.zeros(n, dtype=bool)
-        for first in self.system.rotation_at[self.system.rotation_at < n]:
-            turning[first:first + 3] = True
-        state.strictness[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], turning)
+        turns = turning(self.model, self.numbering)[:n]
+        state.strictness[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], turns)
         bend = np.abs(state.a[:n] * state.strictness[:n]).max()
         state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock[LARGEST_ERROR] = 0.0
@@ -241,8 +239,10 @@ class Simulation:
 
     def _explain(self) -> str:
         reason = REASONS[int(self.state.control[REASON])]
+        shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
+        remedy = "a larger tolerance" if self.tolerance else "a smaller step"
         return (f"stopped at t = {self.time:.6g}: {reason}, even with the step cut to "
-                f"{self.h / FINEST:.3g}; results up to there are kept. Use a smaller step, "
+                f"{shortest:.3g}; results up to there are kept. Use {remedy}, "
                 "check the loads, or split the body into more superelements")
 
 

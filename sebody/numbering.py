@@ -2,6 +2,9 @@
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .errors import InputError
 from .histories import History
 from .kernels import element_kernel
@@ -31,6 +34,15 @@ def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
     """Coordinates of a triplet."""
     first = numbering.triplets[id(triplet)]
     return list(range(first, first + triplet.start.size))
+
+
+def turning(model: Model, numbering: Numbering) -> NDArray:
+    """Which coordinates are those of rotations."""
+    found = np.zeros(numbering.total, dtype=bool)
+    for node in model.nodes.values():
+        if node.rotation is not None and id(node.rotation) in numbering.triplets:
+            found[coordinates(numbering, node.rotation)] = True
+    return found
 
 
 def number(model: Model) -> Numbering:

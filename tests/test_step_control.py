@@ -5,7 +5,13 @@ import pytest
 
 from sebody import InputError, Simulation, SimulationError, generalized_alpha, loop
 from sebody.accuracy import difference, simulate_within
-from sebody.scenes import heavy_top, hinged_beam, spherical_beam_strong, squeezer
+from sebody.scenes import (
+    heavy_top,
+    hinged_beam,
+    planar_hinged_beam,
+    spherical_beam_strong,
+    squeezer,
+)
 from sebody.state import (
     AUX_STEP,
     CHOSEN,
@@ -192,6 +198,14 @@ def test_tolerances_of_positions_and_rotations():
                            (Tolerance(1e-3, np.nan), "tolerance position is nan")):
         with pytest.raises(InputError, match=message):
             Simulation(hinged_beam.build().model, 0.1, tolerance=wrong)
+
+
+@pytest.mark.parametrize("build", [planar_hinged_beam.build, hinged_beam.build])
+def test_absolute_tolerances_know_rotations(build):
+    """One of 50 for positions is no limit; that of rotations sets the step."""
+    steps = [Simulation(build().model, 0.1, tolerance=Tolerance(0.0, 50.0, turn)).run_to(
+        10.0).result().steps for turn in (1e-3, 1e-6)]
+    assert steps[1] > 4 * steps[0]
 
 
 def test_an_error_that_cannot_be_kept_stops_the_run():
