@@ -44,8 +44,12 @@ def accurate(system, state, scheme):
     clock, control = state.clock, state.control
     h = clock[CURRENT_STEP]
     error = 0.0
+    aux, old = pointer_to(state.aux), pointer_to(state.aux_old)
+    strictness = pointer_to(state.strictness)
     for i in range(system.diagonal.size):
-        error = max(error, abs(state.aux[i] - state.aux_old[i]) * state.strictness[i])
+        e = abs(aux[i] - old[i]) * strictness[i]
+        if e > error:
+            error = e
     error *= abs(scheme.beta + 0.5 * (scheme.alpha_m - scheme.alpha_f) - 1.0 / 6.0) * h * h
     if not error <= 1.0:
         clock[CHOSEN] = h * max(SHORT, (AIM / error) ** (1.0 / 3.0))
