@@ -15,7 +15,6 @@ from scipy.sparse import csc_matrix
 from .errors import InputError
 from .evaluate import assemble, to_body_axes
 from .integrator import Simulation
-from .links import place_hanging
 from .numbering import coordinates
 from .results import Result
 from .start import REASONS, assembled
@@ -70,7 +69,6 @@ class Spin:
             if node.rotation is not None and id(node.rotation) in numbering.triplets:
                 at = coordinates(numbering, node.rotation)
                 state.v[at] = self.velocity if self.planar else self._material(run, node.rotation)
-        place_hanging(run.system.links, state.q, state.v, state.a, state.R)
 
     def cross(self, x: NDArray) -> NDArray:
         """``W x x``."""
@@ -116,10 +114,13 @@ def _skew(a: NDArray) -> NDArray:
 
 
 def matrix(run: Simulation | Result, mass: float, rate: float, place: float) -> csc_matrix:
-    """Sum of the exact derivatives by accelerations, velocities and places, in body axes."""
+    """Sum of the exact derivatives by accelerations, velocities and places, in body axes.
+
+    Constraints belong to the places: a turning state moves the columns of the others.
+    """
     state = run.state
     state.control[WANTED] = RENEWED     # a run that goes on needs its own matrix again
-    state.coefficients[:5] = (mass, rate, place, 1.0, 1.0)
+    state.coefficients[:5] = (mass, rate, place, 1.0, place)
     state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
     status = assemble(RENEWED, run.system, state, state.residual)
     if status:
@@ -174,8 +175,7 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     n = len(K)
     multipliers = np.flatnonzero(run.system.is_multiplier[:n])
     moving = np.setdiff1d(np.arange(n), multipliers)
-    constraints = matrix(run, 0.0, 0.0, 1.0).toarray()[np.ix_(multipliers, moving)]
-    basis = null_space(constraints) if multipliers.size else np.eye(len(moving))
+    basis = null_space(K[np.ix_(multipliers, moving)]) if multipliers.size else np.eye(len(moving))
     free = np.zeros((n, basis.shape[1]))
     free[moving] = basis
     return Linearization(*(free.T @ A @ free for A in (M, C, K)), free)

@@ -152,6 +152,20 @@ def test_hinged_beam_turns():
     assert found.growth.max() < 1e-3
 
 
+def test_equations_as_joints_turn_alike():
+    """A hinge of multipliers about the spin axis: the same equilibrium and frequencies."""
+    spin, found = (0.0, 0.0, 3.0), []
+    for explicit in (False, True):
+        model = Model()
+        ends = model.node("root", (0, 0, 0)), model.node("tip", (1, 0, 0))
+        model.beam("arm", ends, section(axial=1e3), 4)
+        model.revolute("root", (0, 0, 1), explicit=explicit)
+        result = equilibrium(model, 2, spin=spin)
+        found.append((result["tip.position"][-1], modes(result, spin).omega[3:8]))
+    assert found[1][0] == pytest.approx(found[0][0], abs=1e-12)
+    assert found[1][1] == pytest.approx(found[0][1], rel=1e-8)
+
+
 # shafts
 
 def shaft(bodies, internal):
