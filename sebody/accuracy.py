@@ -49,18 +49,16 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     """
     wanted = (tolerance or Tolerance()).check()
     share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
-    runs: list[Result] = []
+    before: Result | None = None
     differences: list[float] = []
     while True:
         local = Tolerance(*(share * value for value in wanted))
-        run = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
-        seconds += run.seconds
-        run.all_seconds = seconds
-        runs.append(run)
-        if len(runs) == 1:
-            share /= REFINED**3
+        now = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
+        seconds += now.seconds
+        now.all_seconds = seconds
+        if before is None:
+            share, before = share / REFINED**3, now
             continue
-        before, now = runs[-2:]
         differences.append(difference(now, before, wanted))
         now.error = differences[-1] / max((now.steps / before.steps)**2 - 1.0, 1.0)
         if now.error <= 1.0:
@@ -71,18 +69,16 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
                 f"the tolerance with {now.steps} steps. The motion may be chaotic, then only its "
                 "beginning can be computed: use a larger tolerance or an earlier end", now)
         share /= min(max(np.sqrt(now.error / AIM), LEAST), MOST)**3
-        runs = runs[-1:]
+        before = now
 
 
 def difference(one: Result, other: Result, allowed: Tolerance) -> float:
     """Largest root mean square of the difference of two runs on one grid, in what is allowed."""
-    system, spatial = one.system, not one.model.planar
-    size = np.maximum(system.magnitude, 0.0)
-    turns = turning(one.model, one.numbering)
-    if spatial:
+    size, turns = one.system.magnitude, turning(one.model, one.numbering)
+    if not one.model.planar:
         size = np.where(turns, 0.0, size)       # these are in the matrices
     q = one.recorded("q") - other.recorded("q")
     found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, turns)
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
-    return float(max(found.max(), (angles / (allowed.relative + allowed.rotation)).max(initial=0)))
+    return float(max(found.max(), (angles / allowed.allowed(1.0, True)).max(initial=0.0)))

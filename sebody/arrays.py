@@ -75,14 +75,15 @@ class View(types.Type):
         for own, kind in self.members:
             if own == name:
                 return first, kind
-            first += kind.size if isinstance(kind, View) else 1 + kind.ndim
+            first += _size(kind)
         return None
 
-    @property
-    def size(self) -> int:
-        """Words."""
-        return sum(kind.size if isinstance(kind, View) else 1 + kind.ndim
-                   for _, kind in self.members)
+
+def _size(kind: types.Type) -> int:
+    """Words of a group or of an array."""
+    if isinstance(kind, View):
+        return sum(_size(member) for _, member in kind.members)
+    return 1 + kind.ndim
 
 
 @register_model(View)
@@ -127,12 +128,9 @@ def _member(context, builder, view, pointer, name):
     array = context.make_array(kind)(context, builder)
     item = context.get_abi_sizeof(context.get_data_type(kind.dtype))
     shape = [word(1 + k) for k in range(kind.ndim)]
-    strides, size = [], cgutils.intp_t(item)
+    strides, items = [], cgutils.intp_t(1)
     for length in reversed(shape):
-        strides.insert(0, size)
-        size = builder.mul(size, length)
-    items = cgutils.intp_t(1)
-    for length in shape:
+        strides.insert(0, builder.mul(items, cgutils.intp_t(item)))
         items = builder.mul(items, length)
     null = cgutils.get_null_value
     array.meminfo, array.parent = null(array.meminfo.type), null(array.parent.type)

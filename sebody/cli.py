@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .errors import InputError, LimitWarning, SimulationError
+from .files import check_target
 
 if TYPE_CHECKING:
     from sebody.scenes.scene import Scene
@@ -74,7 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--save", type=Path, metavar="FILE.npz", help="save the state to go on from")
     run.add_argument("--resume", type=Path, metavar="FILE.npz",
                      help="go on from a saved state, with its step, scheme and accuracy")
-    run.add_argument("--rho", type=float, default=0.9, metavar="R",
+    run.add_argument("--rho", type=float, metavar="R",
                      help="spectral radius of generalized-alpha at infinity (default 0.9)")
     run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
                      help="change a parameter of the scene; may be repeated")
@@ -135,16 +136,17 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
     t_end = scene.t_end if options.t_end is None else options.t_end
     if not 0.0 <= t_end < float("inf"):
         raise InputError(f"the end time is {t_end}: give a number >= 0")
+    rho = 0.9 if options.rho is None else options.rho
     progress = Progress()
     warnings.simplefilter("ignore", LimitWarning)   # the summary has them
     try:
         if options.accuracy is not None:
-            scheme = generalized_alpha(options.rho, index=options.index or 2)
+            scheme = generalized_alpha(rho, index=2 if options.index is None else options.index)
             return simulate_within(scene.model, h, t_end, Tolerance(options.accuracy), scheme,
                                    progress)
         run = (resume(scene.model, options.resume) if options.resume else
-               Simulation(scene.model, h, generalized_alpha(options.rho,
-                                                            index=options.index or 3)))
+               Simulation(scene.model, h, generalized_alpha(
+                   rho, index=3 if options.index is None else options.index)))
         run.run_to(t_end, progress)
     finally:
         progress.close()
@@ -155,19 +157,23 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
 
 def _check_outputs(options: argparse.Namespace) -> None:
     """Refuse files that cannot be written before the run, not after it."""
-    if options.output and options.output.suffix != ".npz":
-        raise InputError(f"output file {options.output} must end in .npz")
-    if options.output and not options.output.parent.is_dir():
-        raise InputError(f"folder {options.output.parent} of the output file does not exist: "
-                         "make it")
+    from .restart import TARGET
+    from .results import OUTPUT
+
+    for path, kind in ((options.output, OUTPUT), (options.save, TARGET)):
+        if path:
+            check_target(path, *kind)
     if options.plot:
         from .plot import check_picture
         check_picture(options.plot)
     if options.accuracy is not None and (options.save or options.resume):
         raise InputError("--accuracy repeats the run with finer steps: leave out --save and "
                          "--resume")
-    if options.resume and options.step is not None:
-        raise InputError("--resume goes on with the step that was saved: leave out --step")
+    if options.resume:
+        for name in ("step", "rho", "index"):
+            if getattr(options, name) is not None:
+                raise InputError(f"--resume goes on with the {name} that was saved: leave out "
+                                 f"--{name}")
 
 
 def _build(name: str, changes: Sequence[str]) -> "Scene":
@@ -311,8 +317,8 @@ def _chart(options: argparse.Namespace) -> int:
     if options.output:
         from .plot import check_picture
         check_picture(options.output)
-    if options.csv and not options.csv.parent.is_dir():
-        raise InputError(f"folder {options.csv.parent} of the table does not exist: make it")
+    if options.csv:
+        check_target(options.csv, "table")
     points, exact = chart.measure(options.scene)
     print(chart.report(options.scene, points, exact))
     if options.csv:
@@ -331,9 +337,7 @@ def _atlas(options: argparse.Namespace) -> int:
     if options.output:
         from .plot import check_picture
         check_picture(options.output)
-    unknown = [name for name in options.cases if name not in atlas.CASES]
-    if unknown:
-        atlas.explore(unknown[0])
+    atlas.check_names(options.cases)
     findings = []
     for name in options.cases or atlas.CASES:
         findings.append(atlas.explore(name))

@@ -369,7 +369,9 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                 for i in range(state.residual.size):
                     state.forces[i] = state.residual[i]
             if scheme.stabilized:
-                take_rates(system, state)
+                reason = take_rates(system, state)
+                if reason != NO_REASON:
+                    continue
             to_body_axes(system, state.frames, state.residual, False)
             control[PHASE] = FACTORED
             if level != FORCES:

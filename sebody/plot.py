@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
+from .files import check_target
 
 if TYPE_CHECKING:
     from .results import Result
@@ -32,13 +33,9 @@ def check_picture(path: str | Path) -> None:
     InputError
         matplotlib is missing, the folder does not exist, or the file type is unknown.
     """
-    path = Path(path)
     if find_spec("matplotlib") is None:
         raise InputError("pictures need matplotlib: pip install sebody[plot]")
-    if path.suffix not in SUFFIXES:
-        raise InputError(f"picture {path} must end in {', '.join(SUFFIXES)}")
-    if not path.parent.is_dir():
-        raise InputError(f"folder {path.parent} of the picture does not exist: make it")
+    check_target(path, "picture", SUFFIXES)
 
 
 def save_picture(result: "Result", path: str | Path, base: str, tip: str) -> Path:

@@ -9,12 +9,14 @@ from zipfile import BadZipFile
 import numpy as np
 
 from .errors import InputError
+from .files import check_target
 from .integrator import Simulation
 from .model import Model
 from .state import PIVOTED, Record, Scheme, State
 from .tolerance import Tolerance
 
 VERSION = 1
+TARGET = "restart file", (".npz",)      # see `files.check_target`
 
 
 def save(run: Simulation, path: str | Path) -> Path:
@@ -25,11 +27,7 @@ def save(run: Simulation, path: str | Path) -> Path:
     InputError
         Another ending, or a folder that does not exist.
     """
-    path = Path(path)
-    if path.suffix != ".npz":
-        raise InputError(f"restart file {path} must end in .npz")
-    if not path.parent.exists():
-        raise InputError(f"folder {path.parent} of the restart file does not exist: make it")
+    path = check_target(path, *TARGET)
     settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
                 "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
                 "model": _fingerprint(run)}

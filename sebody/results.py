@@ -11,6 +11,7 @@ from .abi import POTENTIAL
 from .assembly import System
 from .audit import Forces, constraint_residuals, energies, forces
 from .errors import InputError
+from .files import check_target
 from .model import Model
 from .numbering import Numbering
 from .start import Start
@@ -24,6 +25,7 @@ NODE_QUANTITIES = ("position", "rotation", "velocity", "angular_velocity", "acce
                    "reaction", "reaction_moment")
 SYSTEM_QUANTITIES = {"energy.kinetic": 0, "energy.strain": 1, "momentum": slice(2, 5),
                      "angular_momentum": slice(5, 8), "energy.potential": POTENTIAL}
+OUTPUT = "output file", (".npz",)        # what is saved, see `files.check_target`
 CONSTRAINTS = ("constraints.position", "constraints.velocity")
 
 
@@ -218,11 +220,7 @@ class Result:
 
     def save(self, path: str | Path) -> Path:
         """Write all named histories to an npz file."""
-        path = Path(path)
-        if path.suffix != ".npz":
-            raise InputError(f"output file {path} must end in .npz")
-        if not path.parent.exists():
-            raise InputError(f"folder {path.parent} of the output file does not exist: make it")
+        path = check_target(path, *OUTPUT)
         np.savez_compressed(path, **self.arrays())
         return path
 

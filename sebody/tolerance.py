@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
 
@@ -34,7 +34,8 @@ class Tolerance(NamedTuple):
                              "of positions and of rotations")
         return self
 
-    def allowed(self, magnitude: NDArray, turning: NDArray) -> NDArray:
+    def allowed(self, magnitude: ArrayLike, turning: ArrayLike) -> NDArray:
         """Allowed error of coordinates of a magnitude; infinite where that is zero."""
         absolute = np.where(turning, self.rotation, self.position)
-        return np.where(magnitude > 0.0, absolute + self.relative * magnitude, np.inf)
+        size = np.asarray(magnitude)
+        return np.where(size > 0.0, absolute + self.relative * size, np.inf)

@@ -71,6 +71,9 @@ def test_run_stops_and_goes_on(tmp_path, capsys):
     (["hinged-beam", "--accuracy", "1e-3", "--save", "a.npz"], "--accuracy repeats the run with"),
     (["hinged-beam", "--resume", "none.npz"], "restart file none.npz does not exist"),
     (["hinged-beam", "--resume", "a.npz", "--step", "1"], "--resume goes on with the step that"),
+    (["hinged-beam", "--resume", "a.npz", "--rho", "1"], "--resume goes on with the rho that"),
+    (["hinged-beam", "--save", "state.txt"], "restart file state.txt must end in .npz"),
+    (["hinged-beam", "--index", "0"], "index is 0: use 3, or 2 for the stabilised form"),
     (["hinged-beam", "--index", "1"], "index is 1: use 3, or 2 for the stabilised form"),
 ])
 def test_bad_input_is_named(arguments, message, capsys):

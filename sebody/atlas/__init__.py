@@ -4,7 +4,7 @@ Every row of the table is a number that theory predicts and a run has to show.
 """
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from ..errors import InputError, LimitWarning
 from . import geometry, inertia, integration, spin
@@ -27,7 +27,20 @@ CASES: dict[str, Callable[[], Finding]] = {
     "weights": geometry.negative_weights,
 }
 
-__all__ = ["CASES", "Finding", "Row", "draw", "explore", "report"]
+__all__ = ["CASES", "Finding", "Row", "check_names", "draw", "explore", "report"]
+
+
+def check_names(names: Iterable[str]) -> None:
+    """Refuse unknown cases.
+
+    Raises
+    ------
+    InputError
+        The first one that is unknown.
+    """
+    for name in names:
+        if name not in CASES:
+            raise InputError(f"the atlas has no case {name!r}: there are {', '.join(CASES)}")
 
 
 def explore(name: str) -> Finding:
@@ -38,8 +51,7 @@ def explore(name: str) -> Finding:
     InputError
         An unknown case.
     """
-    if name not in CASES:
-        raise InputError(f"the atlas has no case {name!r}: there are {', '.join(CASES)}")
+    check_names([name])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LimitWarning)
         return CASES[name]()

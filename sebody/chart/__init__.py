@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ..bench import peer
-from ..errors import InputError, SimulationError
+from ..errors import SimulationError
+from ..files import check_target
 from ..integrator import simulate
 from .cases import COARSEST, SCENES, Variant, builder, variants
 from .draw import draw
@@ -118,9 +119,7 @@ def write_csv(points: list[Point], path: Path) -> None:
     InputError
         The folder does not exist.
     """
-    if not path.parent.is_dir():
-        raise InputError(f"folder {path.parent} of the table does not exist: make it")
-    with path.open("w", newline="") as file:
+    with check_target(path, "table").open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow([f.name for f in fields(Point)])
         writer.writerows(astuple(p) for p in points)
