@@ -155,17 +155,19 @@ def test_an_impulse_shortens_the_steps():
     assert run.state.control[REJECTED] > 0
 
 
+# scene, end, grid, steps of the reference in it, quantity, largest error of any position and
+# rotation in the tolerance: the spin of the struck beam about its axis is nearly chaotic
 SCENES = {
-    "strong": (lambda: spherical_beam_strong.build(modes=0), 30.0, 0.05, 320, "tip.position"),
-    "squeezer": (squeezer.build, 0.03, 1e-4, 80, "crank.rotation"),
-    "top": (heavy_top.build, 2.0, 0.01, 400, "centre.position"),
+    "strong": (lambda: spherical_beam_strong.build(modes=0), 30.0, 0.05, 320, "tip.position", 6.0),
+    "squeezer": (squeezer.build, 0.03, 1e-4, 80, "crank.rotation", 1.2),
+    "top": (heavy_top.build, 2.0, 0.01, 400, "centre.position", 1.2),
 }
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_error_of_a_run_is_within_its_tolerance(name):
     """No step is given; the reference has equal steps, far shorter than any that is chosen."""
-    build, t_end, grid, parts, quantity = SCENES[name]
+    build, t_end, grid, parts, quantity, worst = SCENES[name]
     fine = Simulation(build().model, grid / parts, output_every=parts).run_to(t_end).result()
     exact = fine[quantity]
     for allowed in (1e-2, 1e-3, 1e-4):
@@ -173,7 +175,7 @@ def test_the_error_of_a_run_is_within_its_tolerance(name):
         error = np.linalg.norm(result[quantity] - exact) / np.linalg.norm(exact)
         assert error <= 3.0 * allowed
         assert result.error <= 1.0
-        assert difference(result, fine, Tolerance(allowed)) < 6.0     # estimates err, too
+        assert difference(result, fine, Tolerance(allowed)) < worst
 
 
 def test_a_chaotic_motion_is_said_to_be_one():
