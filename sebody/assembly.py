@@ -43,15 +43,19 @@ class System(Arrays):
     rows: NDArray           # row and column of every entry of the matrix, dense by columns or in
     columns: NDArray        # the blocks of a sparse elimination
     diagonal: NDArray       # entry on the diagonal of each unknown
-    padding: NDArray        # entries that fill the last block up with ones
+    padding: NDArray        # entries with ones: diagonal of free slots
     block_starts: NDArray   # pattern of the elimination, see sebody.elimination
     block_rows: NDArray
     block_diagonal: NDArray
+    slot_unknowns: NDArray  # unknown of every slot, of free ones the number of unknowns
     is_multiplier: NDArray  # 1.0 for multipliers, by coordinate, and zeros for padding
     rotation_at: NDArray    # first unknown of each rotation
     turned: NDArray         # (k, 2) first unknown and frame of free positions solved in body axes
     turned_blocks: NDArray  # (k, 5) positions whose rows and columns in an element matrix are in
                             # other axes: start, width, row, frame of the unknown, of the matrix
+    summands: NDArray       # (elements, 7) in the order of elimination: start and width of the
+                            # element matrix, first and end in turned_blocks, number among those
+                            # with links or -1, first and last block column of the sum
     linked: NDArray         # (1,) 1 where bodies that turn against each other are coupled
     dimension: NDArray      # (1,) coordinates of a position
     magnitude: NDArray      # size of each coordinate, for the rounding floor
@@ -103,12 +107,14 @@ def build(model: Model) -> tuple[System, Numbering]:
     batches += _element_batches(numbering, constants, [e for e, w in zip(
         elements, working, strict=True) if w])
     dense = numbering.free <= DENSE_LIMIT
-    places = _dense_places if dense else _sparse_places
     row, column = _element_places(batches)
     axes = _body_axes(model, numbering, batches, first_joint, first_power)
     links, linked_row, linked_column = link_arrays(model, numbering, batches, axes["turned"])
-    entries, rows, columns, diagonal, pattern = places(
-        np.concatenate([row, linked_row]), np.concatenate([column, linked_column]), numbering.free)
+    all_rows, all_columns = np.r_[row, linked_row], np.r_[column, linked_column]
+    layout = (_dense_layout(all_rows, all_columns, numbering.free) if dense else
+              _sparse_layout(all_rows, all_columns, numbering))
+    entries = layout.pop("entries")
+    links = with_entries(links, entries[len(row):])
     widths = [b.width for b in batches]
     sizes = [len(b.rows) for b in batches]
     integers = np.array
@@ -127,14 +133,11 @@ def build(model: Model) -> tuple[System, Numbering]:
         index=integers([i for b in batches for row in b.rows for i in row]),
         constants=np.concatenate(constants),
         g_unknown=integers([u for b in batches for row in b.unknowns for u in row]),
-        J_entry=entries[:len(row)].astype(np.int32), rows=rows.astype(np.int32),
-        columns=columns.astype(np.int32), diagonal=diagonal[:numbering.free],
-        padding=diagonal[numbering.free:],
-        block_starts=pattern.starts, block_rows=pattern.rows, block_diagonal=pattern.diagonal,
-        is_multiplier=multiplier,
+        J_entry=entries[:len(row)].astype(np.int32), **layout, is_multiplier=multiplier,
         rotation_at=_rotation_starts(model, numbering), **axes,
+        summands=_summands(batches, axes["turned_blocks"], links, entries, layout["block_starts"]),
         dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering),
-        **_items(numbering), links=with_entries(links, entries[len(row):]),
+        **_items(numbering), links=links,
         relaxed=np.zeros(1, dtype=np.int64),
         damped=integers([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for b in batches for owner in b.owners]
@@ -228,23 +231,33 @@ def _element_places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
     return np.concatenate(rows), np.concatenate(columns)
 
 
-def _dense_places(row: NDArray, column: NDArray, n: int) -> tuple:
+def _dense_layout(row: NDArray, column: NDArray, n: int) -> dict[str, NDArray]:
     """Matrix entry of each element entry, row and column of each; fixed ones go behind the end."""
-    places = np.where((row < n) & (column < n), column * n + row, n * n)
-    all_columns, all_rows = np.divmod(np.arange(n * n), n)
-    none = elimination.Pattern(*[np.zeros(1, dtype=np.int64)] * 3)
-    return places, all_rows, all_columns, np.arange(n) * (n + 1), none
+    columns, rows = np.divmod(np.arange(n * n, dtype=np.int32), n)
+    none = np.zeros(0, dtype=np.int64)
+    return {"entries": np.where((row < n) & (column < n), column * n + row, n * n),
+            "rows": rows, "columns": columns, "diagonal": np.arange(n) * (n + 1), "padding": none,
+            "block_starts": none, "block_rows": none, "block_diagonal": none,
+            "slot_unknowns": none}
 
 
-def _sparse_places(row: NDArray, column: NDArray, n: int) -> tuple:
+def _sparse_layout(row: NDArray, column: NDArray, numbering: Numbering) -> dict[str, NDArray]:
     """The same in the blocks of an elimination."""
+    n = numbering.free
     free = (row < n) & (column < n)
-    pattern = elimination.block_pattern(row[free], column[free], n)
+    slot, pattern = elimination.best_slots(row[free], column[free], numbering.groups, n)
+    slots = LANES * len(pattern.diagonal)
+    unknowns = np.full(slots, n)
+    unknowns[slot] = np.arange(n)
     rows, columns = elimination.places(pattern)
-    places = np.full(len(row), len(rows))
-    places[free] = elimination.entries(pattern, row[free], column[free])
-    all_ = np.arange(LANES * len(pattern.diagonal))
-    return places, rows, columns, elimination.entries(pattern, all_, all_), pattern
+    entries = np.full(len(row), len(rows))
+    entries[free] = elimination.entries(pattern, slot[row[free]], slot[column[free]])
+    diagonal = elimination.entries(pattern, np.arange(slots), np.arange(slots))
+    return {"entries": entries, "rows": unknowns[rows].astype(np.int32),
+            "columns": unknowns[columns].astype(np.int32), "diagonal": diagonal[slot],
+            "padding": diagonal[unknowns == n], "block_starts": pattern.starts,
+            "block_rows": pattern.rows, "block_diagonal": pattern.diagonal,
+            "slot_unknowns": unknowns}
 
 
 def _rotation_starts(model: Model, numbering: Numbering) -> NDArray:
@@ -283,6 +296,24 @@ def _body_axes(model: Model, numbering: Numbering, batches: list[Batch],
             "turned": np.array([item for item in frame_of.items() if item[1] >= 0],
                                dtype=np.int64).reshape(-1, 2),
             "turned_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
+
+
+def _summands(batches: list[Batch], turned: NDArray, links: Links, entries: NDArray,
+              block_starts: NDArray) -> NDArray:
+    """Element matrices in the order in which an elimination needs them."""
+    width = np.repeat([b.width for b in batches], [len(b.rows) for b in batches])
+    start = _starts(width ** 2)
+    linked = np.full(len(width), -1)
+    linked[np.searchsorted(start, links.elements[:, 0])] = np.arange(len(links.elements))
+    stored = block_starts[-1] * elimination.BLOCK if len(block_starts) else 0
+    entries = entries[:start[-1]]
+    first, last = (reach.reduceat(np.where(entries < stored, entries, empty), start[:-1])
+                   for reach, empty in ((np.minimum, stored), (np.maximum, 0)))
+    first, last = (np.searchsorted(block_starts[1:], entry // elimination.BLOCK, side="right")
+                   for entry in (first, last))
+    found = np.column_stack([start[:-1], width, np.searchsorted(turned[:, 0], start[:-1]),
+                             np.searchsorted(turned[:, 0], start[1:]), linked, first, last])
+    return found[np.argsort(first, kind="stable")]
 
 
 def _magnitude(model: Model, numbering: Numbering) -> NDArray:

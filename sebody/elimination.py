@@ -5,8 +5,8 @@ pattern of the factors is known beforehand: what is left is arithmetic on small 
 in the number of bodies of a chain. Where a pivot is small all the same, the loop asks for a
 factorization with exchanges (SuperLU).
 
-Blocks have `LANES` rows and columns, stored by columns; the last ones are filled up with ones on
-the diagonal.
+Blocks have `LANES` rows and columns, stored by columns. Unknowns have slots in them; free slots
+have ones on the diagonal.
 """
 
 from typing import NamedTuple
@@ -28,6 +28,22 @@ class Pattern(NamedTuple):
     starts: NDArray         # (blocks across + 1,) first block of each column
     rows: NDArray           # block row of each block, ascending in a column
     diagonal: NDArray       # (blocks across,) the block on the diagonal
+
+    @property
+    def products(self) -> int:
+        """Products of blocks that an elimination takes."""
+        return int(((self.starts[1:] - self.diagonal - 1) ** 2).sum())
+
+
+def best_slots(row: NDArray, column: NDArray, groups: NDArray, n: int) -> tuple[NDArray, Pattern]:
+    """Slots of n unknowns: one after the other, or groups on whole blocks if that is less work."""
+    groups = np.unique(groups[groups < n])
+    gaps = np.zeros(n, dtype=np.int64)
+    gaps[groups[1:]] = -np.diff(groups) % LANES
+    choices = [np.arange(n), np.arange(n) + np.cumsum(gaps)]
+    patterns = [block_pattern(slot[row], slot[column], slot[-1] + 1) for slot in choices]
+    best = int(patterns[1].products < patterns[0].products)
+    return choices[best], patterns[best]
 
 
 def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
@@ -71,12 +87,13 @@ def places(pattern: Pattern) -> tuple[NDArray, NDArray]:
 
 
 @njit(cache=True, error_model="numpy")
-def eliminate(across, starts, rows, diagonal, matrix, column, scale):
+def eliminate(first_column, end_column, starts, rows, diagonal, unknowns, matrix, column, scale):
     """Factors L (unit diagonal blocks) and U (inverted ones) in place; False at a small pivot.
 
-    Pointers; `column` is scratch for one block column, `scale` the scales of the unknowns.
+    Of some block columns, where those before them are done. Pointers; `column` is scratch for one
+    block column, `scale` the scales of the unknowns.
     """
-    for j in range(across):
+    for j in range(first_column, end_column):
         first, middle, end = starts[j], diagonal[j], starts[j + 1]
         for p in range(first, end):
             source, target = at(matrix, BLOCK * p), at(column, BLOCK * rows[p])
@@ -90,7 +107,7 @@ def eliminate(across, starts, rows, diagonal, matrix, column, scale):
             for t in range(diagonal[k] + 1, starts[k + 1]):
                 subtract_product(at(column, BLOCK * rows[t]), at(matrix, BLOCK * t), target)
         inverse = at(matrix, BLOCK * middle)
-        if not _invert_block(at(column, BLOCK * j), inverse, at(scale, LANES * j)):
+        if not _invert_block(at(column, BLOCK * j), inverse, at(unknowns, LANES * j), scale):
             return False
         for p in range(middle + 1, end):
             target = at(matrix, BLOCK * p)
@@ -109,13 +126,13 @@ def _subtract_negative(C, A, B):
 
 
 @njit(cache=True, error_model="numpy")
-def _invert_block(D, inverse, scale):
+def _invert_block(D, inverse, unknowns, scale):
     """Inverse of a block by Gauss and Jordan in order; False at a small pivot."""
     for i in range(BLOCK):
         inverse[i] = D[i]
     for k in range(LANES):
         pivot = inverse[LANES * k + k]
-        if not abs(pivot) * scale[k] * scale[k] > SMALL_PIVOT:
+        if not abs(pivot) * scale[unknowns[k]] * scale[unknowns[k]] > SMALL_PIVOT:
             return False
         r = 1.0 / pivot
         inverse[LANES * k + k] = 1.0
@@ -132,7 +149,7 @@ def _invert_block(D, inverse, scale):
 
 @njit(cache=True, error_model="numpy")
 def substitute(across, starts, rows, diagonal, factors, x):
-    """Solve in place with the factors; x is filled up to whole blocks."""
+    """Solve in place with the factors; x is by slots."""
     for j in range(across):
         for p in range(diagonal[j] + 1, starts[j + 1]):
             subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), at(x, LANES * j))

@@ -1,6 +1,5 @@
-"""Forces and matrices of all elements in a state, summed, for compiled code."""
+"""Forces and matrices of all elements in a state, for compiled code."""
 
-import numpy as np
 from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
@@ -17,9 +16,9 @@ from .abi import (
     pointer_to,
 )
 from .histories import cubic_at
-from .links import add_expanded, add_second_order, place_hanging, pull_back
+from .links import place_hanging, pull_back
 from .rotations import tangent_operator, turn
-from .state import FORCES, RENEWED, START, TURNED
+from .state import FORCES, RENEWED, START
 
 
 @intrinsic
@@ -42,6 +41,51 @@ def run_kernels(task, first, last, system, state):
              at(g, system.at_g[b]), at(J, system.at_J[b]), state.work, state.energy))
         if status != 0:
             return status
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def find_moved(system, state, limit):
+    """Which elements the last correction moved; it moved all others by less than `limit`."""
+    k = first = 0
+    limit *= limit / state.moved.size
+    for b in range(system.address.size):
+        for element in range(system.count[b]):
+            size = 0.0
+            for _ in range(system.width[b]):
+                i = system.g_unknown[k]
+                change = state.last_shift[i] * state.weight[i]
+                size += change * change
+                k += 1
+            state.moved[first + element] = size > limit
+        first += system.count[b]
+
+
+@njit(cache=True, error_model="numpy")
+def run_moved(system, state):
+    """Forces of the elements that moved; those of the others are kept."""
+    index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
+    first = 0                   # of the elements, for `moved`
+    for b in range(system.address.size):
+        stride, width = system.stride[b], system.width[b]
+        begin = 0
+        while begin < system.count[b]:
+            if not state.moved[first + begin]:
+                begin += 1
+                continue
+            end = begin + 1
+            while end < system.count[b] and state.moved[first + end]:
+                end += 1
+            status = call_kernel(
+                system.address[b], RESIDUAL, end - begin, stride, width,
+                (at(index, system.at_index[b] + begin * stride), system.constants, state.q,
+                 state.R, state.v, state.a, state.frames_old, state.frames, state.T, state.loads,
+                 state.coefficients, at(g, system.at_g[b] + begin * width), J, state.work,
+                 state.energy))
+            if status != 0:
+                return status
+            begin = end
+        first += system.count[b]
     return 0
 
 
@@ -102,11 +146,11 @@ def set_tangent_operators(system, state):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def assemble(level, system, state, residual):
-    """Sum of the element forces in `residual`, and the matrix.
+    """Sum of the element forces in `residual`; element matrices, see `sebody.matrix` for their sum.
 
-    `level` is FORCES for these alone, TURNED for a matrix of the bodies' old ones in their new
-    places and of new ones of joints and loads, RENEWED for new ones of all; START is for forces and
-    accelerations of the constraints, RATES for their velocities.
+    `level` is FORCES for forces alone, TURNED for new matrices of joints and loads, RENEWED for new
+    ones of all; START is for forces and accelerations of the constraints, RATES for their
+    velocities.
     """
     bodies, batches = system.first_joint[0], system.address.size
     status = run_kernels(TANGENT if level == RENEWED else RESIDUAL, 0, bodies, system, state)
@@ -119,8 +163,6 @@ def assemble(level, system, state, residual):
     if status != 0:
         return status
     sum_forces(system, state, residual)
-    if level == TURNED or level == RENEWED:
-        sum_matrices(system, state, residual)
     return 0
 
 
@@ -155,59 +197,6 @@ def take_rates(system, state):
     for i in range(n):
         state.gaps[i] -= residual[i] * system.is_multiplier[i]
     return status
-
-
-@njit(cache=True, error_model="numpy")
-def sum_matrices(system, state, forces):
-    """The matrix from the element matrices, which stay as they are."""
-    for k in range(state.matrix.size):
-        state.matrix[k] = 0.0
-    for k in range(system.padding.size):
-        state.matrix[system.padding[k]] = 1.0
-    matrix, J = pointer_to(state.matrix), pointer_to(state.turned)
-    block, blocks = 0, system.turned_blocks.shape[0]
-    linked, links = 0, system.links.elements.shape[0]
-    for b in range(system.address.size):
-        width = system.width[b]
-        for element in range(system.count[b]):
-            start = system.at_J[b] + element * width * width
-            own, entries = at(pointer_to(state.J), start), at(pointer_to(system.J_entry), start)
-            for k in range(width * width):
-                J[k] = own[k]
-            while block < blocks and system.turned_blocks[block, 0] == start:
-                _turn_block(system.turned_blocks[block], system.dimension[0], J, state.frames)
-                block += 1
-            if linked < links and system.links.elements[linked, 0] == start:
-                add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
-                             state.matrix, state.expansion)
-                linked += 1
-                continue
-            for k in range(width * width):
-                matrix[entries[k]] += J[k]
-    if links > 0:
-        add_second_order(system.links, state.coefficients[2], state.q, state.R, state.T, forces,
-                         state.matrix)
-
-
-@njit(cache=True, error_model="numpy")
-def _turn_block(block, dimension, J, frames):
-    """Rows and columns of a position in an element matrix, to the axes it is solved for in."""
-    width, row = block[1], block[2]
-    to, own = at(pointer_to(frames), 9 * block[3]), at(pointer_to(frames), 9 * block[4])
-    turn = np.empty(9)
-    for i in range(3):
-        for k in range(3):
-            turn[3 * i + k] = own[3 * i + k] if block[3] < 0 else to[3 * k + i] if (
-                block[4] < 0) else (
-                to[i] * own[k] + to[3 + i] * own[3 + k] + to[6 + i] * own[6 + k])
-    for across in range(2):
-        first, next_line, step = (row, width, 1) if across == 0 else (row * width, 1, width)
-        for i in range(width):
-            p = at(J, first + i * next_line)
-            x, y = p[0], p[step]
-            z = p[2 * step] if dimension == 3 else 0.0
-            for k in range(dimension):
-                p[k * step] = turn[3 * k] * x + turn[3 * k + 1] * y + turn[3 * k + 2] * z
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

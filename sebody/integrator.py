@@ -289,13 +289,15 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         powers_old=zeros(items), coefficients=coefficients,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
         turned=zeros(int(system.width.max()) ** 2), residual=zeros(total), forces=zeros(total),
-        correction=zeros(padded(total) + LANES), gaps=zeros(total), shift=zeros(total),
+        correction=zeros(padded(total) + LANES), solution=zeros(system.slot_unknowns.size),
+        last_correction=zeros(total), last_shift=zeros(total),
+        moved=np.ones(len(system.summands), dtype=bool), gaps=zeros(total), shift=zeros(total),
         strictness=zeros(total), expansion=zeros(9 + int(max(
             (w * wide + wide * wide for _, w, wide, *_ in system.links.elements), default=0))),
         matrix=zeros(system.rows.size + 1),
         scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, padded(n)) if dense else (1, 1)),
-        column=zeros(LANES * LANES * system.block_diagonal.size), work=zeros(work_size(model)),
+        column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(POWERS + items), clock=clock, control=control)
 
 

@@ -15,6 +15,7 @@ from scipy.sparse import csc_matrix
 from .errors import InputError
 from .evaluate import assemble, to_body_axes
 from .integrator import Simulation
+from .matrix import sum_matrices
 from .numbering import coordinates
 from .results import Result
 from .start import REASONS, assembled
@@ -125,6 +126,7 @@ def matrix(run: Simulation | Result, mass: float, rate: float, place: float) -> 
     status = assemble(RENEWED, run.system, state, state.residual)
     if status:
         raise InputError(f"the state cannot be evaluated: {REASONS[status]}")
+    sum_matrices(run.system, state, state.residual)
     return assembled(run.system, state)
 
 

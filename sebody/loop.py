@@ -13,15 +13,18 @@ from numba import njit
 from .abi import at, pointer_to
 from .evaluate import (
     assemble,
+    find_moved,
     move_prescribed,
+    run_moved,
     set_loads,
     set_powers,
     set_tangent_operators,
+    sum_forces,
     take_rates,
     to_body_axes,
     turn_rotations,
 )
-from .matrix import equilibrate, factorize, invert_dense, relax, solve
+from .matrix import renew, solve
 from .state import (
     ADAPTIVE,
     AGE,
@@ -64,11 +67,13 @@ from .state import (
     REASON,
     RECORDED,
     RENEWED,
+    SECANT,
     SLOW,
     SOLVE,
     SPAN,
     STEP,
     STEPS,
+    TARGET,
     TIME,
     TURNED,
     UNIT,
@@ -86,6 +91,8 @@ ORTHOGONAL = 8          # rotations are made orthogonal again after so many step
 POOR = 0.3              # contraction so slow asks for a new matrix at once
 MOST_MATRICES = 4       # of a step
 STRICT = 100.0          # tolerance of what accelerations move, in that of the increment
+UNMOVED = 0.03          # of the tolerance: what all elements may move and keep their forces
+QUICK = 0.05            # contraction so good needs no acceleration
 MEMORY = 0.99           # for the size of the accelerations, a step
 
 
@@ -115,7 +122,7 @@ def begin_step(system, state, scheme):
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     turn_rotations(system, state)
-    state.control[ITERATION] = 0
+    state.control[ITERATION], state.control[SECANT] = 0, 0
     state.clock[LAST_NORM] = 0.0
 
 
@@ -130,7 +137,7 @@ def set_coefficients(state, scheme, h):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def apply_correction(system, state, scheme):
+def apply_correction(system, state, scheme, mixed):
     """Add the solved correction; returns 1 converged, 0 go on, -1 new matrix, -2 give up."""
     n, h = system.diagonal.size, state.clock[CURRENT_STEP]
     norm = size = bend = 0.0
@@ -147,6 +154,7 @@ def apply_correction(system, state, scheme):
     if not np.isfinite(norm):
         state.clock[LAST_NORM] = norm
         return -2
+    left_norm = accelerate(state, n, norm) if mixed else norm
     to_body_axes(system, state.frames, state.correction, True)
     if scheme.stabilized:
         to_body_axes(system, state.frames, state.shift, True)
@@ -163,7 +171,7 @@ def apply_correction(system, state, scheme):
     iteration, last = state.control[ITERATION], state.clock[LAST_NORM]
     rate = state.clock[CONTRACTION]
     target = min(scheme.tolerance * size, STRICT * scheme.tolerance * bend) + state.clock[FLOOR]
-    state.clock[BEND] = bend
+    state.clock[BEND], state.clock[TARGET] = bend, target
     if iteration == 0:
         state.clock[SPAN] = np.log(norm / target)
     if iteration > 0 and last > 0.0:
@@ -171,9 +179,9 @@ def apply_correction(system, state, scheme):
         state.clock[CONTRACTION] = rate
     state.control[ITERATION] = iteration + 1
     state.control[ITERATIONS] += 1
-    state.clock[LAST_NORM] = norm
+    state.clock[LAST_NORM] = left_norm
     rate = min(max(rate, 1e-3), 0.95)
-    if rate / (1.0 - rate) * norm <= target:
+    if rate / (1.0 - rate) * left_norm <= target:
         return 1
     left = MAX_ITERATIONS - iteration - 1
     if left <= 0 or (iteration > 2 and state.control[FRESH] > 2 and rate > 0.9):
@@ -182,6 +190,33 @@ def apply_correction(system, state, scheme):
         return 0
     price = WORTH if next_matrix(system, state) == RENEWED else TURNED_WORTH
     return -1 if rate > POOR or np.log(target / norm) / np.log(rate) > min(price, left) else 0
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def accelerate(state, n, norm):
+    """Anderson's mixing with the last correction; returns the norm of what is left to iterate.
+
+    Matrices of the predicted state leave one slow direction where links of a taut chain turn.
+    """
+    correction, last, shift = state.correction, state.last_correction, state.last_shift
+    along = square = mix = 0.0
+    if state.control[SECANT] == 1 and norm > QUICK * state.clock[LAST_NORM]:
+        for i in range(n):
+            w = state.weight[i]
+            change = (correction[i] - last[i]) * w
+            along += change * correction[i] * w
+            square += change * change
+        if square > 0.0 and abs(along) < square:
+            mix = along / square
+            norm = np.sqrt(max(norm * norm - along * mix, 0.0))
+    state.control[SECANT] = 1
+    for i in range(n):
+        d = correction[i]
+        s = d - mix * (shift[i] + d - last[i])
+        last[i] = d
+        shift[i] = s
+        correction[i] = s
+    return norm
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -332,6 +367,8 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
     """Run until `last_grid`, for at most `chunk` steps, or until Python is asked for something."""
     control, clock = state.control, state.clock
     n = system.diagonal.size
+    mixed = not dense and not scheme.stabilized
+    selective = mixed and system.links.hanging.shape[0] == 0
     steps = 0
     reason = np.int64(NO_REASON)
     while True:
@@ -362,7 +399,12 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             level = control[WANTED]
             if level == RENEWED:
                 set_tangent_operators(system, state)
-            reason = assemble(level, system, state, state.residual)
+            if level == FORCES and control[ITERATION] > 1 and selective:
+                find_moved(system, state, UNMOVED * clock[TARGET])
+                reason = run_moved(system, state)
+                sum_forces(system, state, state.residual)
+            else:
+                reason = assemble(level, system, state, state.residual)
             if reason != NO_REASON:
                 continue
             if level != FORCES and system.links.hanging.shape[0] > 0:
@@ -376,23 +418,17 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             control[PHASE] = FACTORED
             if level != FORCES:
                 if level == RENEWED:
-                    equilibrate(system, state)
                     control[AGE], clock[YOUNG_RATE], clock[EXCESS] = 0, 0.5, 0.0
                     clock[FACTOR_STEP] = clock[CURRENT_STEP]
-                if system.relaxed[0] == 1:
-                    relax(system, state)
                 control[WANTED] = FORCES
+                control[SECANT] = 0
                 control[FRESH] += 1
                 control[MATRICES] += 1
-                if dense:
-                    if not invert_dense(system, state, n):
-                        reason = np.int64(NOT_FINITE)
-                        continue
-                else:
-                    control[PIVOTED] = 0
-                    if not factorize(system, state):
-                        control[PIVOTED] = 1
-                        return FACTOR
+                if not renew(system, state, level, dense):
+                    reason = np.int64(NOT_FINITE)
+                    continue
+                if control[PIVOTED] == 1:
+                    return FACTOR
         if control[PHASE] == FACTORED:
             control[PHASE] = READY
             if scheme.stabilized:
@@ -409,7 +445,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                 state.shift[i] = state.correction[i] * (1.0 - system.is_multiplier[i])
             control[PHASE] = READY
             continue
-        verdict = apply_correction(system, state, scheme)
+        verdict = apply_correction(system, state, scheme, mixed)
         control[PHASE] = ITERATE
         if verdict == 1:
             if control[ADAPTIVE] == 1 and not accurate(system, state, scheme):

@@ -1,15 +1,86 @@
-"""The iteration matrix in compiled code: scales, factors, solution."""
+"""The iteration matrix in compiled code: sum of the element matrices, scales, factors, solution."""
 
 import numpy as np
 from numba import njit
 
 from . import elimination
-from .abi import pointer_to
+from .abi import at, pointer_to
 from .dense import columns_times
-from .evaluate import sum_matrices
-from .state import FLOOR
+from .elimination import BLOCK
+from .links import add_expanded, add_second_order
+from .state import FLOOR, PIVOTED, RENEWED
 
+SUMMAND = 7             # numbers of an element in System.summands
 RELAXATION = 1e-7       # of redundant constraints, in the scaled iteration matrix alone
+
+
+@njit(cache=True, error_model="numpy")
+def sum_matrices(system, state, forces):
+    """The matrix from the element matrices, which stay as they are; links need the forces."""
+    for k in range(state.matrix.size):
+        state.matrix[k] = 0.0
+    for k in range(system.padding.size):
+        state.matrix[system.padding[k]] = 1.0
+    for element in range(system.summands.shape[0]):
+        sum_element(system, state, element)
+    if system.links.elements.shape[0] > 0:
+        add_second_order(system.links, state.coefficients[2], state.q, state.R, state.T, forces,
+                         state.matrix)
+
+
+@njit(cache=True, error_model="numpy")
+def sum_element(system, state, element):
+    """Add an element matrix, positions turned to the axes they are solved for in."""
+    summand = at(pointer_to(system.summands), SUMMAND * element)
+    start, width, first_turned, end_turned, linked = (summand[0], summand[1], summand[2],
+                                                      summand[3], summand[4])
+    own, J = at(pointer_to(state.J), start), pointer_to(state.turned)
+    if first_turned < end_turned or linked >= 0:
+        for k in range(width * width):
+            J[k] = own[k]
+        for k in range(first_turned, end_turned):
+            _turn_block(system.turned_blocks[k], system.dimension[0], J, state.frames)
+        own = J
+    if linked >= 0:
+        add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
+                     state.matrix, state.expansion)
+        return
+    matrix, entries = pointer_to(state.matrix), at(pointer_to(system.J_entry), start)
+    for k in range(width * width):
+        matrix[entries[k]] += own[k]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _product_row(to, own, block, i):
+    """Row of ``to^T own``, of frames that may be global axes."""
+    if block[3] < 0:
+        return own[3 * i], own[3 * i + 1], own[3 * i + 2]
+    x, y, z = to[i], to[3 + i], to[6 + i]
+    if block[4] < 0:
+        return x, y, z
+    return (x * own[0] + y * own[3] + z * own[6], x * own[1] + y * own[4] + z * own[7],
+            x * own[2] + y * own[5] + z * own[8])
+
+
+@njit(cache=True, error_model="numpy")
+def _turn_block(block, dimension, J, frames):
+    """Rows and columns of a position in an element matrix, to the axes it is solved for in."""
+    width, row = block[1], block[2]
+    to, own = at(pointer_to(frames), 9 * block[3]), at(pointer_to(frames), 9 * block[4])
+    a, b, c = _product_row(to, own, block, 0)
+    d, e, f = _product_row(to, own, block, 1)
+    g, h, k = _product_row(to, own, block, 2)
+    for across in range(2):
+        first, next_line, step = (row, width, 1) if across == 0 else (row * width, 1, width)
+        for i in range(width):
+            p = at(J, first + i * next_line)
+            x, y = p[0], p[step]
+            if dimension == 2:
+                p[0], p[step] = a * x + b * y, d * x + e * y
+            else:
+                z = p[2 * step]
+                p[0], p[step] = a * x + b * y + c * z, d * x + e * y + f * z
+                p[2 * step] = g * x + h * y + k * z
 
 
 @njit(cache=True, error_model="numpy")
@@ -72,30 +143,82 @@ def invert_dense(system, state, n):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def factorize(system, state):
-    """Factors of a large system in place of its matrix; False, and the matrix, at a small pivot."""
-    done = elimination.eliminate(
-        system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
-        pointer_to(system.block_diagonal), pointer_to(state.matrix), pointer_to(state.column),
-        pointer_to(state.scale))
+def eliminate(system, state, first, end):
+    """Factors in place of block columns of the matrix; False at a small pivot."""
+    return elimination.eliminate(
+        first, end, pointer_to(system.block_starts), pointer_to(system.block_rows),
+        pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
+        pointer_to(state.matrix), pointer_to(state.column), pointer_to(state.scale))
+
+
+@njit(cache=True, error_model="numpy")
+def eliminate_summing(system, state):
+    """Sum and eliminate in one pass: columns as soon as all their element matrices are there.
+
+    In long chains the blocks leave the cache between two passes. False at a small pivot.
+    """
+    starts, across = system.block_starts, system.block_diagonal.size
+    cleared = eliminated = padded = 0
+    for element in range(system.summands.shape[0] + 1):
+        ready, needed = across, across
+        if element < system.summands.shape[0]:
+            ready, needed = system.summands[element, 5], system.summands[element, 6] + 1
+        for reach in (ready, needed):
+            if reach > cleared:
+                for k in range(BLOCK * starts[cleared], BLOCK * starts[reach]):
+                    state.matrix[k] = 0.0
+                cleared = reach
+        while padded < system.padding.size and system.padding[padded] < BLOCK * starts[cleared]:
+            state.matrix[system.padding[padded]] = 1.0
+            padded += 1
+        if ready > eliminated:
+            if not eliminate(system, state, eliminated, ready):
+                return False
+            eliminated = ready
+        if element < system.summands.shape[0]:
+            sum_element(system, state, element)
+    return True
+@njit(cache=True, error_model="numpy")
+def renew(system, state, level, dense):
+    """Sum and factorize; False if a small matrix is singular, PIVOTED and the sum at small pivots.
+
+    Scales are those of the last matrix with new ones of all elements.
+    """
+    across, relaxed = system.block_diagonal.size, system.relaxed[0] == 1
+    linked = system.links.elements.shape[0] > 0
+    if level == RENEWED or dense or relaxed or linked:
+        sum_matrices(system, state, state.forces)
+        if level == RENEWED:
+            equilibrate(system, state)
+        if relaxed:
+            relax(system, state)
+        if dense:
+            return invert_dense(system, state, system.diagonal.size)
+        done = eliminate(system, state, 0, across)
+    else:
+        done = eliminate_summing(system, state)
+    state.control[PIVOTED] = 0 if done else 1
     if not done:
         sum_matrices(system, state, state.forces)
-        if system.relaxed[0] == 1:
+        if relaxed:
             relax(system, state)
-    return done
+    return True
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def solve(system, state, dense):
     """Correction from the residual."""
-    n, x = system.diagonal.size, pointer_to(state.correction)
+    n = system.diagonal.size
     if dense:
-        columns_times(pointer_to(state.inverse), pointer_to(state.residual), x, n, n)
+        columns_times(pointer_to(state.inverse), pointer_to(state.residual),
+                      pointer_to(state.correction), n, n)
         return
-    for i in range(n):
-        x[i] = state.residual[i]
-    for i in range(system.padding.size):
-        x[n + i] = 0.0
+    x, unknowns = pointer_to(state.solution), pointer_to(system.slot_unknowns)
+    for slot in range(system.slot_unknowns.size):
+        x[slot] = state.residual[unknowns[slot]] if unknowns[slot] < n else 0.0
     elimination.substitute(system.block_diagonal.size, pointer_to(system.block_starts),
                            pointer_to(system.block_rows), pointer_to(system.block_diagonal),
                            pointer_to(state.matrix), x)
+    for slot in range(system.slot_unknowns.size):
+        if unknowns[slot] < n:
+            state.correction[unknowns[slot]] = x[slot]

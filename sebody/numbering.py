@@ -1,5 +1,6 @@
 """Where the things of a model are among the unknowns."""
 
+from collections import defaultdict
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from .errors import InputError
 from .histories import History
 from .kernels import element_kernel
 from .model import Model
-from .triplets import Triplet
+from .triplets import Element, Triplet
 
 
 class Numbering(NamedTuple):
@@ -27,6 +28,7 @@ class Numbering(NamedTuple):
     item_names: list[str]               # of what has a history or does work
     histories: list[History]            # of every item
     prescribed: list[tuple[int, int, int, float]]   # coordinate, item, 1 if it turns R, factor
+    groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, joint or load) -> its first force in State.g
 
 
@@ -48,8 +50,9 @@ def turning(model: Model, numbering: Numbering) -> NDArray:
 def number(model: Model) -> Numbering:
     """Number the unknowns body by body; what bodies share waits for the last one that has it.
 
-    Multipliers follow the unknowns they act on. So an elimination in this order meets no zero
-    pivot, and keeps its fill close to the diagonal.
+    Of a body's own those come last that joints couple to later bodies. Multipliers follow the
+    unknowns they act on. So an elimination in this order meets no zero pivot, and keeps its fill
+    close to the diagonal.
 
     Raises
     ------
@@ -60,28 +63,34 @@ def number(model: Model) -> Numbering:
     parts = _parts(model)
     last = {id(p): k for k, (_, triplets, _) in enumerate(parts)
             for t in triplets for p in t.parents()}
+    coupled = _coupled(model, last)
+    joints, groups = defaultdict(list), []
+    for joint in model.joints:
+        for key in {id(p) for p in _parents(joint)}:
+            joints[key].append(joint)
 
     def place(triplet: Triplet) -> None:
         if triplet.solved and id(triplet) not in at:
             at[id(triplet)] = len(names)
             names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
+            place_multipliers(joints[id(triplet)])
 
-    def place_joints() -> None:
-        for joint in model.joints:
-            parents = [p for t in joint.triplets for p in t.parents()]
-            if id(joint) not in multipliers and all(id(p) in at or not p.solved for p in parents):
+    def place_multipliers(of: list[Element]) -> None:
+        for joint in of:
+            if all(id(p) in at or not p.solved for p in _parents(joint)):
                 multipliers[id(joint)] = len(names)
                 names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
 
+    place_multipliers([joint for joint in model.joints if not any(
+        p.solved for p in _parents(joint))])
     for number_, (name, triplets, count) in enumerate(parts):
+        groups.append(len(names))
         if name in model.bodies:
             modes[name] = len(names)
         names.extend(f"mode {k} of {name}" for k in range(count))
-        for triplet in triplets:
-            for parent in triplet.parents():
-                if last[id(parent)] == number_:
-                    place(parent)
-        place_joints()
+        own = [p for t in triplets for p in t.parents() if last[id(p)] == number_]
+        for triplet in sorted(own, key=lambda p: coupled[id(p)]):
+            place(triplet)
     _refuse_loose(model, last)
     free = len(names)
     used = _used(model)
@@ -99,7 +108,22 @@ def number(model: Model) -> Numbering:
             if triplet.turns:
                 rotations.setdefault(id(triplet), len(rotations))
     return Numbering(free, len(names), at, rotations, modes, multipliers, names, hanging,
-                     *_items(model, at))
+                     *_items(model, at), np.array(groups))
+
+
+def _coupled(model: Model, last: dict[int, int]) -> dict[int, int]:
+    """The last body that a triplet is coupled to, by joints, too."""
+    found = dict(last)
+    for joint in model.joints:
+        parents = [id(p) for p in _parents(joint) if id(p) in last]
+        for parent in parents:
+            found[parent] = max(found[parent], *(last[p] for p in parents))
+    return found
+
+
+def _parents(element: Element) -> list[Triplet]:
+    """The triplets that move an element."""
+    return [p for t in element.triplets for p in t.parents()]
 
 
 def _parts(model: Model) -> list[tuple[str, list[Triplet], int]]:
@@ -116,7 +140,7 @@ def _refuse_loose(model: Model, held: dict) -> None:
                     raise InputError(f"{parent.name} belongs to no body, so nothing holds it: "
                                      "attach a body or fix it")
     for load in model.loads:
-        parents = [p for t in load.triplets for p in t.parents()]
+        parents = _parents(load)
         if parents and load.history is not None and not any(id(p) in held for p in parents):
             raise InputError(f"{load.name}: no body is there to bear it: attach one")
 

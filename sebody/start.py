@@ -19,6 +19,7 @@ from .evaluate import (
 )
 from .linear import Scaled
 from .links import place_hanging
+from .matrix import sum_matrices
 from .model import Model
 from .numbering import Numbering
 from .state import (
@@ -69,6 +70,7 @@ def start(model: Model, system: System, numbering: Numbering, state: State) -> S
     multipliers = np.flatnonzero(system.is_multiplier)
     state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
     _evaluate(system, state, RENEWED)
+    sum_matrices(system, state, state.residual)
     gaps = state.residual[multipliers]
     matrix = assembled(system, state)
     _check(gaps, np.abs(state.q).max(), "position", multipliers, numbering,
@@ -110,6 +112,7 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
     turn_rotations(system, state)
     state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
     _evaluate(system, state, RENEWED)
+    sum_matrices(system, state, state.residual)
     multipliers = np.flatnonzero(system.is_multiplier)
     _accelerate(system, numbering, state, _Solver(assembled(system, state), numbering, multipliers))
     later = state.a.copy()

@@ -47,6 +47,10 @@ class State(Arrays):
     residual: NDArray       # in body axes
     forces: NDArray         # the same, of the last matrix and in global axes, for links
     correction: NDArray
+    solution: NDArray       # the same by slots of the elimination
+    last_correction: NDArray    # of the iteration before, with the same matrix
+    last_shift: NDArray     # what was made of it
+    moved: NDArray          # of every element, whether that moved it
     gaps: NDArray           # of the constraints, where `residual` has those of their rates
     shift: NDArray          # correction of positions that velocities do not follow
     expansion: NDArray      # scratch of links
@@ -65,12 +69,13 @@ class State(Arrays):
 # State.clock; CURRENT_STEP is the one under way, AUX_STEP the one the auxiliary accelerations
 # belong to, CHOSEN the one the error asks for
 (TIME, STEP, CURRENT_STEP, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, SPAN, YOUNG_RATE,
- EXCESS, BEND, AUX_STEP, CHOSEN, LARGEST_ERROR) = range(14)
-CLOCKS = 14
+ EXCESS, BEND, AUX_STEP, CHOSEN, LARGEST_ERROR, TARGET) = range(15)
+CLOCKS = 15
 # State.control
 (PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
- RECORDED, AGE, PIVOTED, EAGER, EAGER_LEFT, ADAPTIVE, CORNER, HELD, REJECTED) = range(21)
-CONTROLS = 21
+ RECORDED, AGE, PIVOTED, EAGER, EAGER_LEFT, ADAPTIVE, CORNER, HELD, REJECTED,
+ SECANT) = range(22)
+CONTROLS = 22
 
 
 @dataclass(frozen=True, eq=False)

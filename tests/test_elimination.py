@@ -13,9 +13,11 @@ from sebody.scenes import chain
 
 @njit
 def factorized(pattern, matrix, column, scale):
+    unknowns = np.arange(LANES * pattern.diagonal.size)
     return elimination.eliminate(
-        pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
-        pointer_to(pattern.diagonal), pointer_to(matrix), pointer_to(column), pointer_to(scale))
+        0, pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
+        pointer_to(pattern.diagonal), pointer_to(unknowns), pointer_to(matrix), pointer_to(column),
+        pointer_to(scale))
 
 
 @njit
