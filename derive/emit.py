@@ -48,6 +48,7 @@ def imports_and_leaves(calls: set[str]) -> tuple[str, str]:
     modules = sorted({table[name][0] for name in calls})
     imports = [f"from {module} import " + ", ".join(
         sorted(n for n in calls if table[n][0] == module)) for module in modules]
+    imports = sorted([*imports, "from sebody.passes import KernelPasses"])
     leaves = [f'    "{name}": "{digest}",' for name, (_, digest) in table.items()]
     return "\n".join(imports), "\n".join(leaves)
 

@@ -11,6 +11,7 @@ from math import cos, sin
 from numba import cfunc
 
 from sebody.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+from sebody.passes import KernelPasses
 
 PLANAR = True
 N_POSITIONS = 1
@@ -27,7 +28,8 @@ OPERATIONS = {"residual": (10, 0), "column": (14, 0)}
 LEAVES = {}
 
 
-@cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"})
+@cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
+       pipeline_class=KernelPasses)
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     for element in range(count):

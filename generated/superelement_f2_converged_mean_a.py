@@ -14,6 +14,7 @@ from numba import cfunc
 from sebody.abi import ENERGY, HEADER, SIGNATURE, TANGENT, at, padded
 from sebody.dense import columns_times, inverse_3
 from sebody.locate import converged_mean
+from sebody.passes import KernelPasses
 from sebody.rotations import inverse_tangent_coefficients
 
 LAYOUT = "f2"
@@ -53,7 +54,8 @@ LEAVES = {
 }
 
 
-@cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"})
+@cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
+       pipeline_class=KernelPasses)
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width

@@ -14,6 +14,7 @@ from numba import cfunc
 from sebody.abi import ENERGY, HEADER, SIGNATURE, TANGENT, at, padded
 from sebody.dense import columns_times
 from sebody.locate import weighted_mean
+from sebody.passes import KernelPasses
 from sebody.rotations import inverse_tangent_coefficients, stumpff_2345
 
 LAYOUT = "f2"
@@ -50,7 +51,8 @@ LEAVES = {
 }
 
 
-@cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"})
+@cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
+       pipeline_class=KernelPasses)
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width
