@@ -33,6 +33,7 @@ class Kernel(NamedTuple):
     layout: str         # empty for joints and loads
     frame: str
     inertia: str
+    size: int           # of its text
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -278,11 +279,12 @@ def kernels() -> list[Kernel]:
 
 
 def _describe(path: Path) -> Kernel:
-    constants = {}
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    constants, text = {}, path.read_text(encoding="utf-8")
+    for node in ast.parse(text).body:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
             constants[node.targets[0].id] = node.value.value
-    return Kernel(path.stem, *(constants.get(k, "") for k in ("LAYOUT", "FRAME", "INERTIA")))
+    return Kernel(path.stem, *(constants.get(k, "") for k in ("LAYOUT", "FRAME", "INERTIA")),
+                  len(text))
 
 
 def _files(package: str) -> list[Path]:
@@ -350,9 +352,9 @@ def _atlas(options: argparse.Namespace) -> int:
 
 def _warm(options: argparse.Namespace) -> int:
     began = time.perf_counter()
-    names = [kernel.name for kernel in kernels()]
+    names = [kernel.name for kernel in sorted(kernels(), key=lambda kernel: -kernel.size)]
     with ProcessPoolExecutor(PROCESSES) as pool:
-        time_loop = pool.submit(_compile_loop)      # first: it takes longest
+        time_loop = pool.submit(_compile_loop)      # what takes longest comes first
         for name, seconds in zip(names, pool.map(_compile, names), strict=True):
             print(f"  {name:44} {seconds:6.1f} s", flush=True)
         print(f"  {'time loop':44} {time_loop.result():6.1f} s")

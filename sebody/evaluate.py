@@ -44,51 +44,6 @@ def run_kernels(task, first, last, system, state):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
-def find_moved(system, state, limit):
-    """Which elements the last correction moved; it moved all others by less than `limit`."""
-    k = first = 0
-    limit *= limit / state.moved.size
-    for b in range(system.address.size):
-        for element in range(system.count[b]):
-            size = 0.0
-            for _ in range(system.width[b]):
-                i = system.g_unknown[k]
-                change = state.last_shift[i] * state.weight[i]
-                size += change * change
-                k += 1
-            state.moved[first + element] = size > limit
-        first += system.count[b]
-
-
-@njit(cache=True, error_model="numpy")
-def run_moved(system, state):
-    """Forces of the elements that moved; those of the others are kept."""
-    index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
-    first = 0                   # of the elements, for `moved`
-    for b in range(system.address.size):
-        stride, width = system.stride[b], system.width[b]
-        begin = 0
-        while begin < system.count[b]:
-            if not state.moved[first + begin]:
-                begin += 1
-                continue
-            end = begin + 1
-            while end < system.count[b] and state.moved[first + end]:
-                end += 1
-            status = call_kernel(
-                system.address[b], RESIDUAL, end - begin, stride, width,
-                (at(index, system.at_index[b] + begin * stride), system.constants, state.q,
-                 state.R, state.v, state.a, state.frames_old, state.frames, state.T, state.loads,
-                 state.coefficients, at(g, system.at_g[b] + begin * width), J, state.work,
-                 state.energy))
-            if status != 0:
-                return status
-            begin = end
-        first += system.count[b]
-    return 0
-
-
 @njit(cache=True, error_model="numpy", forceinline=True)
 def set_loads(system, loads, t):
     """Amplitudes of the items and their rates at a time."""
@@ -176,6 +131,60 @@ def sum_forces(system, state, residual):
         sums[unknowns[k]] += state.g[k]
     if system.links.hanging.shape[0] > 0:
         pull_back(system.links, state.q, state.R, residual)
+
+
+@njit(cache=True, error_model="numpy")
+def _find_moved(system, state, limit):
+    """Which elements the last correction moved; it moved all others by less than `limit`."""
+    k = first = 0
+    limit *= limit / state.moved.size
+    for b in range(system.address.size):
+        for element in range(system.count[b]):
+            size = 0.0
+            for _ in range(system.width[b]):
+                i = system.g_unknown[k]
+                change = state.last_shift[i] * state.weight[i]
+                size += change * change
+                k += 1
+            state.moved[first + element] = size > limit
+        first += system.count[b]
+
+
+@njit(cache=True, error_model="numpy")
+def _run_moved(system, state):
+    """Forces of the elements that moved; those of the others are kept."""
+    index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
+    first = 0                   # of the elements, for `moved`
+    for b in range(system.address.size):
+        stride, width = system.stride[b], system.width[b]
+        begin = 0
+        while begin < system.count[b]:
+            if not state.moved[first + begin]:
+                begin += 1
+                continue
+            end = begin + 1
+            while end < system.count[b] and state.moved[first + end]:
+                end += 1
+            status = call_kernel(
+                system.address[b], RESIDUAL, end - begin, stride, width,
+                (at(index, system.at_index[b] + begin * stride), system.constants, state.q,
+                 state.R, state.v, state.a, state.frames_old, state.frames, state.T, state.loads,
+                 state.coefficients, at(g, system.at_g[b] + begin * width), J, state.work,
+                 state.energy))
+            if status != 0:
+                return status
+            begin = end
+        first += system.count[b]
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def assemble_moved(system, state, limit):
+    """Sum of the forces, new ones of the elements that moved by more than a share of `limit`."""
+    _find_moved(system, state, limit)
+    status = _run_moved(system, state)
+    sum_forces(system, state, state.residual)
+    return status
 
 
 @njit(cache=True, error_model="numpy")

@@ -13,13 +13,11 @@ from numba import njit
 from .abi import at, pointer_to
 from .evaluate import (
     assemble,
-    find_moved,
+    assemble_moved,
     move_prescribed,
-    run_moved,
     set_loads,
     set_powers,
     set_tangent_operators,
-    sum_forces,
     take_rates,
     to_body_axes,
     turn_rotations,
@@ -192,7 +190,7 @@ def apply_correction(system, state, scheme, mixed):
     return -1 if rate > POOR or np.log(target / norm) / np.log(rate) > min(price, left) else 0
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy")
 def accelerate(state, n, norm):
     """Anderson's mixing with the last correction; returns the norm of what is left to iterate.
 
@@ -400,9 +398,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             if level == RENEWED:
                 set_tangent_operators(system, state)
             if level == FORCES and control[ITERATION] > 1 and selective:
-                find_moved(system, state, UNMOVED * clock[TARGET])
-                reason = run_moved(system, state)
-                sum_forces(system, state, state.residual)
+                reason = assemble_moved(system, state, UNMOVED * clock[TARGET])
             else:
                 reason = assemble(level, system, state, state.residual)
             if reason != NO_REASON:

@@ -208,12 +208,18 @@ def renew(system, state, level, dense):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def solve(system, state, dense):
     """Correction from the residual."""
-    n = system.diagonal.size
     if dense:
+        n = system.diagonal.size
         columns_times(pointer_to(state.inverse), pointer_to(state.residual),
                       pointer_to(state.correction), n, n)
-        return
-    x, unknowns = pointer_to(state.solution), pointer_to(system.slot_unknowns)
+    else:
+        _substitute(system, state)
+
+
+@njit(cache=True, error_model="numpy")
+def _substitute(system, state):
+    n, unknowns, x = (system.diagonal.size, pointer_to(system.slot_unknowns),
+                      pointer_to(state.solution))
     for slot in range(system.slot_unknowns.size):
         x[slot] = state.residual[unknowns[slot]] if unknowns[slot] < n else 0.0
     elimination.substitute(system.block_diagonal.size, pointer_to(system.block_starts),
