@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from sebody import generalized_alpha, simulate
+from sebody import Simulation, generalized_alpha, simulate
 from sebody.scenes import chain
 
 FINE = generalized_alpha(0.9, 1e-11)
@@ -71,3 +71,19 @@ def test_cost_of_memory_is_that_of_the_output():
     full = simulate(chain.build(links=4).model, 0.01, 1.0)
     assert thin.rows.shape[0] == 6 and full.rows.shape[0] == 101
     assert np.array_equal(thin.rows[:, 3:], full.rows[::20, 3:])
+
+
+@pytest.fixture(scope="module")
+def long():
+    return Simulation(chain.build(links=400).model, 0.01).run_to(0.5)
+
+
+def test_kept_forces_and_mixed_corrections_change_nothing_but_time(long):
+    exact = simulate(chain.build(links=400).model, 0.01, 0.5, FINE)
+    for place in ("joint 5.position", "joint 100.position", "tip.position"):
+        assert np.abs(long.result()[place] - exact[place]).max() < 1e-6, place
+
+
+def test_iterations_hardly_grow_with_the_length(falling, long):
+    assert long.result().iterations_per_step < 1.25 * falling.iterations_per_step
+    assert long.state.moved.mean() < 0.5        # where the last iteration had anything to do

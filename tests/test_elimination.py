@@ -8,6 +8,8 @@ from scipy.sparse.linalg import spsolve
 
 from sebody import Simulation, assembly, elimination, state
 from sebody.abi import LANES, pointer_to
+from sebody.evaluate import assemble, assemble_moved
+from sebody.matrix import eliminate, eliminate_summing, sum_matrices
 from sebody.scenes import chain
 
 
@@ -53,6 +55,75 @@ def test_solves_what_scipy_solves(n, links):
     exact = spsolve(coo_array((value, (row, column)), shape=(n, n)).tocsc(), b)
     assert np.abs(x[:n] - exact).max() < 1e-12 * np.abs(exact).max()
     assert not x[n:].any()
+
+
+@pytest.mark.parametrize("groups", [[0, 3, 9, 14], [0, 0, 8, 30, 30], [0]])
+def test_slots_leave_the_solution_as_it_is(groups):
+    n = 30
+    row, column, value = system(n, 5, 60)
+    slot, pattern = elimination.best_slots(row, column, np.array(groups), n)
+    slots = LANES * len(pattern.diagonal)
+    assert len(set(slot)) == n and np.all(np.diff(slot) > 0)
+    matrix = np.zeros(len(pattern.rows) * LANES**2)
+    np.add.at(matrix, elimination.entries(pattern, slot[row], slot[column]), value)
+    free = np.setdiff1d(np.arange(slots), slot)
+    matrix[elimination.entries(pattern, free, free)] = 1.0
+    assert factorized(pattern, matrix, np.zeros(LANES * slots), np.ones(slots))
+    b = np.random.default_rng(1).normal(size=n)
+    x = np.zeros(slots)
+    x[slot] = b
+    substituted(pattern, matrix, x)
+    exact = spsolve(coo_array((value, (row, column)), shape=(n, n)).tocsc(), b)
+    assert np.abs(x[slot] - exact).max() < 1e-12 * np.abs(exact).max()
+
+
+def test_bodies_on_whole_blocks_are_less_work(monkeypatch):
+    asked, best = [], elimination.best_slots
+
+    def spy(*arguments):
+        asked.append(arguments)
+        return best(*arguments)
+    monkeypatch.setattr(elimination, "best_slots", spy)
+    Simulation(chain.build(links=12).model, 0.01)
+    (row, column, groups, n), = asked
+    _, pattern = best(row, column, groups, n)
+    plain = elimination.block_pattern(row, column, n)
+    assert pattern.products < 0.6 * plain.products
+
+
+@njit
+def in_two_passes(system, state):
+    sum_matrices(system, state, state.residual)
+    return eliminate(system, state, 0, system.block_diagonal.size)
+
+
+def test_one_pass_gives_the_factors_of_two():
+    run = Simulation(chain.build(links=12).model, 0.01).run_to(0.3)
+    assert in_two_passes(run.system, run.state)
+    factors = run.state.matrix.copy()
+    run.state.matrix[:] = np.nan
+    assert eliminate_summing(run.system, run.state)
+    assert np.array_equal(factors[:-1], run.state.matrix[:-1])
+
+
+def test_elements_that_do_not_move_keep_their_forces():
+    run = Simulation(chain.build(links=12).model, 0.01).run_to(0.3)
+    system, now, n = run.system, run.state, run.numbering.free
+    assert assemble(state.FORCES, system, now, now.residual) == 0
+    moved = run.numbering.names.index("joint 5.position[0]")
+    now.last_shift[:] = 0.0
+    now.last_shift[moved] = 1e-3
+    now.q[moved] -= 1e-3
+    limit = 1e-6 * now.weight[:n].min()
+    assert assemble_moved(system, now, limit) == 0
+    assert now.moved.sum() == 2             # the links on both sides; the joint is on rotations
+    residual = now.residual.copy()
+    assert assemble(state.FORCES, system, now, now.residual) == 0
+    assert np.array_equal(residual, now.residual)
+    now.last_shift[moved] = 1e-3 * limit / now.weight[moved]
+    now.q[moved] += 1e-3
+    assert assemble_moved(system, now, limit) == 0
+    assert not now.moved.any() and np.array_equal(residual, now.residual)
 
 
 def test_a_small_pivot_is_noticed():
