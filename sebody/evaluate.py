@@ -143,7 +143,7 @@ def _find_moved(system, state, limit):
             size = 0.0
             for _ in range(system.width[b]):
                 i = system.g_unknown[k]
-                change = state.last_shift[i] * state.weight[i]
+                change = state.last_change[i] * state.weight[i]
                 size += change * change
                 k += 1
             state.moved[first + element] = size > limit

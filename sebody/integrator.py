@@ -290,7 +290,7 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
         turned=zeros(int(system.width.max()) ** 2), residual=zeros(total), forces=zeros(total),
         correction=zeros(padded(total) + LANES), solution=zeros(system.slot_unknowns.size),
-        last_correction=zeros(total), last_shift=zeros(total),
+        last_correction=zeros(total), last_change=zeros(total),
         moved=np.ones(len(system.summands), dtype=bool), gaps=zeros(total), shift=zeros(total),
         strictness=zeros(total), expansion=zeros(9 + int(max(
             (w * wide + wide * wide for _, w, wide, *_ in system.links.elements), default=0))),

@@ -196,24 +196,22 @@ def accelerate(state, n, norm):
 
     Matrices of the predicted state leave one slow direction where links of a taut chain turn.
     """
-    correction, last, shift = state.correction, state.last_correction, state.last_shift
+    correction, last, change = state.correction, state.last_correction, state.last_change
     along = square = mix = 0.0
     if state.control[SECANT] == 1 and norm > QUICK * state.clock[LAST_NORM]:
         for i in range(n):
             w = state.weight[i]
-            change = (correction[i] - last[i]) * w
-            along += change * correction[i] * w
-            square += change * change
+            difference = (correction[i] - last[i]) * w
+            along += difference * correction[i] * w
+            square += difference * difference
         if square > 0.0 and abs(along) < square:
             mix = along / square
             norm = np.sqrt(max(norm * norm - along * mix, 0.0))
     state.control[SECANT] = 1
     for i in range(n):
         d = correction[i]
-        s = d - mix * (shift[i] + d - last[i])
+        change[i] = correction[i] = d - mix * (change[i] + d - last[i])
         last[i] = d
-        shift[i] = s
-        correction[i] = s
     return norm
 
 

@@ -48,8 +48,8 @@ class State(Arrays):
     forces: NDArray         # the same, of the last matrix and in global axes, for links
     correction: NDArray
     solution: NDArray       # the same by slots of the elimination
-    last_correction: NDArray    # of the iteration before, with the same matrix
-    last_shift: NDArray     # what was made of it
+    last_correction: NDArray    # what the matrix gave in the last iteration,
+    last_change: NDArray    # and what was made of it and subtracted
     moved: NDArray          # of every element, whether that moved it
     gaps: NDArray           # of the constraints, where `residual` has those of their rates
     shift: NDArray          # correction of positions that velocities do not follow

@@ -111,8 +111,8 @@ def test_elements_that_do_not_move_keep_their_forces():
     system, now, n = run.system, run.state, run.numbering.free
     assert assemble(state.FORCES, system, now, now.residual) == 0
     moved = run.numbering.names.index("joint 5.position[0]")
-    now.last_shift[:] = 0.0
-    now.last_shift[moved] = 1e-3
+    now.last_change[:] = 0.0
+    now.last_change[moved] = 1e-3
     now.q[moved] -= 1e-3
     limit = 1e-6 * now.weight[:n].min()
     assert assemble_moved(system, now, limit) == 0
@@ -120,7 +120,7 @@ def test_elements_that_do_not_move_keep_their_forces():
     residual = now.residual.copy()
     assert assemble(state.FORCES, system, now, now.residual) == 0
     assert np.array_equal(residual, now.residual)
-    now.last_shift[moved] = 1e-3 * limit / now.weight[moved]
+    now.last_change[moved] = 1e-3 * limit / now.weight[moved]
     now.q[moved] += 1e-3
     assert assemble_moved(system, now, limit) == 0
     assert not now.moved.any() and np.array_equal(residual, now.residual)

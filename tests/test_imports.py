@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-LEAVES = {"sebody.rotations", "sebody.locate", "sebody.dense", "sebody.abi"}
+LEAVES = {"sebody.rotations", "sebody.locate", "sebody.dense", "sebody.abi",
+          "sebody.passes"}
 PICTURES = {"plot", "draw", "paper_figures"}     # that may import matplotlib
 MAIN_ONLY = {"sebody.generated", "sebody.kernels.user_directory"}
 
