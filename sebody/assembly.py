@@ -53,9 +53,8 @@ class System(Arrays):
     turned: NDArray         # (k, 2) first unknown and frame of free positions solved in body axes
     turned_blocks: NDArray  # (k, 5) positions whose rows and columns in an element matrix are in
                             # other axes: start, width, row, frame of the unknown, of the matrix
-    summands: NDArray       # (elements, 7) in the order of elimination: start and width of the
-                            # element matrix, first and end in turned_blocks, number among those
-                            # with links or -1, first and last block column of the sum
+    summands: NDArray       # (elements, 5) start and width of the element matrix, first and end in
+                            # turned_blocks, number among those with links or -1
     linked: NDArray         # (1,) 1 where bodies that turn against each other are coupled
     dimension: NDArray      # (1,) coordinates of a position
     magnitude: NDArray      # size of each coordinate, for the rounding floor
@@ -114,7 +113,6 @@ def build(model: Model) -> tuple[System, Numbering]:
     layout = (_dense_layout(all_rows, all_columns, numbering.free) if dense else
               _sparse_layout(all_rows, all_columns, numbering))
     entries = layout.pop("entries")
-    links = with_entries(links, entries[len(row):])
     widths = [b.width for b in batches]
     sizes = [len(b.rows) for b in batches]
     integers = np.array
@@ -135,9 +133,9 @@ def build(model: Model) -> tuple[System, Numbering]:
         g_unknown=integers([u for b in batches for row in b.unknowns for u in row]),
         J_entry=entries[:len(row)].astype(np.int32), **layout, is_multiplier=multiplier,
         rotation_at=_rotation_starts(model, numbering), **axes,
-        summands=_summands(batches, axes["turned_blocks"], links, entries, layout["block_starts"]),
+        summands=_summands(batches, axes["turned_blocks"], links),
         dimension=integers([model.dimension]), magnitude=_magnitude(model, numbering),
-        **_items(numbering), links=links,
+        **_items(numbering), links=with_entries(links, entries[len(row):]),
         relaxed=np.zeros(1, dtype=np.int64),
         damped=integers([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for b in batches for owner in b.owners]
@@ -298,22 +296,14 @@ def _body_axes(model: Model, numbering: Numbering, batches: list[Batch],
             "turned_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
 
 
-def _summands(batches: list[Batch], turned: NDArray, links: Links, entries: NDArray,
-              block_starts: NDArray) -> NDArray:
-    """Element matrices in the order in which an elimination needs them."""
+def _summands(batches: list[Batch], turned: NDArray, links: Links) -> NDArray:
+    """Element matrices, and what is done to them before they are summed."""
     width = np.repeat([b.width for b in batches], [len(b.rows) for b in batches])
     start = _starts(width ** 2)
     linked = np.full(len(width), -1)
     linked[np.searchsorted(start, links.elements[:, 0])] = np.arange(len(links.elements))
-    stored = block_starts[-1] * elimination.BLOCK if len(block_starts) else 0
-    entries = entries[:start[-1]]
-    first, last = (reach.reduceat(np.where(entries < stored, entries, empty), start[:-1])
-                   for reach, empty in ((np.minimum, stored), (np.maximum, 0)))
-    first, last = (np.searchsorted(block_starts[1:], entry // elimination.BLOCK, side="right")
-                   for entry in (first, last))
-    found = np.column_stack([start[:-1], width, np.searchsorted(turned[:, 0], start[:-1]),
-                             np.searchsorted(turned[:, 0], start[1:]), linked, first, last])
-    return found[np.argsort(first, kind="stable")]
+    return np.column_stack([start[:-1], width, np.searchsorted(turned[:, 0], start[:-1]),
+                            np.searchsorted(turned[:, 0], start[1:]), linked])
 
 
 def _magnitude(model: Model, numbering: Numbering) -> NDArray:

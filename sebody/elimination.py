@@ -87,13 +87,12 @@ def places(pattern: Pattern) -> tuple[NDArray, NDArray]:
 
 
 @njit(cache=True, error_model="numpy")
-def eliminate(first_column, end_column, starts, rows, diagonal, unknowns, matrix, column, scale):
+def eliminate(across, starts, rows, diagonal, unknowns, matrix, column, scale):
     """Factors L (unit diagonal blocks) and U (inverted ones) in place; False at a small pivot.
 
-    Of some block columns, where those before them are done. Pointers; `column` is scratch for one
-    block column, `scale` the scales of the unknowns.
+    Pointers; `column` is scratch for one block column, `scale` the scales of the unknowns.
     """
-    for j in range(first_column, end_column):
+    for j in range(across):
         first, middle, end = starts[j], diagonal[j], starts[j + 1]
         for p in range(first, end):
             source, target = at(matrix, BLOCK * p), at(column, BLOCK * rows[p])

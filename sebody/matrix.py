@@ -6,11 +6,10 @@ from numba import njit
 from . import elimination
 from .abi import at, pointer_to
 from .dense import columns_times
-from .elimination import BLOCK
 from .links import add_expanded, add_second_order
 from .state import FLOOR, PIVOTED, RENEWED
 
-SUMMAND = 7             # numbers of an element in System.summands
+SUMMAND = 5             # numbers of an element in System.summands
 RELAXATION = 1e-7       # of redundant constraints, in the scaled iteration matrix alone
 
 
@@ -142,61 +141,24 @@ def invert_dense(system, state, n):
     return size * inverse_size < 1e16 * n
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
-def eliminate(system, state, first, end):
-    """Factors in place of block columns of the matrix; False at a small pivot."""
-    return elimination.eliminate(
-        first, end, pointer_to(system.block_starts), pointer_to(system.block_rows),
-        pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
-        pointer_to(state.matrix), pointer_to(state.column), pointer_to(state.scale))
-
-
-@njit(cache=True, error_model="numpy")
-def eliminate_summing(system, state):
-    """Sum and eliminate in one pass: columns as soon as all their element matrices are there.
-
-    In long chains the blocks leave the cache between two passes. False at a small pivot.
-    """
-    starts, across = system.block_starts, system.block_diagonal.size
-    cleared = eliminated = padded = 0
-    for element in range(system.summands.shape[0] + 1):
-        ready, needed = across, across
-        if element < system.summands.shape[0]:
-            ready, needed = system.summands[element, 5], system.summands[element, 6] + 1
-        for reach in (ready, needed):
-            if reach > cleared:
-                for k in range(BLOCK * starts[cleared], BLOCK * starts[reach]):
-                    state.matrix[k] = 0.0
-                cleared = reach
-        while padded < system.padding.size and system.padding[padded] < BLOCK * starts[cleared]:
-            state.matrix[system.padding[padded]] = 1.0
-            padded += 1
-        if ready > eliminated:
-            if not eliminate(system, state, eliminated, ready):
-                return False
-            eliminated = ready
-        if element < system.summands.shape[0]:
-            sum_element(system, state, element)
-    return True
 @njit(cache=True, error_model="numpy")
 def renew(system, state, level, dense):
     """Sum and factorize; False if a small matrix is singular, PIVOTED and the sum at small pivots.
 
     Scales are those of the last matrix with new ones of all elements.
     """
-    across, relaxed = system.block_diagonal.size, system.relaxed[0] == 1
-    linked = system.links.elements.shape[0] > 0
-    if level == RENEWED or dense or relaxed or linked:
-        sum_matrices(system, state, state.forces)
-        if level == RENEWED:
-            equilibrate(system, state)
-        if relaxed:
-            relax(system, state)
-        if dense:
-            return invert_dense(system, state, system.diagonal.size)
-        done = eliminate(system, state, 0, across)
-    else:
-        done = eliminate_summing(system, state)
+    relaxed = system.relaxed[0] == 1
+    sum_matrices(system, state, state.forces)
+    if level == RENEWED:
+        equilibrate(system, state)
+    if relaxed:
+        relax(system, state)
+    if dense:
+        return invert_dense(system, state, system.diagonal.size)
+    done = elimination.eliminate(
+        system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
+        pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
+        pointer_to(state.matrix), pointer_to(state.column), pointer_to(state.scale))
     state.control[PIVOTED] = 0 if done else 1
     if not done:
         sum_matrices(system, state, state.forces)

@@ -9,7 +9,6 @@ from scipy.sparse.linalg import spsolve
 from sebody import Simulation, assembly, elimination, state
 from sebody.abi import LANES, pointer_to
 from sebody.evaluate import assemble, assemble_moved
-from sebody.matrix import eliminate, eliminate_summing, sum_matrices
 from sebody.scenes import chain
 
 
@@ -17,7 +16,7 @@ from sebody.scenes import chain
 def factorized(pattern, matrix, column, scale):
     unknowns = np.arange(LANES * pattern.diagonal.size)
     return elimination.eliminate(
-        0, pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
+        pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
         pointer_to(pattern.diagonal), pointer_to(unknowns), pointer_to(matrix), pointer_to(column),
         pointer_to(scale))
 
@@ -89,21 +88,6 @@ def test_bodies_on_whole_blocks_are_less_work(monkeypatch):
     _, pattern = best(row, column, groups, n)
     plain = elimination.block_pattern(row, column, n)
     assert pattern.products < 0.6 * plain.products
-
-
-@njit
-def in_two_passes(system, state):
-    sum_matrices(system, state, state.residual)
-    return eliminate(system, state, 0, system.block_diagonal.size)
-
-
-def test_one_pass_gives_the_factors_of_two():
-    run = Simulation(chain.build(links=12).model, 0.01).run_to(0.3)
-    assert in_two_passes(run.system, run.state)
-    factors = run.state.matrix.copy()
-    run.state.matrix[:] = np.nan
-    assert eliminate_summing(run.system, run.state)
-    assert np.array_equal(factors[:-1], run.state.matrix[:-1])
 
 
 def test_elements_that_do_not_move_keep_their_forces():
