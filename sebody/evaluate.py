@@ -32,16 +32,24 @@ def _call_function(typingctx, address, t):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def run_kernels(task, first, last, system, state):
     """Evaluate batches; returns the status of the first element that fails."""
-    index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
     for b in range(first, last):
-        status = call_kernel(
-            system.address[b], task, system.count[b], system.stride[b], system.width[b],
-            (at(index, system.at_index[b]), system.constants, state.q, state.R, state.v,
-             state.a, state.frames_old, state.frames, state.T, state.loads, state.coefficients,
-             at(g, system.at_g[b]), at(J, system.at_J[b]), state.work, state.energy))
+        status = _run_part(task, b, 0, system.count[b], system, state)
         if status != 0:
             return status
     return 0
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _run_part(task, b, first, count, system, state):
+    """Evaluate some elements of a batch."""
+    index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
+    stride, width = system.stride[b], system.width[b]
+    return call_kernel(
+        system.address[b], task, count, stride, width,
+        (at(index, system.at_index[b] + first * stride), system.constants, state.q, state.R,
+         state.v, state.a, state.frames_old, state.frames, state.T, state.loads,
+         state.coefficients, at(g, system.at_g[b] + first * width),
+         at(J, system.at_J[b] + first * width * width), state.work, state.energy))
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -153,10 +161,8 @@ def _find_moved(system, state, limit):
 @njit(cache=True, error_model="numpy")
 def _run_moved(system, state):
     """Forces of the elements that moved; those of the others are kept."""
-    index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
     first = 0                   # of the elements, for `moved`
     for b in range(system.address.size):
-        stride, width = system.stride[b], system.width[b]
         begin = 0
         while begin < system.count[b]:
             if not state.moved[first + begin]:
@@ -165,12 +171,7 @@ def _run_moved(system, state):
             end = begin + 1
             while end < system.count[b] and state.moved[first + end]:
                 end += 1
-            status = call_kernel(
-                system.address[b], RESIDUAL, end - begin, stride, width,
-                (at(index, system.at_index[b] + begin * stride), system.constants, state.q,
-                 state.R, state.v, state.a, state.frames_old, state.frames, state.T, state.loads,
-                 state.coefficients, at(g, system.at_g[b] + begin * width), J, state.work,
-                 state.energy))
+            status = _run_part(RESIDUAL, b, begin, end - begin, system, state)
             if status != 0:
                 return status
             begin = end

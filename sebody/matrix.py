@@ -21,14 +21,14 @@ def sum_matrices(system, state, forces):
     for k in range(system.padding.size):
         state.matrix[system.padding[k]] = 1.0
     for element in range(system.summands.shape[0]):
-        sum_element(system, state, element)
+        _sum_element(system, state, element)
     if system.links.elements.shape[0] > 0:
         add_second_order(system.links, state.coefficients[2], state.q, state.R, state.T, forces,
                          state.matrix)
 
 
 @njit(cache=True, error_model="numpy")
-def sum_element(system, state, element):
+def _sum_element(system, state, element):
     """Add an element matrix, positions turned to the axes they are solved for in."""
     summand = at(pointer_to(system.summands), SUMMAND * element)
     start, width, first_turned, end_turned, linked = (summand[0], summand[1], summand[2],

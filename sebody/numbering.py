@@ -1,6 +1,7 @@
 """Where the things of a model are among the unknowns."""
 
 from collections import defaultdict
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -61,12 +62,11 @@ def number(model: Model) -> Numbering:
     """
     names, at, modes, multipliers = [], {}, {}, {}
     parts = _parts(model)
-    last = {id(p): k for k, (_, triplets, _) in enumerate(parts)
-            for t in triplets for p in t.parents()}
+    last = {id(p): k for k, (_, triplets, _) in enumerate(parts) for p in _parents(triplets)}
     coupled = _coupled(model, last)
     joints, groups = defaultdict(list), []
     for joint in model.joints:
-        for key in {id(p) for p in _parents(joint)}:
+        for key in {id(p) for p in _parents(joint.triplets)}:
             joints[key].append(joint)
 
     def place(triplet: Triplet) -> None:
@@ -77,18 +77,18 @@ def number(model: Model) -> Numbering:
 
     def place_multipliers(of: list[Element]) -> None:
         for joint in of:
-            if all(id(p) in at or not p.solved for p in _parents(joint)):
+            if all(id(p) in at or not p.solved for p in _parents(joint.triplets)):
                 multipliers[id(joint)] = len(names)
                 names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
 
     place_multipliers([joint for joint in model.joints if not any(
-        p.solved for p in _parents(joint))])
+        p.solved for p in _parents(joint.triplets))])
     for number_, (name, triplets, count) in enumerate(parts):
         groups.append(len(names))
         if name in model.bodies:
             modes[name] = len(names)
         names.extend(f"mode {k} of {name}" for k in range(count))
-        own = [p for t in triplets for p in t.parents() if last[id(p)] == number_]
+        own = [p for p in _parents(triplets) if last[id(p)] == number_]
         for triplet in sorted(own, key=lambda p: coupled[id(p)]):
             place(triplet)
     _refuse_loose(model, last)
@@ -115,15 +115,15 @@ def _coupled(model: Model, last: dict[int, int]) -> dict[int, int]:
     """The last body that a triplet is coupled to, by joints, too."""
     found = dict(last)
     for joint in model.joints:
-        parents = [id(p) for p in _parents(joint) if id(p) in last]
+        parents = [id(p) for p in _parents(joint.triplets) if id(p) in last]
         for parent in parents:
             found[parent] = max(found[parent], *(last[p] for p in parents))
     return found
 
 
-def _parents(element: Element) -> list[Triplet]:
-    """The triplets that move an element."""
-    return [p for t in element.triplets for p in t.parents()]
+def _parents(triplets: Iterable[Triplet]) -> list[Triplet]:
+    """The triplets that the places of these depend on."""
+    return [p for t in triplets for p in t.parents()]
 
 
 def _parts(model: Model) -> list[tuple[str, list[Triplet], int]]:
@@ -140,7 +140,7 @@ def _refuse_loose(model: Model, held: dict) -> None:
                     raise InputError(f"{parent.name} belongs to no body, so nothing holds it: "
                                      "attach a body or fix it")
     for load in model.loads:
-        parents = _parents(load)
+        parents = _parents(load.triplets)
         if parents and load.history is not None and not any(id(p) in held for p in parents):
             raise InputError(f"{load.name}: no body is there to bear it: attach one")
 
@@ -150,7 +150,7 @@ def _used(model: Model) -> list[Triplet]:
     elements = (*model.rigid_bodies.values(), *model.joints, *model.loads)
     found = [t for n in model.nodes.values() for t in (n.position, n.rotation) if t is not None]
     found += [t for e in elements for t in e.triplets]
-    found += [p for t in found for p in t.parents()]
+    found += _parents(found)
     return list({id(t): t for t in found}.values())
 
 

@@ -69,10 +69,8 @@ def start(model: Model, system: System, numbering: Numbering, state: State) -> S
     place_hanging(system.links, state.q, state.v, state.a, state.R)
     multipliers = np.flatnonzero(system.is_multiplier)
     state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
-    _evaluate(system, state, RENEWED)
-    sum_matrices(system, state, state.residual)
+    matrix = _matrix(system, state)
     gaps = state.residual[multipliers]
-    matrix = assembled(system, state)
     _check(gaps, np.abs(state.q).max(), "position", multipliers, numbering,
            "start from a state the joints allow")
     solver = _Solver(matrix, numbering, multipliers)
@@ -111,10 +109,8 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
     move_prescribed(system, state)
     turn_rotations(system, state)
     state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
-    _evaluate(system, state, RENEWED)
-    sum_matrices(system, state, state.residual)
     multipliers = np.flatnonzero(system.is_multiplier)
-    _accelerate(system, numbering, state, _Solver(assembled(system, state), numbering, multipliers))
+    _accelerate(system, numbering, state, _Solver(_matrix(system, state), numbering, multipliers))
     later = state.a.copy()
     state.now[:], state.loads[:] = kept, loads
     rates = (later - state.a) / dt
@@ -127,6 +123,13 @@ def assembled(system: System, state: State) -> csc_matrix:
     n, entries = system.diagonal.size, state.matrix[:-1]
     kept = np.flatnonzero((entries != 0.0) & (system.rows < n))
     return csc_matrix((entries[kept], (system.rows[kept], system.columns[kept])), shape=(n, n))
+
+
+def _matrix(system: System, state: State) -> csc_matrix:
+    """The matrix of the present coefficients; leaves the forces in `residual`."""
+    _evaluate(system, state, RENEWED)
+    sum_matrices(system, state, state.residual)
+    return assembled(system, state)
 
 
 def _evaluate(system: System, state: State, level: int) -> None:

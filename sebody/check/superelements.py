@@ -203,10 +203,7 @@ def energies(case: Case) -> float:
 
 def damping_power(case: Case) -> float:
     """Power of the structural damping against its force on the unknowns times their velocity."""
-    calm = case._replace(constants=case.constants.copy())
-    calm.constants[constant_ends(case)[9]:] = 0.0
-    force = evaluate(case, RESIDUAL)[0] - evaluate(calm, RESIDUAL)[0]
-    return abs(evaluate(case, ENERGY)[2][POWERS] / (-force @ case.v) - 1)
+    return abs(evaluate(case, ENERGY)[2][POWERS] / (-_damping_force(case) @ case.v) - 1)
 
 
 def damping_of_rigid_motion(case: Case) -> float:
@@ -221,13 +218,16 @@ def damping_of_rigid_motion(case: Case) -> float:
     v[:len(x)] = (np.cross(spin, place) + [0.2, 0.1, -0.4])[:, :d].ravel()
     for j, at in enumerate(case.turning):
         v[at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ spin
-    rigid = case._replace(v=v)
-    calm = rigid._replace(constants=case.constants.copy())
-    calm.constants[constant_ends(case)[9]:] = 0.0
-    general = evaluate(case, RESIDUAL)[0] - evaluate(case._replace(
-        constants=calm.constants), RESIDUAL)[0]
-    force = evaluate(rigid, RESIDUAL)[0] - evaluate(calm, RESIDUAL)[0]
-    return float(np.abs(force).max() / np.abs(general).max())
+    force = _damping_force(case._replace(v=v))
+    return float(np.abs(force).max() / np.abs(_damping_force(case)).max())
+
+
+def _damping_force(case: Case) -> NDArray:
+    """The force less that without the damping matrix."""
+    constants = case.constants.copy()
+    constants[constant_ends(case)[9]:] = 0.0
+    return (evaluate(case, RESIDUAL)[0]
+            - evaluate(case._replace(constants=constants), RESIDUAL)[0])
 
 
 def total_momentum(case: Case) -> float:
