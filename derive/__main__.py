@@ -12,17 +12,16 @@ import sys
 from pathlib import Path
 
 import sebody.generated
-from sebody.kernels import user_directory
-
-from .catalogue import ELEMENTS
-from .emit import superelement_text
-from .emit_element import element_text
-from .frames import FRAMES
-from .inertia import OPTIONS
-from .layouts import Layout, LayoutError
-from .manifest import ELEMENTS as SHIPPED_ELEMENTS
-from .manifest import SUPERELEMENTS
-from .superelement import superelement
+from sebody.derive.formulas.frames import FRAMES
+from sebody.derive.formulas.inertia import OPTIONS
+from sebody.derive.kernels.catalogue import ELEMENTS
+from sebody.derive.kernels.layouts import Layout, LayoutError
+from sebody.derive.kernels.manifest import ELEMENTS as SHIPPED_ELEMENTS
+from sebody.derive.kernels.manifest import SUPERELEMENTS
+from sebody.derive.kernels.superelement import superelement
+from sebody.derive.printing.emit import superelement_text
+from sebody.derive.printing.emit_element import element_text
+from sebody.kernels.loader import user_directory
 
 KERNEL_PREFIXES = ("superelement_", "element_")
 

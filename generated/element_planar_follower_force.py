@@ -10,8 +10,8 @@ from math import cos, sin
 
 from numba import cfunc
 
-from sebody.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
-from sebody.passes import KernelPasses
+from sebody.kernels.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = True
 N_POSITIONS = 1

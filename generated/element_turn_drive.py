@@ -10,8 +10,8 @@ from math import cos, sin
 
 from numba import cfunc
 
-from sebody.abi import ACCELERATION, ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, VELOCITY, at
-from sebody.passes import KernelPasses
+from sebody.kernels.abi import ACCELERATION, ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, VELOCITY, at
+from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = False
 N_POSITIONS = 0

@@ -1,11 +1,11 @@
 """Flexible multibody dynamics with superelements (Cardona, 2000)."""
 
-from .accuracy import simulate_within
-from .errors import InputError, LimitWarning, SebodyError, SimulationError
-from .integrator import Simulation, generalized_alpha, hht, simulate
-from .model import Model
-from .results import Result
-from .tolerance import Tolerance
+from sebody.analysis.accuracy import simulate_within
+from sebody.analysis.simulation import Simulation, generalized_alpha, hht, simulate
+from sebody.analysis.tolerance import Tolerance
+from sebody.errors import InputError, LimitWarning, SebodyError, SimulationError
+from sebody.model.model import Model
+from sebody.results.result import Result
 
 __all__ = ["InputError", "LimitWarning", "Model", "Result", "SebodyError", "Simulation",
            "SimulationError", "Tolerance", "generalized_alpha", "hht", "simulate",

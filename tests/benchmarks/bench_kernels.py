@@ -16,10 +16,10 @@ import numpy as np
 from numba import njit
 
 from sebody import simulate
-from sebody.abi import ENERGIES, RESIDUAL, TANGENT, call_kernel, padded
-from sebody.check import superelements
-from sebody.kernels import load
+from sebody.kernels.abi import ENERGIES, RESIDUAL, TANGENT, call_kernel, padded
+from sebody.kernels.loader import load
 from sebody.scenes import hinged_beam, planar_hinged_beam
+from sebody.studies.check import superelements
 
 LAYOUTS = ("f2_converged_mean_b", "f2t1_converged_mean_b", "t8_positions_b",
            "planar_f2_converged_mean_b")

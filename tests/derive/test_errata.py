@@ -10,12 +10,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sebody import Simulation, generalized_alpha
-from sebody.check import states, superelements
-from sebody.derive import inertia, superelement
-from sebody.derive.emit import superelement_text
-from sebody.derive.layouts import Layout
-from sebody.kernels import load
+from sebody.derive.formulas import inertia
+from sebody.derive.kernels import superelement
+from sebody.derive.kernels.layouts import Layout
+from sebody.derive.printing.emit import superelement_text
+from sebody.kernels.loader import load
 from sebody.scenes.hinged_beam import build
+from sebody.studies.check import states, superelements
 
 KERNEL = "superelement_f2_converged_mean_b"
 

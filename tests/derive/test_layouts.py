@@ -3,8 +3,8 @@
 import pytest
 
 from sebody.derive.__main__ import parse_variant
-from sebody.derive.layouts import Layout, LayoutError
-from sebody.derive.superelement import kernel_name, superelement
+from sebody.derive.kernels.layouts import Layout, LayoutError
+from sebody.derive.kernels.superelement import kernel_name, superelement
 
 
 @pytest.mark.parametrize("name, positions, rotations, first_rotation, first_mode", [

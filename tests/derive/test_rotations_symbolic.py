@@ -4,8 +4,8 @@ import mpmath
 import pytest
 import sympy as sp
 
-from sebody.derive import rotations
-from sebody.derive.rotations import (
+from sebody.derive.symbolic import rotations
+from sebody.derive.symbolic.rotations import (
     NUMERIC,
     exp,
     inverse_tangent,
@@ -16,7 +16,7 @@ from sebody.derive.rotations import (
     tangent,
     tangent_inverse,
 )
-from sebody.derive.variation import along, check_same, differential
+from sebody.derive.symbolic.variation import along, check_same, differential
 
 S = sp.Symbol("s")
 PSI = sp.Matrix(sp.symbols("p_x p_y p_z"))

@@ -3,22 +3,14 @@
 import pytest
 import sympy as sp
 
-from sebody.derive import (
-    elastic,
-    elements,
-    forces,
-    frames,
-    inertia,
-    joints,
-    kinematics,
-    rotations,
-    superelement,
-    variation,
-)
-from sebody.derive.layouts import Layout
-from sebody.derive.quantities import Quantities
-from sebody.derive.stages import Linearizer, Space, Stage, cross
-from sebody.derive.variation import (
+from sebody.derive.formulas import elastic, elements, forces, frames, inertia, joints, kinematics
+from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.kernels import superelement
+from sebody.derive.kernels.layouts import Layout
+from sebody.derive.symbolic import rotations, variation
+from sebody.derive.symbolic.spaces import Space
+from sebody.derive.symbolic.steps import Linearizer, Stage, cross
+from sebody.derive.symbolic.variation import (
     DerivationError,
     along,
     check_same,

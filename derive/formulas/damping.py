@@ -1,0 +1,41 @@
+"""Structural damping: forces ``Upsilon^T Cbar ydot`` from the true rates of the local coordinates.
+
+``u_i`` and ``psi_j`` vary with (17), so do they in time: with velocities in place of variations. A
+rigid motion has no such rates, however fast, and is not damped. (The ``ydot`` of the inertia
+options is another thing: velocities, not rates of deformation.)
+"""
+
+from sebody.derive.formulas.frames import origin_stage
+from sebody.derive.formulas.kinematics import elastic_rotation_variation, local_displacement
+from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.symbolic.steps import Damping, Linearizer, Product, Stage, Step, Text
+
+FRICTION = Product("damping force, friction = Cbar eta", "C", "eta", "friction")
+
+
+def damping(q: Quantities) -> Damping:
+    """Rates of deformation and the damping forces, added to the elastic ones."""
+    return Damping("structural damping", (*_rates(q), FRICTION, _added("")))
+
+
+def linearized_damping(q: Quantities, chain: Linearizer) -> Damping:
+    """Their differentials; velocities must have been moved before."""
+    steps: list[Step] = [chain.stage(step) for step in _rates(q)]
+    return Damping("differential: structural damping",
+                   (*steps, FRICTION.differential(), _added("d")))
+
+
+def _rates(q: Quantities) -> tuple[Stage, ...]:
+    in_time = dict(zip((*q.dx.symbols, *q.dx0.symbols, *q.dth.symbols, *q.dth0.symbols),
+                       (*q.vs.symbols, *q.v0.symbols, *q.Om.symbols, *q.Om0.symbols), strict=True))
+    return (origin_stage(q, q.v0, q.vs),
+            Stage("rates of the elastic displacements", "position",
+                  sets=((q.eu, local_displacement(q).short[0].xreplace(in_time)),)),
+            Stage("rates of the elastic rotations", "rotation",
+                  sets=((q.ep, elastic_rotation_variation(q).xreplace(in_time)),)),
+            Stage("rates of the internal modes", "mode", sets=((q.em, q.vm.symbols),)))
+
+
+def _added(d: str) -> Text:
+    return Text("forces conjugate to y, damping included",
+                ("for i in range(n):", f"    {d}s[i] += {d}friction[i]"))

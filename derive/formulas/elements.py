@@ -1,0 +1,181 @@
+"""Small elements written out in components: what joints, bodies and forces are derived with.
+
+An element acts on blocks, positions and rotations, and is given by a few scalars: kinetic energy,
+strain energy, potential, dissipation, constraints, virtual work of a load. Forces, tangents and
+balances follow, once for all of them:
+
+    force = d/dt dT/dv - dT/dq + dV/dq + dD/dv + lambda . dphi/dq - load
+
+with Hamel's term ``Omega x dT/dOmega`` on rotations, whose variations do not commute.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import sympy as sp
+
+from sebody.derive.formulas.elastic import _of
+from sebody.derive.symbolic.spaces import Quantity, Space
+from sebody.derive.symbolic.steps import cross
+from sebody.derive.symbolic.variation import Rules, along, check_same, differential, turning
+
+AMPLITUDE = sp.symbols("amplitude amplitude_rate amplitude_acceleration")
+
+
+class Block(NamedTuple):
+    """A position or a rotation: its value, its motion, and how a column of the tangent moves it."""
+
+    state: Quantity
+    rate: Quantity
+    acceleration: Quantity
+    direction: Quantity     # variation of the state; of a rotation through T
+    unit: Quantity          # the column itself, along which rates and accelerations vary
+    angle: sp.Symbol | None # of a rotation in a plane
+
+    @property
+    def turns(self) -> bool:
+        """A rotation."""
+        return self.state.kind == "rotation"
+
+
+class Element(NamedTuple):
+    """Description of a joint, body or force: what the printer turns into text."""
+
+    name: str
+    summary: str
+    space: Space
+    constants: tuple[Quantity, ...]     # in the order of the constants row
+    blocks: tuple[Block, ...]           # positions first
+    multipliers: tuple[sp.Symbol, ...]
+    residual: tuple[sp.Expr, ...]       # force on the coordinates, then phi
+    linear: tuple[sp.Expr, ...]         # a column of the matrix
+    on_multipliers: sp.Matrix           # derivative of the force by the multipliers
+    velocity: tuple[sp.Expr, ...]       # phi differentiated in time, once
+    second: tuple[sp.Expr, ...]         # and twice
+    sums: dict[str, sp.Expr]            # what it adds to the energies, by name
+    power: sp.Expr | None               # of loads, dampers and drives on the system
+
+
+def position(space: Space, name: str) -> Block:
+    """A position, ``x<name>`` with velocity ``v<name>``."""
+    return Block(*(space.quantity(kind + name, "vector", "element")
+                   for kind in ("x", "v", "a", "dx", "ux")), None)
+
+
+def amplitude(space: Space, name: str) -> Block:
+    """The amplitude of an internal mode, ``y<name>``."""
+    return Block(*(space.quantity(kind + name, "scalar", "element")
+                   for kind in ("y", "yd", "ydd", "dy", "uy")), None)
+
+
+def rotation(space: Space, name: str) -> Block:
+    """A rotation, ``R<name>`` with material angular velocity ``Om<name>``."""
+    state = space.quantity("R" + name, "rotation", "element")
+    return Block(state, *(space.quantity(kind + name, "axial", "element")
+                          for kind in ("Om", "A", "dth", "uth")),
+                 sp.Symbol("th" + name) if space.planar else None)
+
+
+def varied(blocks: Sequence[Block]) -> Rules:
+    """Rules of a variation of the configuration."""
+    return _moved(blocks, "direction")
+
+
+def in_time(blocks: Sequence[Block]) -> Rules:
+    """Rules of time derivatives: of states, rates and the amplitude of a load."""
+    rules = _moved(blocks, "rate")
+    for block in blocks:
+        rules |= along(block.rate.symbols, block.acceleration.symbols)
+    return rules | dict(zip(AMPLITUDE[:2], AMPLITUDE[1:], strict=True))
+
+
+def _moved(blocks: Sequence[Block], along_what: str) -> Rules:
+    rules: Rules = {}
+    for block in blocks:
+        by = getattr(block, along_what).symbols
+        if not block.turns:
+            rules |= along(block.state.symbols, by)
+            continue
+        rules |= turning(block.state.symbols, by)
+        if block.angle is not None:
+            rules[block.angle] = by[2]
+    return rules
+
+
+def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
+            constants: Sequence[Quantity] = (), *, constraints: Sequence[sp.Expr] = (),
+            kinetic: sp.Expr = sp.S.Zero, strain: sp.Expr = sp.S.Zero,
+            potential: sp.Expr = sp.S.Zero, dissipation: sp.Expr = sp.S.Zero,
+            load: sp.Expr = sp.S.Zero) -> Element:
+    """Derive an element from its scalars; `load` is virtual work, linear in the directions."""
+    lam = sp.symbols(f"lam_1:{len(constraints) + 1}")
+    vary, time = varied(blocks), in_time(blocks)
+    work = sum(f * differential(phi, vary) for f, phi in zip(lam, constraints, strict=True))
+    work += differential(strain + potential, vary) - load
+    force = [entry for block in blocks for entry in space.components(
+        block.direction.kind, _of(work, block.direction.symbols)
+        + _of(dissipation, block.rate.symbols) + _inertia(kinetic, block, vary, time))]
+    gradient = sp.Matrix(force).jacobian(sp.Matrix(lam)) if lam else sp.zeros(len(force), 0)
+    _check_gradient(blocks, lam, constraints, gradient, vary)
+    velocity = [differential(phi, time) for phi in constraints]
+    return Element(
+        name, ("planar " if space.planar else "") + summary, space, tuple(constants),
+        tuple(blocks), lam, (*force, *constraints), _column(blocks, force, constraints, vary),
+        gradient, tuple(velocity), tuple(differential(v, time) for v in velocity),
+        _sums(blocks, kinetic, strain, potential),
+        _power(blocks, lam, constraints, dissipation, load))
+
+
+def _inertia(kinetic: sp.Expr, block: Block, vary: Rules, time: Rules) -> sp.Matrix:
+    momentum = _of(kinetic, block.rate.symbols)
+    force = differential(momentum, time) - _of(differential(kinetic, vary),
+                                               block.direction.symbols)
+    return force + cross(block.rate.symbols, momentum) if block.turns else force
+
+
+def _column(blocks, force, constraints, vary) -> tuple[sp.Expr, ...]:
+    c_mass, c_rate, c_place, c_constraint = sp.symbols("c_mass c_rate c_place c_constraint")
+    rates, accelerations = {}, {}
+    for block in blocks:
+        rates |= along(block.rate.symbols, block.unit.symbols)
+        accelerations |= along(block.acceleration.symbols, block.unit.symbols)
+    on_force = [c_place * differential(f, vary) + c_rate * differential(f, rates)
+                + c_mass * differential(f, accelerations) for f in force]
+    return (*on_force, *(c_constraint * differential(phi, vary) for phi in constraints))
+
+
+def _check_gradient(blocks, lam, constraints, gradient, vary) -> None:
+    """Columns of the multipliers and rows of the constraints are transposes of each other."""
+    directions = sp.Matrix([s for block in blocks for s in block.direction.kept])
+    for k in range(len(lam)):
+        check_same("constraint force is the gradient", sp.Matrix([gradient[:, k].dot(directions)]),
+                   sp.Matrix([differential(constraints[k], vary)]))
+
+
+def _sums(blocks, kinetic, strain, potential) -> dict[str, sp.Expr]:
+    """Energies; momentum and its moment, conjugate to rigid motions of the element."""
+    sums = {"kinetic": kinetic, "strain": strain, "potential": potential}
+    if kinetic != 0:
+        linear, moment = sp.zeros(3, 1), sp.zeros(3, 1)
+        for block in blocks:
+            p = _of(kinetic, block.rate.symbols)
+            if block.turns:
+                moment += block.state.symbols * p
+            else:
+                linear, moment = linear + p, moment + cross(block.state.symbols, p)
+        sums |= {f"P_{a}": linear[k] for k, a in enumerate("xyz")}
+        sums |= {f"H_{a}": moment[k] for k, a in enumerate("xyz")}
+    return {name: value for name, value in sums.items() if value != 0}
+
+
+def _power(blocks, lam, constraints, dissipation, load) -> sp.Expr | None:
+    """Rate of work on the system of what is not in the energies."""
+    rules = {d: r for block in blocks for d, r in zip(block.direction.symbols, block.rate.symbols,
+                                                      strict=True) if isinstance(d, sp.Symbol)}
+    power = sp.sympify(load).xreplace(rules)
+    for block in blocks:
+        power -= block.rate.symbols.dot(_of(dissipation, block.rate.symbols))
+    if any(phi.has(AMPLITUDE[0]) for phi in constraints):   # a drive: what moves is not at rest
+        moved = _moved(blocks, "rate")
+        power -= sum(f * differential(phi, moved) for f, phi in zip(lam, constraints, strict=True))
+    return power if power != 0 else None

@@ -1,0 +1,41 @@
+"""Rigid bodies and point masses: the case of one node, from their kinetic energy."""
+
+import sympy as sp
+
+from sebody.derive.formulas.elements import Element, element, position, rotation
+from sebody.derive.symbolic.spaces import Space
+from sebody.derive.symbolic.steps import cross
+
+
+def rigid_body(planar: bool) -> Element:
+    """A rigid body on a node anywhere in it: mass, first moment ``m c`` and inertia about the node.
+
+    ``T = m v.v/2 + v . R (Omega x m c) + Omega . J Omega/2``, gravity ``V = -g . (m x + R m c)``.
+    """
+    space = Space(planar)
+    mass, first = (space.quantity("mass", "scalar", "element"),
+                   space.quantity("mc", "vector", "element"))
+    names = ["J_zz"] if planar else ["J_xx", "J_yy", "J_zz", "J_xy", "J_yz", "J_xz"]
+    moments = [space.quantity(n, "scalar", "element") for n in names]
+    inertia = sp.zeros(3, 3)
+    for moment in moments:
+        i, j = ("xyz".index(a) for a in moment.name[2:])
+        inertia[i, j] = inertia[j, i] = moment.symbols[0]
+    x, turn = position(space, "a"), rotation(space, "a")
+    v, spin, m = x.rate.symbols, turn.rate.symbols, mass.symbols[0]
+    R, mc = turn.state.symbols, first.symbols
+    kinetic = (m * v.dot(v) / 2 + v.dot(R * cross(spin, mc)) + spin.dot(inertia * spin) / 2)
+    field = space.quantity("field", "vector", "element").symbols
+    return element("planar_" * planar + "rigid_body", "rigid body", space, (x, turn),
+                   (mass, first, *moments), kinetic=kinetic,
+                   potential=-field.dot(m * x.state.symbols + R * mc))
+
+
+def point_mass(planar: bool) -> Element:
+    """A mass without rotation on a position."""
+    space = Space(planar)
+    mass, x = space.quantity("mass", "scalar", "element"), position(space, "a")
+    v, m = x.rate.symbols, mass.symbols[0]
+    field = space.quantity("field", "vector", "element").symbols
+    return element("planar_" * planar + "point_mass", "point mass", space, (x,), (mass,),
+                   kinetic=m * v.dot(v) / 2, potential=-field.dot(m * x.state.symbols))

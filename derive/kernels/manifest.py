@@ -1,0 +1,33 @@
+"""The kernels that are shipped: one table of superelements, and all elements of `catalogue`.
+
+A kernel fuses one frame and one inertia option, so the loop makes one call an element and the
+compiler sees all of its arithmetic. The formulas are derived once for each and only combined here:
+sources add, and files multiply no further than this table; any other combination is made on demand.
+"""
+
+from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
+
+SUPERELEMENTS = (
+    # layout, frame, inertia option; pinned numbers of modes where beams mostly need no others
+    ("f2", "converged_mean", "b"),
+    ("f2d", "converged_mean", "b"),
+    ("f2m4", "converged_mean", "b"),
+    ("f2m8", "converged_mean", "b"),
+    ("f2", "mean", "b"),
+    ("f2", "mean_small", "b"),
+    ("f2", "converged_mean", "a"),
+    ("f2t1", "converged_mean", "b"),
+    ("f2r1", "converged_mean", "b"),
+    ("f3", "converged_mean", "b"),
+    ("f2t1", "positions", "b"),
+    ("t8", "positions", "b"),
+    ("f8", "converged_mean", "b"),
+    ("planar-f2", "converged_mean", "b"),
+    ("planar-f2d", "converged_mean", "b"),
+    ("planar-f2m2", "converged_mean", "b"),
+    ("planar-f2m4", "converged_mean", "b"),
+    ("planar-f2", "converged_mean", "a"),
+    ("planar-f2", "positions", "b"),
+    ("planar-f3", "converged_mean", "b"),
+)
+ELEMENTS = tuple(CATALOGUE)

@@ -1,0 +1,1 @@
+"""From a kernel's description to its text: everything that knows Numba."""

@@ -1,0 +1,1 @@
+"""Symbols and how they vary: rotations, spaces, steps, the chain rule."""

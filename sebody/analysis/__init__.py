@@ -1,0 +1,1 @@
+"""What a user runs: simulations, equilibria, small motion about a state."""

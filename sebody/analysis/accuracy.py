@@ -1,0 +1,84 @@
+"""Runs within a tolerance of their own: steps refined until two runs agree."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from sebody.analysis.simulation import Simulation
+from sebody.analysis.tolerance import Tolerance
+from sebody.assembly.numbering import turning
+from sebody.engine.state import Scheme
+from sebody.errors import SimulationError
+from sebody.model.model import Model
+from sebody.results.result import Result
+
+FIRST, COARSE = 0.3, 1e-3  # local tolerance of the first run: of that of the run, and at most
+REFINED = 3.0       # steps of the second one, of those of the first
+LEAST, MOST = 1.5, 6.0      # of the next ones
+AIM = 0.5           # of the tolerance
+HOPELESS = 0.5      # fall of the difference of two runs in two refinements
+
+
+def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance | None = None,
+                    scheme: Scheme | None = None,
+                    progress: Callable[[float], None] | None = None) -> Result:
+    """Run a model so that its error in time is within a tolerance; steps are chosen.
+
+    Steps with a local tolerance are repeated with a finer one until the difference of two runs,
+    which falls with the square of the number of steps, shows that the last is good enough. Errors
+    are root mean squares over the run, of every position and rotation. That of the model itself,
+    its modes and bodies, is not seen.
+
+    Parameters
+    ----------
+    h : float
+        Output grid [time].
+    tolerance : Tolerance
+        Of the run, by default 1e-3 of the extent and 1e-3 rad.
+
+    Returns
+    -------
+    Result
+        Of the last run, with its estimated `error`, in what is allowed, and `all_seconds`.
+
+    Raises
+    ------
+    SimulationError
+        A run that fails, or an error that does not fall: the motion may be chaotic. The last run is
+        in the error's `result`.
+    """
+    wanted = (tolerance or Tolerance()).check()
+    share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
+    before: Result | None = None
+    differences: list[float] = []
+    while True:
+        local = Tolerance(*(share * value for value in wanted))
+        now = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
+        seconds += now.seconds
+        now.all_seconds = seconds
+        if before is None:
+            share, before = share / REFINED**3, now
+            continue
+        differences.append(difference(now, before, wanted))
+        now.error = differences[-1] / max((now.steps / before.steps)**2 - 1.0, 1.0)
+        if now.error <= 1.0:
+            return now
+        if len(differences) > 2 and differences[-1] > HOPELESS * differences[-3]:
+            raise SimulationError(
+                f"the error does not fall with the step: it stays at {differences[-1]:.3g} times "
+                f"the tolerance with {now.steps} steps. The motion may be chaotic, then only its "
+                "beginning can be computed: use a larger tolerance or an earlier end", now)
+        share /= min(max(np.sqrt(now.error / AIM), LEAST), MOST)**3
+        before = now
+
+
+def difference(one: Result, other: Result, allowed: Tolerance) -> float:
+    """Largest root mean square of the difference of two runs on one grid, in what is allowed."""
+    size, turns = one.system.magnitude, turning(one.model, one.numbering)
+    if not one.model.planar:
+        size = np.where(turns, 0.0, size)       # these are in the matrices
+    q = one.recorded("q") - other.recorded("q")
+    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, turns)
+    R = one.recorded("R") - other.recorded("R")
+    angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
+    return float(max(found.max(), (angles / allowed.allowed(1.0, True)).max(initial=0.0)))

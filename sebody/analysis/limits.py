@@ -1,0 +1,191 @@
+"""What a run is warned of: states in which theory says that its model or its scheme is wrong.
+
+Checked on few of the recorded states, after the compiled loop: it costs the loop nothing.
+"""
+
+import warnings
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh, null_space
+
+from sebody.engine.state import Scheme, recorded_parts
+from sebody.errors import LimitWarning
+
+if TYPE_CHECKING:
+    from sebody.analysis.simulation import Simulation
+    from sebody.model.model import Superelement
+
+LINEAR = 0.3            # rad, local rotation up to which stiffness is linear, see README
+STATES = 3000           # of bodies that are looked at in a stretch of a run,
+FEWEST, MOST = 10, 200  # rows of them
+FLAT = 1e-3             # smallest to largest spread of nodes that a frame can live on
+
+
+class Watch:
+    """Warnings of a run, each given once and kept in `messages`."""
+
+    def __init__(self) -> None:
+        self.messages: list[str] = []
+        self._said: set[str] = set()
+        self._groups: list[Group] | None = None
+
+    def say(self, key: str, message: str) -> None:
+        """Warn, unless the same was said before."""
+        if key not in self._said:
+            self._said.add(key)
+            self.messages.append(message)
+            warnings.warn(message, LimitWarning, stacklevel=4)
+
+    def start(self, bodies: dict[str, "Superelement"], scheme: Scheme, constrained: bool) -> None:
+        """What is known before the first step."""
+        undamped = scheme.gamma == 0.5 and scheme.alpha_f == scheme.alpha_m
+        if constrained and undamped and not scheme.stabilized:
+            self.say("scheme", "without numerical damping the multipliers of index-3 constraints "
+                               "oscillate and grow with every disturbance: use rho 0.9, alpha "
+                               "-0.05, or index=2")
+        for name, body in bodies.items():
+            spread = _spread(body)
+            if body.frame == "positions" and spread < FLAT:
+                self.say(f"flat {name}", f"nodes of body {name!r} lie nearly on a line (spread "
+                         f"{spread:.1e} of their length): its frame turns about it with every "
+                         "small deflection; keep a rotation and take another frame, or a node "
+                         "off the line")
+
+    def look(self, run: "Simulation", rows: NDArray) -> None:
+        """Compare recorded states with the limits of every body."""
+        if not len(rows):
+            return
+        if self._groups is None:
+            self._groups = _grouped(run)
+        most = min(max(FEWEST, STATES // max(len(run.model.bodies), 1)), MOST)
+        rows = rows[::-(-len(rows) // most)]
+        parts = recorded_parts(run.numbering.total, len(run.numbering.rotations),
+                               len(run.model.bodies), len(run.numbering.histories))
+        for group in self._groups:
+            turned, spins = _motion(run.model.planar, group, rows, parts)
+            for k in np.flatnonzero(turned > LINEAR):
+                name = group.bodies[k].name
+                self.say(f"turn {name}", f"local rotation {turned[k]:.2g} rad of body {name!r} "
+                         f"exceeds the linear range, {LINEAR} rad: divide it")
+            speeds = np.linalg.norm(spins, axis=2)
+            for k in np.flatnonzero(speeds.max(axis=0) > group.least):
+                row = int(np.argmax(speeds[:, k]))
+                self._compare(group.bodies[k], spins[row, k], speeds[row, k])
+
+    def _compare(self, body: "Superelement", spin: NDArray, speed: float) -> None:
+        if f"spin {body.name}" in self._said:
+            return
+        limit = spin_limit(body, spin / speed)
+        if speed > limit:
+            self.say(f"spin {body.name}", f"spin {speed:.3g} rad/s is above the limit {limit:.3g} "
+                     f"of body {body.name!r}, whose stiffness does not grow with it: divide it in "
+                     "two")
+
+
+class Group(NamedTuple):
+    """Bodies with the same number of moving rotations, m each."""
+
+    bodies: list["Superelement"]
+    frames: NDArray         # (b,) which frame is theirs
+    places: NDArray         # (b, m) first coordinates of the rotations
+    rotations: NDArray      # (b, m) which matrices, in space
+    weights: NDArray        # (b, m)
+    least: NDArray          # (b,) lower bounds of the limits of spin
+
+
+def _grouped(run: "Simulation") -> list[Group]:
+    found: dict[int, list] = {}
+    limits: dict[tuple, float] = {}
+    numbering = run.numbering
+    for k, body in enumerate(run.model.bodies.values()):
+        parts = [(numbering.triplets[id(t)], numbering.rotations.get(id(t), 0), weight)
+                 for t, weight in zip(body.rotations, body.alpha_r, strict=True)
+                 if id(t) in numbering.triplets]
+        key = id(body.body), body.frame, tuple(body.alpha_r)
+        if key not in limits:
+            limits[key] = spin_limit(body, None)
+        if parts:
+            found.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True),
+                                                     limits[key]))
+    return [Group(list(bodies), *map(np.array, columns))
+            for bodies, *columns in (zip(*rows, strict=True) for rows in found.values())]
+
+
+def spin_limit(body: "Superelement", axis: NDArray | None) -> float:
+    """Spin about an axis of the frame at which one linear body diverges.
+
+    With options A and B the kinetic energy of a steady spin W is that of the velocities
+    ``W axis x x`` of the nodes, so deflections feel the stiffness ``S - W^2 A^T M A`` with
+    ``A = skew(axis)`` at positions. What the frame follows does not deflect, and one node is the
+    pivot: the worst one.
+
+    Parameters
+    ----------
+    axis : (3,) or None
+        Unit vector; None for the smallest value that any axis could have.
+    """
+    reduced = body.body
+    planar, count = reduced.planar, len(reduced.position_nodes)
+    d, size = (2, 1) if planar else (3, 3)
+    n = reduced.stiffness.shape[0]
+    turn = np.zeros((n, n))
+    if axis is None:
+        turn[:d * count, :d * count] = np.eye(d * count)
+    else:
+        own = (np.array([[0.0, -1.0], [1.0, 0.0]]) if planar else
+               np.cross(np.eye(3), axis).T)
+        for i in range(count):
+            turn[d * i:d * i + d, d * i:d * i + d] = own
+    inertia = turn.T @ reduced.mass @ turn
+    lowest = np.inf
+    for pivot in range(count):
+        held = np.zeros((d + size, n))
+        held[:d, d * pivot:d * pivot + d] = np.eye(d)
+        for j, weight in enumerate(body.alpha_r):
+            first = d * count + size * j
+            held[d:, first:first + size] = weight * np.eye(size)
+        if body.frame == "positions":
+            held[d:] = _fit(reduced)
+        free = null_space(held)
+        largest = eigh(free.T @ inertia @ free, free.T @ reduced.stiffness @ free,
+                       eigvals_only=True)[-1]
+        lowest = min(lowest, 1 / np.sqrt(largest) if largest > 0 else np.inf)
+    return float(lowest)
+
+
+def _fit(reduced) -> NDArray:
+    """Turn of the best fit by small deflections, rows of ``sum X_j x u_j``."""
+    points = reduced.coordinates[list(reduced.position_nodes)]
+    points = points - points.mean(axis=0)
+    rows = np.zeros((3, reduced.stiffness.shape[0]))
+    for j, X in enumerate(points):
+        rows[:, 3 * j:3 * j + 3] = np.cross(np.eye(3), X).T
+    return rows
+
+
+def _spread(body: "Superelement") -> float:
+    """Second largest extent of the nodes that keep a position, of the largest."""
+    points = body.body.coordinates[list(body.body.position_nodes)]
+    extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return float(extents[1] / extents[0]) if len(extents) > 1 and extents[0] > 0 else 0.0
+
+
+def _motion(planar: bool, group: Group, rows: NDArray, parts: dict) -> tuple[NDArray, NDArray]:
+    """Largest local rotations, (b,), and spins of the frames in their own axes, (n, b, 3 or 1)."""
+    n, shape = len(rows), group.places.shape
+    frames = rows[:, parts["frames"]].reshape(n, -1, 3, 3)[:, group.frames]
+    v = rows[:, parts["v"]]
+    if planar:
+        angles = np.arctan2(frames[..., 1, 0], frames[..., 0, 0])
+        turns = rows[:, parts["q"]][:, group.places] - angles[..., None]
+        local = np.abs(np.angle(np.exp(1j * turns)))
+        return local.max(axis=(0, 2)), (group.weights * v[:, group.places]).sum(axis=2)[..., None]
+    R = rows[:, parts["R"]].reshape(n, -1, 3, 3)[:, group.rotations]
+    relative = np.swapaxes(frames, 2, 3)[:, :, None] @ R
+    cosines = (np.trace(relative, axis1=3, axis2=4) - 1.0) / 2.0
+    local = np.arccos(np.clip(cosines, -1.0, 1.0))
+    rates = v[:, group.places[..., None] + np.arange(3)].reshape(n, *shape, 3, 1)
+    spins = (group.weights[..., None] * (relative @ rates)[..., 0]).sum(axis=2)
+    return local.max(axis=(0, 2)), spins

@@ -1,0 +1,239 @@
+"""Small motion about a state, at rest or turning steadily: exact matrices and eigenvalues.
+
+In axes that turn with the angular velocity W of the state, a position moves as x + xi, a rotation
+as R exp(theta). Then dv = xi' + W x xi, da = xi'' + 2 W x xi' + W x (W x xi), and with the material
+W of the node dOmega = theta' + W x theta, dA = theta'' + W x theta'.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import eig, eigh, null_space
+from scipy.sparse import csc_matrix
+
+from sebody.analysis.initial_state import REASONS, assembled
+from sebody.analysis.simulation import Simulation
+from sebody.assembly.numbering import coordinates
+from sebody.engine.evaluate import assemble, to_body_axes
+from sebody.engine.matrix import sum_matrices
+from sebody.engine.state import RENEWED, WANTED
+from sebody.errors import InputError
+from sebody.results.result import Result
+
+
+class Spin:
+    """A steady rotation of everything about the origin."""
+
+    def __init__(self, velocity: NDArray, planar: bool):
+        self.velocity, self.planar = velocity, planar
+
+    @classmethod
+    def of(cls, run: Simulation | Result, velocity: ArrayLike | None) -> "Spin":
+        """The spin a user gives, none by default.
+
+        Raises
+        ------
+        InputError
+            The wrong shape or no numbers, or rigid links that turn.
+        """
+        planar = run.model.planar
+        shape = () if planar else (3,)
+        given = np.zeros(shape) if velocity is None else np.asarray(velocity, dtype=float)
+        if given.shape != shape or not np.isfinite(given).all():
+            raise InputError(f"spin is {velocity}: give "
+                             + ("a number" if planar else "three numbers"))
+        spin = cls(given, planar)
+        if spin.turns and run.numbering.hanging:
+            raise InputError(f"{run.numbering.hanging[0].name} hangs on a rigid link, which the "
+                             "tangents of turning states leave out: give it a body of its own")
+        return spin
+
+    def times(self, factor: float) -> "Spin":
+        """A faster or slower one."""
+        return Spin(factor * self.velocity, self.planar)
+
+    @property
+    def turns(self) -> bool:
+        """Whether there is any."""
+        return bool(np.any(self.velocity))
+
+    def move(self, run: Simulation) -> None:
+        """Velocities and accelerations of the rotation, of fixed nodes, too."""
+        state, numbering = run.state, run.numbering
+        state.v[:], state.a[:] = 0.0, 0.0
+        for node in run.model.nodes.values():
+            if node.position is not None and id(node.position) in numbering.triplets:
+                at = coordinates(numbering, node.position)
+                state.v[at] = self.cross(state.q[at])
+                state.a[at] = self.cross(state.v[at])
+            if node.rotation is not None and id(node.rotation) in numbering.triplets:
+                at = coordinates(numbering, node.rotation)
+                state.v[at] = self.velocity if self.planar else self._material(run, node.rotation)
+
+    def cross(self, x: NDArray) -> NDArray:
+        """``W x x``."""
+        if self.planar:
+            return float(self.velocity) * np.array([-x[1], x[0]])
+        return np.cross(self.velocity, x)
+
+    def _material(self, run: Simulation | Result, rotation) -> NDArray:
+        k = run.numbering.rotations[id(rotation)]
+        return run.state.R[9 * k:9 * k + 9].reshape(3, 3).T @ self.velocity
+
+    def operators(self, run: Simulation | Result) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
+        """By a small motion: velocity; acceleration; by its rate: acceleration."""
+        n = run.numbering.free
+        velocity, place, rate = (np.zeros((n, n)) for _ in range(3))
+        frame_of = dict(run.system.turned.tolist())
+        for node in run.model.nodes.values():
+            for triplet in (node.position, node.rotation):
+                at = (None if triplet is None or id(triplet) not in run.numbering.triplets
+                      else coordinates(run.numbering, triplet))
+                if at is None or at[0] >= n:
+                    continue
+                block = np.ix_(at, at)
+                if triplet is node.position:
+                    own = self._in_axes(run, frame_of.get(at[0]))
+                    velocity[block], place[block], rate[block] = own, own @ own, 2.0 * own
+                elif not self.planar:
+                    velocity[block] = rate[block] = _skew(self._material(run, triplet))
+        return csc_matrix(velocity), csc_matrix(place), csc_matrix(rate)
+
+    def _in_axes(self, run: Simulation | Result, frame: int | None) -> NDArray:
+        """``W x`` in the axes a position is solved for in."""
+        if self.planar:
+            return float(self.velocity) * np.array([[0.0, -1.0], [1.0, 0.0]])
+        if frame is None:
+            return _skew(self.velocity)
+        axes = run.state.frames[9 * frame:9 * frame + 9].reshape(3, 3)
+        return _skew(axes.T @ self.velocity)
+
+
+def _skew(a: NDArray) -> NDArray:
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+def matrix(run: Simulation | Result, mass: float, rate: float, place: float) -> csc_matrix:
+    """Sum of the exact derivatives by accelerations, velocities and places, in body axes.
+
+    Constraints belong to the places: a turning state moves the columns of the others.
+    """
+    state = run.state
+    state.control[WANTED] = RENEWED     # a run that goes on needs its own matrix again
+    state.coefficients[:5] = (mass, rate, place, 1.0, place)
+    state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
+    status = assemble(RENEWED, run.system, state, state.residual)
+    if status:
+        raise InputError(f"the state cannot be evaluated: {REASONS[status]}")
+    sum_matrices(run.system, state, state.residual)
+    return assembled(run.system, state)
+
+
+def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
+    """Tangent stiffness in axes that turn, and the residual."""
+    stiffness = matrix(run, 0.0, 0.0, 1.0)
+    residual = run.state.residual.copy()
+    to_body_axes(run.system, run.state.frames, residual, False)
+    if spin.turns:
+        velocity, place, _ = spin.operators(run)
+        stiffness = (stiffness + matrix(run, 0.0, 1.0, 0.0) @ velocity
+                     + matrix(run, 1.0, 0.0, 0.0) @ place)
+    return csc_matrix(stiffness), residual[:run.numbering.free]
+
+
+class Linearization(NamedTuple):
+    """``mass xi'' + damping xi' + stiffness xi = 0`` for motion ``free @ xi`` of the unknowns.
+
+    The columns of `free` are an orthonormal basis of what the constraints allow.
+    """
+
+    mass: NDArray
+    damping: NDArray
+    stiffness: NDArray
+    free: NDArray
+
+
+def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linearization:
+    """Matrices of small motion about the state a run, or an equilibrium, has reached.
+
+    Parameters
+    ----------
+    spin : (3,) array_like or float, optional
+        Angular velocity of the axes it is described in: that of a steadily turning state.
+        Without one, the matrices of a moving state are those of the instant.
+
+    Raises
+    ------
+    InputError
+        A state that cannot be evaluated, a wrong spin, or one with rigid links.
+    """
+    turning = Spin.of(run, spin)
+    stiffness, _ = rotating(run, turning)
+    mass, damping = matrix(run, 1.0, 0.0, 0.0), matrix(run, 0.0, 1.0, 0.0)
+    if turning.turns:
+        damping = damping + mass @ turning.operators(run)[2]
+    K, C, M = (A.toarray() for A in (stiffness, damping, mass))
+    n = len(K)
+    multipliers = np.flatnonzero(run.system.is_multiplier[:n])
+    moving = np.setdiff1d(np.arange(n), multipliers)
+    basis = null_space(K[np.ix_(multipliers, moving)]) if multipliers.size else np.eye(len(moving))
+    free = np.zeros((n, basis.shape[1]))
+    free[moving] = basis
+    return Linearization(*(free.T @ A @ free for A in (M, C, K)), free)
+
+
+class Vibrations(NamedTuple):
+    """Small undamped vibrations."""
+
+    omega: NDArray      # (m,) angular frequencies, ascending [1/time]
+    shapes: NDArray     # (unknowns, m) mass-normalised, in the axes of the unknowns
+
+
+def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations:
+    """Undamped vibrations about the state of a simulation at rest, constraints included.
+
+    Raises
+    ------
+    InputError
+        The state moves, or is not stable: a square of a frequency is negative.
+    """
+    if np.abs(run.state.v).max() > 0:
+        raise InputError("the state moves: vibrations are about states at rest, modes about "
+                         "moving ones")
+    M, _, K, free = linearize(run)
+    squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
+    if squares[0] < -100 * np.finfo(float).eps * squares[-1]:
+        raise InputError(f"the state is not stable: the lowest square of a frequency is "
+                         f"{squares[0]:.4g}")
+    return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count], free @ shapes[:, :count])
+
+
+class Modes(NamedTuple):
+    """Small damped or gyroscopic motion ``shape exp(value t)``, one of each conjugate pair."""
+
+    values: NDArray     # (m,) complex, by ascending frequency [1/time]
+    shapes: NDArray     # (unknowns, m) complex, of unit length
+
+    @property
+    def omega(self) -> NDArray:
+        """Angular frequencies [1/time]."""
+        return self.values.imag
+
+    @property
+    def growth(self) -> NDArray:
+        """Rates of growth, negative where the motion decays [1/time]."""
+        return self.values.real
+
+
+def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
+    """Eigenvalues and shapes about a state, from the exact tangents; see `linearize`."""
+    M, C, K, free = linearize(run, spin)
+    m = len(M)
+    identity, zero = np.eye(m), np.zeros((m, m))
+    values, vectors = eig(np.block([[zero, identity], [-K, -C]]),
+                          np.block([[identity, zero], [zero, M]]))
+    kept = np.flatnonzero(values.imag >= 0.0)
+    order = kept[np.lexsort((values[kept].real, values[kept].imag))]
+    shapes = free @ vectors[:m, order]
+    return Modes(values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300))

@@ -1,0 +1,88 @@
+"""Stop a run, save it, and go on later as if it had not stopped, bit for bit."""
+
+import json
+from dataclasses import fields
+from hashlib import sha256
+from pathlib import Path
+from zipfile import BadZipFile
+
+import numpy as np
+
+from sebody.analysis.simulation import Simulation
+from sebody.analysis.tolerance import Tolerance
+from sebody.engine.state import PIVOTED, Record, Scheme, State
+from sebody.errors import InputError
+from sebody.model.model import Model
+from sebody.results.files import check_target
+
+VERSION = 1
+TARGET = "restart file", (".npz",)      # see `files.check_target`
+
+
+def save(run: Simulation, path: str | Path) -> Path:
+    """Write the state of a simulation and what it has recorded to an npz file.
+
+    Raises
+    ------
+    InputError
+        Another ending, or a folder that does not exist.
+    """
+    path = check_target(path, *TARGET)
+    settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
+                "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
+                "model": _fingerprint(run)}
+    arrays = {field.name: getattr(run.state, field.name) for field in fields(State)}
+    np.savez(path, settings=json.dumps(settings), relaxed=run.system.relaxed,
+             rows=np.concatenate([record.rows for record in run.records]), **arrays)
+    return path
+
+
+def resume(model: Model, path: str | Path) -> Simulation:
+    """The simulation of a file, to go on with `run_to`; `model` is built as it was.
+
+    Raises
+    ------
+    InputError
+        No such file, another kind of file, or another model.
+    """
+    settings, arrays = _read(Path(path))
+    tolerance = settings["tolerance"] and Tolerance(*settings["tolerance"])
+    run = Simulation(model, settings["h"], Scheme(*settings["scheme"]), settings["every"],
+                     tolerance)
+    if settings["model"] != _fingerprint(run):
+        raise InputError(f"restart file {path} is of another model: build the one it was saved "
+                         "from, with the same bodies, joints and loads")
+    for field in fields(State):
+        getattr(run.state, field.name)[...] = arrays[field.name]
+    run.system.relaxed[:] = arrays["relaxed"]
+    run.records = [Record(arrays["rows"], np.array([run.every]))]
+    run.seconds = settings["seconds"]
+    if run.state.control[PIVOTED]:
+        run.factorize()
+    return run
+
+
+def _read(path: Path) -> tuple[dict, dict]:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = dict(file)
+        settings = json.loads(str(arrays["settings"]))
+        version = settings["version"]
+    except FileNotFoundError as error:
+        raise InputError(f"restart file {path} does not exist: give one that was saved") from error
+    except (BadZipFile, ValueError, KeyError, TypeError, EOFError) as error:
+        raise InputError(f"{path} is no restart file: give one written by "
+                         "sebody.analysis.save") from error
+    if version != VERSION:
+        raise InputError(f"restart file {path} is of version {version}, this program writes "
+                         f"{VERSION}: run the model again")
+    return settings, arrays
+
+
+def _fingerprint(run: Simulation) -> str:
+    """Hash of what a model is, without addresses of compiled functions."""
+    system = run.system
+    parts = [repr(run.numbering.names).encode()] + [
+        array.tobytes() for array in (system.constants, system.g_unknown, system.table_times,
+                                      system.table_cubics, system.prescribed, run.state.q_start)]
+    return sha256(b"".join(parts)).hexdigest()

@@ -1,0 +1,111 @@
+"""Static equilibrium under loads applied in steps, also in a steadily rotating frame."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.analysis.linearization import Spin, rotating
+from sebody.analysis.simulation import Simulation
+from sebody.analysis.sparse import Scaled
+from sebody.engine.evaluate import set_loads, to_body_axes, turn_rotations
+from sebody.errors import InputError, SimulationError
+from sebody.model.model import Model
+from sebody.results.result import Result
+
+ITERATIONS = 25
+SMALLEST = 1.0 / 1024       # share of the load, below which its step is not cut
+PUSH = 1e-6                 # of the forces: that acts on what nothing holds
+
+
+def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = 1e-11,
+                spin: ArrayLike | None = None) -> Result:
+    """Equilibrium under gravity and the loads of a time, applied in equal steps.
+
+    Parameters
+    ----------
+    steps : int
+        Load steps; cut where Newton's iteration does not converge.
+    t : float
+        Time at which the histories of the loads are read [time].
+    tolerance : float
+        Of the last correction, relative to the extent of the model or in radians.
+    spin : (3,) array_like or float, optional
+        Angular velocity of a frame about the origin in which everything rests, fixed nodes,
+        supports and loads included [1/time]; a number in a plane.
+
+    Returns
+    -------
+    Result
+        One row a load step; its time is the share of the load, from 0 to 1. Velocities and
+        accelerations are those of the rotation.
+
+    Raises
+    ------
+    InputError
+        Not a positive number of steps, a spin of the wrong shape, or a spin and rigid links.
+    SimulationError
+        No equilibrium is found; what was found before is in its `result`.
+    """
+    if steps != int(steps) or steps < 1:
+        raise InputError(f"steps is {steps}: give a whole number >= 1")
+    run = Simulation(model, 1.0)
+    state, field = run.state, run.state.coefficients[5:].copy()
+    turning = Spin.of(run, spin)
+    state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
+    state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
+    set_loads(run.system, state.loads, t)
+    loads = state.loads.copy()
+    rows, share, step = [state.now.copy()], 0.0, 1.0 / steps
+    while share < 1.0 - 1e-12:
+        kept = state.now.copy()
+        target = min(share + step, 1.0)
+        state.loads[:], state.coefficients[5:] = target * loads, target * field
+        if _balance(run, tolerance, turning.times(np.sqrt(target))):
+            share = target
+            state.now[0] = share
+            rows.append(state.now.copy())
+            continue
+        state.now[:] = kept
+        step /= 2
+        if step < SMALLEST:
+            run.records[0] = replace(run.records[0], rows=np.array(rows))
+            message = (f"no equilibrium was found above {share:.4g} of the load: the structure may "
+                       "buckle there, or a mechanism is free to move; use more steps or supports")
+            raise SimulationError(message, run.result())
+    run.records[0] = replace(run.records[0], rows=np.array(rows))
+    return run.result()
+
+
+def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
+    """Newton's iteration with the exact tangent; False where it does not converge."""
+    system, state, n = run.system, run.state, run.numbering.free
+    size = system.magnitude[:n]
+    sized = size > 0.0              # modes and multipliers follow
+    state.frames_old[:] = state.frames
+    for _ in range(ITERATIONS):
+        spin.move(run)
+        tangent, residual = rotating(run, spin)
+        solver = Scaled(tangent)
+        correction = np.zeros(run.numbering.total)
+        correction[:n] = _solution(solver, residual)
+        to_body_axes(system, state.frames, correction, True)
+        change = np.abs(correction[:n][sized] / size[sized]).max()
+        if not np.isfinite(change) or change > 1.0:
+            return False
+        state.R_old[:], state.dq[:] = state.R, -correction
+        state.q[:] -= correction
+        turn_rotations(system, state)
+        if change < tolerance:
+            spin.move(run)
+            return True
+    return False
+
+
+def _solution(solver: Scaled, residual: NDArray) -> NDArray:
+    """Correction; what nothing holds and nothing pushes, such as the angle of a spin, stays."""
+    if solver.regular:
+        return solver.solve(residual)
+    answer, left = solver.least(residual)
+    pushed = left.max() > PUSH * np.abs(solver.scale * residual).max() > 0.0
+    return np.full(len(residual), np.nan) if pushed else answer

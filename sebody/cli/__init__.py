@@ -1,0 +1,5 @@
+"""The command line."""
+
+from sebody.cli.main import main
+
+__all__ = ["main"]

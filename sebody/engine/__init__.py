@@ -1,0 +1,1 @@
+"""Compiled code on flat arrays: forces, matrices, steps and the time loop."""

@@ -1,0 +1,141 @@
+"""Groups of arrays that compiled code gets as one pointer and reads by name.
+
+A named tuple would be passed array by array, seven words each: with a hundred arrays compiling that
+takes a minute. Members are read without reference counts, which cost as much as a small element.
+"""
+
+from dataclasses import fields
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+from numba import typeof, types
+from numba.core import cgutils
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import (
+    NativeValue,
+    infer_getattr,
+    lower_getattr_generic,
+    models,
+    register_model,
+    typeof_impl,
+    unbox,
+)
+
+
+def _sources() -> str:
+    """Hash of all compiled modules: part of every compiled type.
+
+    Numba's cache sees changes of the file a function is in, not of what that calls.
+    """
+    texts = [path.read_bytes() for path in sorted(Path(__file__).parents[1].glob("[ek]*/*.py"))]
+    return sha256(b"".join(text for text in texts if b"\n@njit" in text)).hexdigest()[:12]
+
+
+SOURCES = _sources()
+
+
+class Arrays:
+    """Base of frozen dataclasses of C-contiguous arrays, or of such groups again.
+
+    Arrays may be written to, never replaced. Whoever calls compiled code keeps the group alive.
+    """
+
+    def __post_init__(self) -> None:
+        members = {f.name: getattr(self, f.name) for f in fields(self)}
+        words = [word for value in members.values() for word in _words(value)]
+        words = np.array(words, dtype=np.int64)
+        kind = View(type(self).__name__,
+                    tuple((name, typeof(value)) for name, value in members.items()))
+        self.__dict__.update(_words=words, _kind=kind, _address=words.ctypes.data)
+
+
+def _words(value) -> list[int]:
+    """What compiled code reads of a member: of an array its place and its shape."""
+    if isinstance(value, Arrays):
+        return value._words.tolist()
+    assert value.flags.c_contiguous
+    return [value.ctypes.data, *value.shape]
+
+
+class View(types.Type):
+    """The compiled type of a group."""
+
+    def __init__(self, name: str, members: tuple):
+        self.members, self.sources = members, SOURCES
+        super().__init__(f"View({name})")
+
+    @property
+    def key(self) -> tuple:
+        return self.name, self.members, self.sources
+
+    def place(self, name: str) -> tuple[int, types.Type] | None:
+        """Word and type of a member."""
+        first = 0
+        for own, kind in self.members:
+            if own == name:
+                return first, kind
+            first += _size(kind)
+        return None
+
+
+def _size(kind: types.Type) -> int:
+    """Words of a group or of an array."""
+    if isinstance(kind, View):
+        return sum(_size(member) for _, member in kind.members)
+    return 1 + kind.ndim
+
+
+@register_model(View)
+class _Pointer(models.PrimitiveModel):
+    def __init__(self, manager, kind):
+        super().__init__(manager, kind, cgutils.intp_t.as_pointer())
+
+
+@typeof_impl.register(Arrays)
+def _typeof(group, context):
+    return group._kind
+
+
+@unbox(View)
+def _unbox(kind, group, c):
+    boxed = c.pyapi.object_getattr_string(group, "_address")
+    address = c.pyapi.long_as_longlong(boxed)
+    c.pyapi.decref(boxed)
+    return NativeValue(c.builder.inttoptr(address, cgutils.intp_t.as_pointer()))
+
+
+@infer_getattr
+class _Members(AttributeTemplate):
+    key = View
+
+    def generic_resolve(self, view, name):
+        found = view.place(name)
+        return found and found[1]
+
+
+@lower_getattr_generic(View)
+def _member(context, builder, view, pointer, name):
+    first, kind = view.place(name)
+    if isinstance(kind, View):
+        return cgutils.gep_inbounds(builder, pointer, first)
+
+    def word(k):
+        loaded = builder.load(cgutils.gep_inbounds(builder, pointer, first + k))
+        # groups never change: without this every store would make LLVM read the places again
+        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+        return loaded
+    array = context.make_array(kind)(context, builder)
+    item = context.get_abi_sizeof(context.get_data_type(kind.dtype))
+    shape = [word(1 + k) for k in range(kind.ndim)]
+    strides, items = [], cgutils.intp_t(1)
+    for length in reversed(shape):
+        strides.insert(0, builder.mul(items, cgutils.intp_t(item)))
+        items = builder.mul(items, length)
+    null = cgutils.get_null_value
+    array.meminfo, array.parent = null(array.meminfo.type), null(array.parent.type)
+    array.nitems, array.itemsize = items, cgutils.intp_t(item)
+    array.data = builder.inttoptr(word(0), array.data.type)
+    array.shape = cgutils.pack_array(builder, shape)
+    array.strides = cgutils.pack_array(builder, strides)
+    return array._getvalue()

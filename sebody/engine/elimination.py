@@ -1,0 +1,95 @@
+"""Elimination of large sparse systems inside the loop, block by block in the order of the unknowns.
+
+The numbering puts unknowns behind what they act on, so no rows are exchanged across blocks and the
+pattern of the factors is known beforehand: what is left is arithmetic on small full blocks, linear
+in the number of bodies of a chain. Where a pivot is small all the same, the loop asks for a
+factorization with exchanges (SuperLU).
+
+Blocks have `LANES` rows and columns, stored by columns. Unknowns have slots in them; free slots
+have ones on the diagonal.
+"""
+
+
+from numba import njit
+
+from sebody.kernels.abi import LANES, at
+from sebody.kernels.dense import subtract_block_times, subtract_product
+
+BLOCK = LANES * LANES
+SMALL_PIVOT = 1e-9      # of the scaled matrix
+
+
+@njit(cache=True, error_model="numpy")
+def eliminate(across, starts, rows, diagonal, unknowns, matrix, column, scale):
+    """Factors L (unit diagonal blocks) and U (inverted ones) in place; False at a small pivot.
+
+    Pointers; `column` is scratch for one block column, `scale` the scales of the unknowns.
+    """
+    for j in range(across):
+        first, middle, end = starts[j], diagonal[j], starts[j + 1]
+        for p in range(first, end):
+            source, target = at(matrix, BLOCK * p), at(column, BLOCK * rows[p])
+            for i in range(BLOCK):
+                target[i] = source[i]
+        for p in range(first, middle):
+            k = rows[p]
+            u, target = at(column, BLOCK * k), at(matrix, BLOCK * p)
+            for i in range(BLOCK):
+                target[i] = u[i]
+            for t in range(diagonal[k] + 1, starts[k + 1]):
+                subtract_product(at(column, BLOCK * rows[t]), at(matrix, BLOCK * t), target)
+        inverse = at(matrix, BLOCK * middle)
+        if not _invert_block(at(column, BLOCK * j), inverse, at(unknowns, LANES * j), scale):
+            return False
+        for p in range(middle + 1, end):
+            target = at(matrix, BLOCK * p)
+            for i in range(BLOCK):
+                target[i] = 0.0
+            _subtract_negative(target, at(column, BLOCK * rows[p]), inverse)
+    return True
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _subtract_negative(C, A, B):
+    """``C = A B`` for C zero at the start."""
+    subtract_product(C, A, B)
+    for i in range(BLOCK):
+        C[i] = -C[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _invert_block(D, inverse, unknowns, scale):
+    """Inverse of a block by Gauss and Jordan in order; False at a small pivot."""
+    for i in range(BLOCK):
+        inverse[i] = D[i]
+    for k in range(LANES):
+        pivot = inverse[LANES * k + k]
+        if not abs(pivot) * scale[unknowns[k]] * scale[unknowns[k]] > SMALL_PIVOT:
+            return False
+        r = 1.0 / pivot
+        inverse[LANES * k + k] = 1.0
+        for j in range(LANES):
+            inverse[LANES * j + k] *= r
+        for i in range(LANES):
+            if i != k:
+                f = inverse[LANES * k + i]
+                inverse[LANES * k + i] = 0.0
+                for j in range(LANES):
+                    inverse[LANES * j + i] -= f * inverse[LANES * j + k]
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def substitute(across, starts, rows, diagonal, factors, x):
+    """Solve in place with the factors; x is by slots."""
+    for j in range(across):
+        for p in range(diagonal[j] + 1, starts[j + 1]):
+            subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), at(x, LANES * j))
+    for k in range(across):
+        j = across - 1 - k
+        y, inverse = at(x, LANES * j), at(factors, BLOCK * diagonal[j])
+        a, b, c, d = y[0], y[1], y[2], y[3]
+        for i in range(LANES):
+            y[i] = inverse[i] * a + inverse[4 + i] * b + inverse[8 + i] * c + inverse[12 + i] * d
+        for p in range(starts[j], diagonal[j]):
+            subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), y)

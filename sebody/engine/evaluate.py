@@ -1,0 +1,259 @@
+"""Forces and matrices of all elements in a state, for compiled code."""
+
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic
+
+from sebody.engine.links import place_hanging, pull_back
+from sebody.engine.state import FORCES, RENEWED, START
+from sebody.engine.tables import cubic_at
+from sebody.kernels.abi import (
+    ACCELERATION,
+    ENERGY,
+    POWERS,
+    RESIDUAL,
+    TANGENT,
+    VELOCITY,
+    at,
+    call_kernel,
+    pointer_to,
+)
+from sebody.kernels.rotations import tangent_operator, turn
+
+
+@intrinsic
+def _call_function(typingctx, address, t):
+    def codegen(context, builder, sig, args):
+        function = ir.FunctionType(ir.DoubleType(), [ir.DoubleType()])
+        return builder.call(builder.inttoptr(args[0], function.as_pointer()), [args[1]])
+    return types.float64(address, t), codegen
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def run_kernels(task, first, last, system, state):
+    """Evaluate batches; returns the status of the first element that fails."""
+    for b in range(first, last):
+        status = _run_part(task, b, 0, system.count[b], system, state)
+        if status != 0:
+            return status
+    return 0
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _run_part(task, b, first, count, system, state):
+    """Evaluate some elements of a batch."""
+    index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
+    stride, width = system.stride[b], system.width[b]
+    return call_kernel(
+        system.address[b], task, count, stride, width,
+        (at(index, system.at_index[b] + first * stride), system.constants, state.q, state.R,
+         state.v, state.a, state.frames_old, state.frames, state.T, state.loads,
+         state.coefficients, at(g, system.at_g[b] + first * width),
+         at(J, system.at_J[b] + first * width * width), state.work, state.energy))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def set_loads(system, loads, t):
+    """Amplitudes of the items and their rates at a time."""
+    for k in range(system.functions.shape[0]):
+        if system.functions[k, 0] == 0:
+            cubic_at(system.table_times, system.table_cubics, system.table_at[k],
+                     system.table_at[k + 1] - 1, t, loads, 3 * k)
+            continue
+        for i in range(3):
+            loads[3 * k + i] = (_call_function(system.functions[k, i], t)
+                                if system.functions[k, i] != 0 else 0.0)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def move_prescribed(system, state):
+    """Motion of the prescribed coordinates; of rotations the increment of the step."""
+    loads, old = state.loads, state.loads_old
+    for k in range(system.prescribed.shape[0]):
+        i = system.prescribed[k, 0]
+        state.q[i], state.v[i], state.a[i], state.dq[i] = state.q_start[i], 0.0, 0.0, 0.0
+    for k in range(system.prescribed.shape[0]):
+        i, item, factor = (system.prescribed[k, 0], 3 * system.prescribed[k, 1],
+                           system.prescribed_factor[k])
+        if system.prescribed[k, 2] == 1:
+            state.dq[i] += factor * (loads[item] - old[item])
+        else:
+            state.q[i] += factor * loads[item]
+        state.v[i] += factor * loads[item + 1]
+        state.a[i] += factor * loads[item + 2]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def turn_rotations(system, state):
+    """Rotations from their increments of the step."""
+    places, dq, q = pointer_to(system.rotation_at), pointer_to(state.dq), pointer_to(state.q)
+    for r in range(system.rotation_at.size):
+        first = places[r]
+        x, y, z = dq[first], dq[first + 1], dq[first + 2]
+        q[first], q[first + 1], q[first + 2] = x, y, z
+        turn(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
+    if system.links.hanging.shape[0] > 0:
+        place_hanging(system.links, state.q, state.v, state.a, state.R)
+
+
+@njit(cache=True, error_model="numpy")
+def set_tangent_operators(system, state):
+    """``T(dTheta)`` of the rotation increments, for the columns of the matrix."""
+    for r in range(system.rotation_at.size):
+        at = system.rotation_at[r]
+        (state.T[9 * r], state.T[9 * r + 1], state.T[9 * r + 2], state.T[9 * r + 3],
+         state.T[9 * r + 4], state.T[9 * r + 5], state.T[9 * r + 6], state.T[9 * r + 7],
+         state.T[9 * r + 8]) = tangent_operator(state.dq[at], state.dq[at + 1],
+                                                state.dq[at + 2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def assemble(level, system, state, residual):
+    """Sum of the element forces in `residual`; element matrices, see `matrix` for their sum.
+
+    `level` is FORCES for forces alone, TURNED for new matrices of joints and loads, RENEWED for new
+    ones of all; START is for forces and accelerations of the constraints, RATES for their
+    velocities.
+    """
+    bodies, batches = system.first_joint[0], system.address.size
+    status = run_kernels(TANGENT if level == RENEWED else RESIDUAL, 0, bodies, system, state)
+    if status != 0:
+        return status
+    task = RESIDUAL if level == FORCES else TANGENT
+    if level >= START:
+        task = ACCELERATION if level == START else VELOCITY
+    status = run_kernels(task, bodies, batches, system, state)
+    if status != 0:
+        return status
+    sum_forces(system, state, residual)
+    return 0
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def sum_forces(system, state, residual):
+    """Sum of the element forces, those on rigid links pulled back."""
+    for i in range(residual.size):
+        residual[i] = 0.0
+    sums, unknowns = pointer_to(residual), pointer_to(system.g_unknown)
+    for k in range(system.g_unknown.size):
+        sums[unknowns[k]] += state.g[k]
+    if system.links.hanging.shape[0] > 0:
+        pull_back(system.links, state.q, state.R, residual)
+
+
+@njit(cache=True, error_model="numpy")
+def _find_moved(system, state, limit):
+    """Which elements the last correction moved; it moved all others by less than `limit`."""
+    k = first = 0
+    limit *= limit / state.moved.size
+    for b in range(system.address.size):
+        for element in range(system.count[b]):
+            size = 0.0
+            for _ in range(system.width[b]):
+                i = system.g_unknown[k]
+                change = state.last_change[i] * state.weight[i]
+                size += change * change
+                k += 1
+            state.moved[first + element] = size > limit
+        first += system.count[b]
+
+
+@njit(cache=True, error_model="numpy")
+def _run_moved(system, state):
+    """Forces of the elements that moved; those of the others are kept."""
+    first = 0                   # of the elements, for `moved`
+    for b in range(system.address.size):
+        begin = 0
+        while begin < system.count[b]:
+            if not state.moved[first + begin]:
+                begin += 1
+                continue
+            end = begin + 1
+            while end < system.count[b] and state.moved[first + end]:
+                end += 1
+            status = _run_part(RESIDUAL, b, begin, end - begin, system, state)
+            if status != 0:
+                return status
+            begin = end
+        first += system.count[b]
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def assemble_moved(system, state, limit):
+    """Sum of the forces, new ones of the elements that moved by more than a share of `limit`."""
+    _find_moved(system, state, limit)
+    status = _run_moved(system, state)
+    sum_forces(system, state, state.residual)
+    return status
+
+
+@njit(cache=True, error_model="numpy")
+def take_rates(system, state):
+    """Residuals of the constraints' rates in place of those of the constraints.
+
+    Rates are divided by their derivative by an increment: the matrix stays as it is. In `gaps` is
+    what the correction of the rates will leave of the constraints.
+    """
+    status = run_kernels(VELOCITY, system.first_joint[0], system.address.size, system, state)
+    n, residual = system.diagonal.size, state.residual
+    for i in range(n):
+        state.gaps[i] = residual[i] * system.is_multiplier[i]
+        residual[i] -= state.gaps[i]
+    for k in range(system.g_unknown.size):
+        unknown = system.g_unknown[k]
+        if system.is_multiplier[unknown] > 0.0:
+            residual[unknown] += state.g[k] / state.coefficients[1]
+    for i in range(n):
+        state.gaps[i] -= residual[i] * system.is_multiplier[i]
+    return status
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def to_body_axes(system, frames, vector, back):
+    """Turn the free positions of a vector into body axes, or back."""
+    turned, spatial = pointer_to(system.turned), system.dimension[0] == 3
+    for k in range(system.turned.shape[0]):
+        p = at(pointer_to(vector), turned[2 * k])
+        R = at(pointer_to(frames), 9 * turned[2 * k + 1])
+        x, y = p[0], p[1]
+        if not spatial:
+            c, s = R[0], -R[3] if back else R[3]
+            p[0], p[1] = c * x + s * y, c * y - s * x
+        elif back:
+            z = p[2]
+            p[0] = R[0] * x + R[1] * y + R[2] * z
+            p[1] = R[3] * x + R[4] * y + R[5] * z
+            p[2] = R[6] * x + R[7] * y + R[8] * z
+        else:
+            z = p[2]
+            p[0] = R[0] * x + R[3] * y + R[6] * z
+            p[1] = R[1] * x + R[4] * y + R[7] * z
+            p[2] = R[2] * x + R[5] * y + R[8] * z
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def set_powers(system, state):
+    """Rate of work of the items in the current state."""
+    if state.powers.size == 0:
+        return
+    if system.damped[0] == 1:
+        run_kernels(ENERGY, 0, system.first_joint[0], system, state)
+    run_kernels(ENERGY, system.first_power[0], system.address.size, system, state)
+    for k in range(state.powers.size):
+        state.powers[k] = state.energy[POWERS + k]
+    if system.prescribed.shape[0] > 0:
+        add_prescribed_powers(system, state)
+
+
+@njit(cache=True, error_model="numpy")
+def add_prescribed_powers(system, state):
+    """What moves coordinates in a prescribed way bears the forces on them."""
+    run_kernels(RESIDUAL, 0, system.address.size, system, state)
+    sum_forces(system, state, state.residual)
+    for k in range(system.prescribed.shape[0]):
+        state.powers[system.prescribed[k, 1]] = 0.0
+    for k in range(system.prescribed.shape[0]):
+        item = system.prescribed[k, 1]
+        state.powers[item] += (state.residual[system.prescribed[k, 0]]
+                               * system.prescribed_factor[k] * state.loads[3 * item + 1])

@@ -1,0 +1,219 @@
+"""Rigid links: positions at the ends of arms that turn with rotations take no part in the solution.
+
+Such a position is ``x = x_root + sum_k R_k r_k``. Its motion follows from that of the unknowns, its
+forces are pulled back to them, and in element matrices its rows and columns are replaced:
+``dx = dx_root - sum_k R_k skew(r_k) T_k dq_k``.
+
+The second-order term of the force is in the matrix, gyroscopic terms of the position's velocity and
+acceleration are not: of order h in an iteration matrix, nothing in a converged step.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sebody.engine.arrays import Arrays
+from sebody.kernels.abi import at, pointer_to
+
+
+@dataclass(frozen=True, eq=False)
+class Links(Arrays):
+    """Rigid links as arrays: constant during a run.
+
+    ==================  ============================================================================
+    hanging             (k, 4) first coordinate, that of the root, first and last + 1 of the arms
+    arms                (m, 2) number of the rotation matrix, first coordinate of the rotation
+    arm_vectors         (m, d)
+    elements            (e, 7) start of the matrix among the element matrices, width w, width W with
+                        links replaced, start in maps, in entries, first and last + 1 of the blocks
+    maps                of w local unknowns, which of the W it is; -1 for hanging ones; then of each
+                        block that of its root and of its arms
+    blocks              (b, 4) first local unknown, which of `hanging`, start in maps, frame in
+                        whose axes the root is solved for, or -1
+    entries             matrix entries of the elements with links, W x W each
+    arm_entries         matrix entries of the second-order terms, of each arm
+    ==================  ============================================================================
+    """
+
+    hanging: NDArray
+    arms: NDArray
+    arm_vectors: NDArray
+    elements: NDArray
+    maps: NDArray
+    blocks: NDArray
+    entries: NDArray
+    arm_entries: NDArray
+
+
+@njit(cache=True, error_model="numpy")
+def place_hanging(links, q, v, a, R):
+    """Positions, velocities and accelerations at the ends of the links."""
+    spatial = links.arm_vectors.shape[1] == 3
+    for k in range(links.hanging.shape[0]):
+        x, root = links.hanging[k, 0], links.hanging[k, 1]
+        for i in range(links.arm_vectors.shape[1]):
+            q[x + i], v[x + i], a[x + i] = q[root + i], v[root + i], a[root + i]
+        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+            c, r = links.arms[m, 1], links.arm_vectors[m]
+            if spatial:
+                _place_in_space(at(pointer_to(R), 9 * links.arms[m, 0]), r, c, x, q, v, a)
+            else:
+                s, t = _turned(q[c], r)
+                q[x] += s
+                q[x + 1] += t
+                v[x] -= v[c] * t
+                v[x + 1] += v[c] * s
+                a[x] -= a[c] * t + v[c] * v[c] * s
+                a[x + 1] += a[c] * s - v[c] * v[c] * t
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _place_in_space(R, r, c, x, q, v, a):
+    u, w = _cross(v[c], v[c + 1], v[c + 2], r[0], r[1], r[2]), _cross(
+        a[c], a[c + 1], a[c + 2], r[0], r[1], r[2])
+    z = _cross(v[c], v[c + 1], v[c + 2], u[0], u[1], u[2])
+    for i in range(3):
+        f, g, h = R[3 * i], R[3 * i + 1], R[3 * i + 2]
+        q[x + i] += f * r[0] + g * r[1] + h * r[2]
+        v[x + i] += f * u[0] + g * u[1] + h * u[2]
+        a[x + i] += f * (w[0] + z[0]) + g * (w[1] + z[1]) + h * (w[2] + z[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _cross(a, b, c, x, y, z):
+    return b * z - c * y, c * x - a * z, a * y - b * x
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _turned(angle, r):
+    c, s = np.cos(angle), np.sin(angle)
+    return c * r[0] - s * r[1], s * r[0] + c * r[1]
+
+
+@njit(cache=True, error_model="numpy")
+def pull_back(links, q, R, residual):
+    """Add the forces at the ends of the links to those on root and rotations."""
+    spatial = links.arm_vectors.shape[1] == 3
+    for k in range(links.hanging.shape[0]):
+        x, root = links.hanging[k, 0], links.hanging[k, 1]
+        for i in range(links.arm_vectors.shape[1]):
+            residual[root + i] += residual[x + i]
+        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+            c, r = links.arms[m, 1], links.arm_vectors[m]
+            if spatial:
+                f = _in_body(at(pointer_to(R), 9 * links.arms[m, 0]), residual, x)
+                moment = _cross(r[0], r[1], r[2], f[0], f[1], f[2])
+                for i in range(3):
+                    residual[c + i] += moment[i]
+            else:
+                s, t = _turned(q[c], r)
+                residual[c] += s * residual[x + 1] - t * residual[x]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _in_body(R, f, x):
+    return (R[0] * f[x] + R[3] * f[x + 1] + R[6] * f[x + 2],
+            R[1] * f[x] + R[4] * f[x + 1] + R[7] * f[x + 2],
+            R[2] * f[x] + R[5] * f[x + 1] + R[8] * f[x + 2])
+
+
+@njit(cache=True, error_model="numpy")
+def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
+    """Add the matrix J of an element with links, its rows and columns replaced."""
+    w, wide = links.elements[k, 1], links.elements[k, 2]
+    maps, entry = links.elements[k, 3], links.elements[k, 4]
+    G = pointer_to(expansion)
+    half, whole = at(G, 9), at(G, 9 + w * wide)
+    for i in range(w * wide + wide * wide):
+        half[i] = 0.0
+    for i in range(w):
+        to = links.maps[maps + i]
+        for row in range(w if to >= 0 else 0):
+            half[row * wide + to] += J[row * w + i]
+    for b in range(links.elements[k, 5], links.elements[k, 6]):
+        _add_part(links, b, J, w, half, wide, True, frames, q, R, T, G)
+    for i in range(w):
+        to = links.maps[maps + i]
+        for j in range(wide if to >= 0 else 0):
+            whole[to * wide + j] += half[i * wide + j]
+    for b in range(links.elements[k, 5], links.elements[k, 6]):
+        _add_part(links, b, half, w, whole, wide, False, frames, q, R, T, G)
+    for i in range(wide * wide):
+        matrix[links.entries[entry + i]] += whole[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
+    """Columns, then rows, of a hanging position, given to root and rotations."""
+    d = links.arm_vectors.shape[1]
+    first, hung, maps = (links.blocks[b, 0], links.blocks[b, 1],
+                         links.blocks[b, 2])
+    arms = links.hanging[hung, 3] - links.hanging[hung, 2]
+    for part in range(arms + 1):
+        count = _replacement(links, b, part, column, frames, q, R, T, G)
+        to = links.maps[maps + part]
+        for i in range(d):
+            for j in range(count):
+                g = G[3 * i + j]
+                if column:
+                    for row in range(w):
+                        target[row * wide + to + j] += source[row * w + first + i] * g
+                else:
+                    for c in range(wide):
+                        target[(to + j) * wide + c] += g * source[(first + i) * wide + c]
+
+
+@njit(cache=True, error_model="numpy")
+def _replacement(links, b, part, column, frames, q, rotations, operators, G):
+    """Derivative of a hanging position by its root (part 0) or the rotation of an arm.
+
+    Returns its number of columns; three numbers a row in G.
+    """
+    d, hung, frame = links.arm_vectors.shape[1], links.blocks[b, 1], links.blocks[b, 3]
+    if part == 0:
+        for i in range(d):
+            for j in range(d):
+                G[3 * i + j] = 1.0 * (i == j) if frame < 0 else frames[9 * frame + 3 * i + j]
+        return d
+    m = links.hanging[hung, 2] + part - 1
+    r = links.arm_vectors[m]
+    if d == 2:
+        s, t = _turned(q[links.arms[m, 1]], r)
+        G[0], G[3] = -t, s
+        return 1
+    R, T = (at(pointer_to(rotations), 9 * links.arms[m, 0]),
+            at(pointer_to(operators), 9 * links.arms[m, 0]))
+    for i in range(3):
+        x, y, z = R[3 * i], R[3 * i + 1], R[3 * i + 2]
+        x, y, z = z * r[1] - y * r[2], x * r[2] - z * r[0], y * r[0] - x * r[1]
+        if column:
+            x, y, z = (x * T[0] + y * T[3] + z * T[6], x * T[1] + y * T[4] + z * T[7],
+                       x * T[2] + y * T[5] + z * T[8])
+        G[3 * i], G[3 * i + 1], G[3 * i + 2] = x, y, z
+    return 3
+
+
+@njit(cache=True, error_model="numpy")
+def add_second_order(links, place, q, rotations, operators, forces, matrix):
+    """Change of the pulled-back moments as the arms turn and the forces stay."""
+    d = links.arm_vectors.shape[1]
+    for k in range(links.hanging.shape[0]):
+        x = links.hanging[k, 0]
+        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+            r = links.arm_vectors[m]
+            if d == 2:
+                s, t = _turned(q[links.arms[m, 1]], r)
+                matrix[links.arm_entries[m]] -= place * (s * forces[x] + t * forces[x + 1])
+                continue
+            R, T = (at(pointer_to(rotations), 9 * links.arms[m, 0]),
+                    at(pointer_to(operators), 9 * links.arms[m, 0]))
+            f = _in_body(R, forces, x)
+            along = r[0] * f[0] + r[1] * f[1] + r[2] * f[2]
+            for i in range(3):
+                for j in range(3):
+                    change = -along * T[3 * i + j]
+                    for c in range(3):
+                        change += f[i] * r[c] * T[3 * c + j]
+                    matrix[links.arm_entries[9 * m + 3 * i + j]] += place * change

@@ -1,0 +1,192 @@
+"""The iteration matrix in compiled code: sum of the element matrices, scales, factors, solution."""
+
+import numpy as np
+from numba import njit
+
+from sebody.engine import elimination
+from sebody.engine.links import add_expanded, add_second_order
+from sebody.engine.state import FLOOR, PIVOTED, RENEWED
+from sebody.kernels.abi import at, pointer_to
+from sebody.kernels.dense import columns_times
+
+SUMMAND = 5             # numbers of an element in System.summands
+RELAXATION = 1e-7       # of redundant constraints, in the scaled iteration matrix alone
+
+
+@njit(cache=True, error_model="numpy")
+def sum_matrices(system, state, forces):
+    """The matrix from the element matrices, which stay as they are; links need the forces."""
+    for k in range(state.matrix.size):
+        state.matrix[k] = 0.0
+    for k in range(system.padding.size):
+        state.matrix[system.padding[k]] = 1.0
+    for element in range(system.summands.shape[0]):
+        _sum_element(system, state, element)
+    if system.links.elements.shape[0] > 0:
+        add_second_order(system.links, state.coefficients[2], state.q, state.R, state.T, forces,
+                         state.matrix)
+
+
+@njit(cache=True, error_model="numpy")
+def _sum_element(system, state, element):
+    """Add an element matrix, positions turned to the axes they are solved for in."""
+    summand = at(pointer_to(system.summands), SUMMAND * element)
+    start, width, first_turned, end_turned, linked = (summand[0], summand[1], summand[2],
+                                                      summand[3], summand[4])
+    own, J = at(pointer_to(state.J), start), pointer_to(state.turned)
+    if first_turned < end_turned or linked >= 0:
+        for k in range(width * width):
+            J[k] = own[k]
+        for k in range(first_turned, end_turned):
+            _turn_block(system.turned_blocks[k], system.dimension[0], J, state.frames)
+        own = J
+    if linked >= 0:
+        add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
+                     state.matrix, state.expansion)
+        return
+    matrix, entries = pointer_to(state.matrix), at(pointer_to(system.J_entry), start)
+    for k in range(width * width):
+        matrix[entries[k]] += own[k]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _product_row(to, own, block, i):
+    """Row of ``to^T own``, of frames that may be global axes."""
+    if block[3] < 0:
+        return own[3 * i], own[3 * i + 1], own[3 * i + 2]
+    x, y, z = to[i], to[3 + i], to[6 + i]
+    if block[4] < 0:
+        return x, y, z
+    return (x * own[0] + y * own[3] + z * own[6], x * own[1] + y * own[4] + z * own[7],
+            x * own[2] + y * own[5] + z * own[8])
+
+
+@njit(cache=True, error_model="numpy")
+def _turn_block(block, dimension, J, frames):
+    """Rows and columns of a position in an element matrix, to the axes it is solved for in."""
+    width, row = block[1], block[2]
+    to, own = at(pointer_to(frames), 9 * block[3]), at(pointer_to(frames), 9 * block[4])
+    a, b, c = _product_row(to, own, block, 0)
+    d, e, f = _product_row(to, own, block, 1)
+    g, h, k = _product_row(to, own, block, 2)
+    for across in range(2):
+        first, next_line, step = (row, width, 1) if across == 0 else (row * width, 1, width)
+        for i in range(width):
+            p = at(J, first + i * next_line)
+            x, y = p[0], p[step]
+            if dimension == 2:
+                p[0], p[step] = a * x + b * y, d * x + e * y
+            else:
+                z = p[2 * step]
+                p[0], p[step] = a * x + b * y + c * z, d * x + e * y + f * z
+                p[2 * step] = g * x + h * y + k * z
+
+
+@njit(cache=True, error_model="numpy")
+def equilibrate(system, state):
+    """Scales that give the matrix a unit diagonal and unit constraint rows: free of units and h."""
+    n = system.diagonal.size
+    for i in range(n):
+        diagonal = abs(state.matrix[system.diagonal[i]])
+        state.scale[i] = 0.0 if system.is_multiplier[i] > 0.0 else (
+            1.0 / np.sqrt(diagonal) if diagonal > 0.0 else 1.0)
+    sums = state.correction
+    sums[:] = 0.0
+    for k in range(system.rows.size):
+        if system.is_multiplier[system.rows[k]] > 0.0:
+            entry = state.matrix[k] * state.scale[system.columns[k]]
+            sums[system.rows[k]] += entry * entry
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            state.scale[i] = 1.0 / np.sqrt(sums[i]) if sums[i] > 0.0 else 1.0
+    floor = 0.0
+    for i in range(n):
+        state.weight[i] = 1.0 / state.scale[i]
+        size = system.magnitude[i] * state.weight[i]
+        floor += size * size
+    state.clock[FLOOR] = 8.0 * 2.2e-16 * np.sqrt(floor)     # what rounding of positions leaves
+
+
+@njit(cache=True, error_model="numpy")
+def relax(system, state):
+    """Make the matrix of redundant constraints regular.
+
+    Their residuals are consistent and so is the answer: multipliers of least norm. Iterations go on
+    until the constraints hold, so nothing is changed but the way there.
+    """
+    for i in range(system.diagonal.size):
+        if system.is_multiplier[i] > 0.0:
+            state.matrix[system.diagonal[i]] -= RELAXATION * state.weight[i] * state.weight[i]
+
+
+@njit(cache=True, error_model="numpy")
+def invert_dense(system, state, n):
+    """Inverse of a small system, by columns, scales included; False if it is singular."""
+    dense = np.empty((n, n))
+    size = inverse_size = 0.0
+    for j in range(n):
+        for i in range(n):
+            dense[j, i] = state.scale[i] * state.matrix[j * n + i] * state.scale[j]
+            size += abs(dense[j, i])
+    if not np.isfinite(size):
+        return False
+    try:
+        inverse = np.linalg.inv(dense)
+    except Exception:  # noqa: BLE001  (LAPACK met a zero pivot; compiled code has no other kind)
+        return False
+    for j in range(n):
+        for i in range(n):
+            inverse_size += abs(inverse[j, i])
+            state.inverse[j, i] = state.scale[i] * inverse[j, i] * state.scale[j]
+    return size * inverse_size < 1e16 * n
+
+
+@njit(cache=True, error_model="numpy")
+def renew(system, state, level, dense):
+    """Sum and factorize; False if a small matrix is singular, PIVOTED and the sum at small pivots.
+
+    Scales are those of the last matrix with new ones of all elements.
+    """
+    relaxed = system.relaxed[0] == 1
+    sum_matrices(system, state, state.forces)
+    if level == RENEWED:
+        equilibrate(system, state)
+    if relaxed:
+        relax(system, state)
+    if dense:
+        return invert_dense(system, state, system.diagonal.size)
+    done = elimination.eliminate(
+        system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
+        pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
+        pointer_to(state.matrix), pointer_to(state.column), pointer_to(state.scale))
+    state.control[PIVOTED] = 0 if done else 1
+    if not done:
+        sum_matrices(system, state, state.forces)
+        if relaxed:
+            relax(system, state)
+    return True
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def solve(system, state, dense):
+    """Correction from the residual."""
+    if dense:
+        n = system.diagonal.size
+        columns_times(pointer_to(state.inverse), pointer_to(state.residual),
+                      pointer_to(state.correction), n, n)
+    else:
+        _substitute(system, state)
+
+
+@njit(cache=True, error_model="numpy")
+def _substitute(system, state):
+    n, unknowns, x = (system.diagonal.size, pointer_to(system.slot_unknowns),
+                      pointer_to(state.solution))
+    for slot in range(system.slot_unknowns.size):
+        x[slot] = state.residual[unknowns[slot]] if unknowns[slot] < n else 0.0
+    elimination.substitute(system.block_diagonal.size, pointer_to(system.block_starts),
+                           pointer_to(system.block_rows), pointer_to(system.block_diagonal),
+                           pointer_to(state.matrix), x)
+    for slot in range(system.slot_unknowns.size):
+        if unknowns[slot] < n:
+            state.correction[unknowns[slot]] = x[slot]

@@ -1,0 +1,209 @@
+"""Where a floating frame is: the searches for its rotation that superelement kernels call.
+
+Each returns a status: 0, HALF_TURN where a node is turned by nearly half a turn against the frame,
+or NO_FRAME where the search does not end.
+"""
+
+import math
+
+from numba import njit
+
+from sebody.kernels.dense import inverse_3
+from sebody.kernels.rotations import (
+    NEAR_PI,
+    inverse_tangent_coefficients,
+    relative_log,
+    relative_rotations,
+    turn,
+    turned,
+)
+
+HALF_TURN = 1
+NO_FRAME = 2
+
+
+@njit(cache=True, error_model="numpy")
+def converged_mean(count, nodes, alpha, R, frame, psi):
+    """The rotation with ``sum alpha_j psi_j = 0``, by Newton from the frame of the last iterate."""
+    if count == 2 and _mean_of_two(nodes, alpha, R, frame, psi):
+        return 0
+    for _ in range(30):
+        if relative_rotations(count, nodes, R, frame, psi) != 0:
+            return HALF_TURN
+        x = y = z = 0.0
+        for j in range(count):
+            x += alpha[j] * psi[3 * j]
+            y += alpha[j] * psi[3 * j + 1]
+            z += alpha[j] * psi[3 * j + 2]
+        if x * x + y * y + z * z < 1e-30:
+            return 0
+        x, y, z = _mean_step(count, alpha, psi, x, y, z)
+        turn(frame, 0, x, y, z, frame, 0)
+        if x * x + y * y + z * z < 1e-16:       # Newton: what is left is of the square of that
+            return relative_rotations(count, nodes, R, frame, psi)
+    return NO_FRAME
+
+
+@njit(cache=True, error_model="numpy")
+def _mean_of_two(nodes, alpha, R, frame, psi):
+    """Mean of two rotations: a point of the shortest way between them, in closed form.
+
+    False, and nothing done, for more than a quarter turn between them, or from the last frame: two
+    nodes may be turned against each other by more than half a turn.
+    """
+    x, y, z, cosine = relative_log(R, 9 * nodes[0], R, 9 * nodes[1])
+    if not cosine > 0.0:
+        return False
+    p, q, r = alpha[1] * x, alpha[1] * y, alpha[1] * z
+    a, b, c, d, e, f, g, h, i = turned(R, 9 * nodes[0], p, q, r)
+    if (a * frame[0] + b * frame[1] + c * frame[2] + d * frame[3] + e * frame[4] + f * frame[5]
+            + g * frame[6] + h * frame[7] + i * frame[8] < 1.0):     # a quarter turn away
+        return False
+    frame[0], frame[1], frame[2] = a, b, c
+    frame[3], frame[4], frame[5] = d, e, f
+    frame[6], frame[7], frame[8] = g, h, i
+    psi[0], psi[1], psi[2] = -p, -q, -r
+    psi[3], psi[4], psi[5] = alpha[0] * x, alpha[0] * y, alpha[0] * z
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _mean_step(count, alpha, psi, x, y, z):
+    """``B^-1 (x, y, z)`` with ``B = sum alpha_j T^-T(psi_j)``."""
+    xx = xy = xz = yx = yy = yz = zx = zy = zz = 0.0
+    for j in range(count):
+        a, b, c = psi[3 * j], psi[3 * j + 1], psi[3 * j + 2]
+        w, e = alpha[j], inverse_tangent_coefficients(a * a + b * b + c * c)[0]
+        xx += w * (1 - e * (b * b + c * c))
+        yy += w * (1 - e * (a * a + c * c))
+        zz += w * (1 - e * (a * a + b * b))
+        xy += w * (0.5 * c + e * a * b)
+        yx += w * (e * a * b - 0.5 * c)
+        xz += w * (e * a * c - 0.5 * b)
+        zx += w * (0.5 * b + e * a * c)
+        yz += w * (0.5 * a + e * b * c)
+        zy += w * (e * b * c - 0.5 * a)
+    xx, xy, xz, yx, yy, yz, zx, zy, zz = inverse_3(xx, xy, xz, yx, yy, yz, zx, zy, zz)
+    return xx * x + xy * y + xz * z, yx * x + yy * y + yz * z, zx * x + zy * y + zz * z
+
+
+@njit(cache=True, error_model="numpy")
+def weighted_mean(count, nodes, alpha, R, reference, frame, beta, psi):
+    """The paper's mean (15)-(16) of the rotation increments since the reference frame."""
+    if relative_rotations(count, nodes, R, reference, beta) != 0:
+        return HALF_TURN
+    x = y = z = 0.0
+    for j in range(count):
+        x += alpha[j] * beta[3 * j]
+        y += alpha[j] * beta[3 * j + 1]
+        z += alpha[j] * beta[3 * j + 2]
+    turn(reference, 0, x, y, z, frame, 0)
+    return relative_rotations(count, nodes, R, frame, psi)
+
+
+@njit(cache=True, error_model="numpy")
+def planar_mean(count, alpha, angles, frame, psi):
+    """Weighted mean of angles; the frame is its rotation about z."""
+    mean = 0.0
+    for j in range(count):
+        mean += alpha[j] * angles[j]
+    for j in range(count):
+        psi[j] = angles[j] - mean
+    frame[0] = frame[4] = math.cos(mean)
+    frame[3] = math.sin(mean)
+    frame[1] = -frame[3]
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def best_fit(count, fit, X, alpha, x, frame):
+    """The rotation with ``sum w_j X_j x R0^T (x_j - x0) = 0``, by Newton from the last iterate."""
+    cx = cy = cz = 0.0
+    for j in range(count):
+        cx += alpha[j] * x[3 * j]
+        cy += alpha[j] * x[3 * j + 1]
+        cz += alpha[j] * x[3 * j + 2]
+    for _ in range(50):
+        mx = my = mz = xx = xy = xz = yy = yz = zz = 0.0
+        for j in range(count):
+            a, b, c = x[3 * j] - cx, x[3 * j + 1] - cy, x[3 * j + 2] - cz
+            r = frame[0] * a + frame[3] * b + frame[6] * c
+            s = frame[1] * a + frame[4] * b + frame[7] * c
+            t = frame[2] * a + frame[5] * b + frame[8] * c
+            w, u, v, z = fit[j], X[3 * j], X[3 * j + 1], X[3 * j + 2]
+            mx += w * (v * t - z * s)
+            my += w * (z * r - u * t)
+            mz += w * (u * s - v * r)
+            xx += w * u * r
+            yy += w * v * s
+            zz += w * z * t
+            xy += 0.5 * w * (u * s + v * r)
+            xz += 0.5 * w * (u * t + z * r)
+            yz += 0.5 * w * (v * t + z * s)
+        px, py, pz, definite = _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz)
+        size = px * px + py * py + pz * pz
+        if not size < 16.0:
+            return NO_FRAME
+        turn(frame, 0, px, py, pz, frame, 0)
+        if definite and size < 1e-16:       # Newton: what is left is of the square of that
+            return 0
+    return NO_FRAME
+
+
+@njit(cache=True, error_model="numpy")
+def _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz):
+    """Turn towards the best fit, and whether it is a minimum that is being approached.
+
+    ``J = tr(S) I - S`` is positive definite near the best fit. Its Newton step of an isotropic
+    body is the tangent of the angle that is missing, hence the arc tangent; elsewhere (beyond a
+    saddle) one radian along the moment leads back.
+    """
+    a, b, c = yy + zz, xx + zz, xx + yy
+    det = a * (b * c - yz * yz) - xy * (xy * c + xz * yz) - xz * (xy * yz + b * xz)
+    if a > 0.0 and a * b > xy * xy and det > 1e-12 * (a + b + c) ** 3:
+        p, q, r, s, t, u, v, w, z = inverse_3(a, -xy, -xz, -xy, b, -yz, -xz, -yz, c)
+        x, y, z = p * mx + q * my + r * mz, s * mx + t * my + u * mz, v * mx + w * my + z * mz
+        angle = math.sqrt(x * x + y * y + z * z)
+        k = math.atan(angle) / angle if angle > 1e-4 else 1.0
+        return k * x, k * y, k * z, True
+    size = math.sqrt(mx * mx + my * my + mz * mz)
+    return mx / size, my / size, mz / size, False
+
+
+@njit(cache=True, error_model="numpy")
+def planar_fit(count, fit, X, alpha, x, frame):
+    """The rotation of best fit in a plane, in closed form."""
+    cx = cy = 0.0
+    for j in range(count):
+        cx += alpha[j] * x[2 * j]
+        cy += alpha[j] * x[2 * j + 1]
+    along = across = 0.0
+    for j in range(count):
+        a, b, w = x[2 * j] - cx, x[2 * j + 1] - cy, fit[j]
+        along += w * (X[2 * j] * a + X[2 * j + 1] * b)
+        across += w * (X[2 * j] * b - X[2 * j + 1] * a)
+    size = math.hypot(along, across)
+    if not size > 0.0:
+        return NO_FRAME
+    frame[0] = frame[4] = along / size
+    frame[3] = across / size
+    frame[1] = -frame[3]
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def planar_relative_angles(count, angles, frame, psi):
+    """Angles of the nodes in a frame, between -pi and pi."""
+    mean = math.atan2(frame[3], frame[0])
+    for j in range(count):
+        psi[j] = _wrapped(angles[j] - mean)
+        if not math.cos(psi[j]) > NEAR_PI:
+            return HALF_TURN
+    return 0
+
+
+
+@njit(cache=True, error_model="numpy")
+def _wrapped(angle):
+    """The angle less full turns, between -pi and pi."""
+    return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)

@@ -1,0 +1,101 @@
+"""Forces of a user's own: a compiled function behind the signature of every other kernel.
+
+The kernel is written by hand, since there is nothing to derive: forces come from the function, the
+matrix from central differences of it.
+"""
+
+from collections.abc import Callable
+
+from llvmlite import ir
+from numba import carray, cfunc, njit, types
+from numba.core.errors import NumbaError
+from numba.extending import intrinsic
+
+from sebody.errors import InputError
+from sebody.kernels.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+
+PLANAR = False
+N_ROTATIONS = 0
+MULTIPLIERS = 0
+KINETIC = False
+POWER = True
+DRIVEN = False
+WORK_ROWS = 4
+OPERATIONS = {"residual": (0, 0), "column": (0, 0)}
+STEP = 1e-6     # of differences, relative to the coordinate and at least absolute
+_floats = types.CPointer(types.float64)
+FUNCTION = types.void(types.int64, types.float64, _floats, _floats, _floats)
+
+
+def compiled(name: str, function: Callable[..., None]) -> object:
+    """A user's ``function(t, x, v, force)`` as a C function of pointers.
+
+    Raises
+    ------
+    InputError
+        Numba cannot compile it.
+    """
+    try:
+        inner = njit(function)
+
+        def call(n, t, x, v, force):
+            inner(t, carray(x, n), carray(v, n), carray(force, n))
+        return cfunc(FUNCTION)(call)
+    except (NumbaError, TypeError) as error:
+        raise InputError(f"user force {name!r} cannot be compiled: write function(t, x, v, force) "
+                         f"with arithmetic, math and numpy only ({error})") from error
+
+
+@intrinsic
+def _call(typingctx, address, n, t, x, v, force):
+    def codegen(context, builder, sig, args):
+        word, double = ir.IntType(64), ir.DoubleType()
+        kind = ir.FunctionType(ir.VoidType(), [word, double, *[a.type for a in args[3:]]])
+        builder.call(builder.inttoptr(args[0], kind.as_pointer()), args[1:])
+        return context.get_dummy_value()
+    return types.void(types.int64, types.int64, types.float64, x, v, force), codegen
+
+
+@njit(cache=True, error_model="numpy")
+def _evaluate(address, n, t, x, v, force):
+    for i in range(n):
+        force[i] = 0.0
+    _call(address, n, t, x, v, force)
+
+
+@cfunc(SIGNATURE, cache=True, error_model="numpy")
+def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
+           coefficients, forces, matrices, work, energies):
+    n = width
+    x, rate, force, other = work, at(work, n), at(work, 2*n), at(work, 3*n)
+    for element in range(count):
+        row = at(index, element*stride)
+        unknowns, item = at(row, HEADER), row[2]
+        address, t = unknowns[n], loads[3*item]
+        for i in range(n):
+            x[i], rate[i] = q[unknowns[i]], v[unknowns[i]]
+        g = at(forces, element*n)
+        _evaluate(address, n, t, x, rate, force)
+        for i in range(n):
+            g[i] = -force[i]
+        if task == ENERGY:
+            power = 0.0
+            for i in range(n):
+                power += force[i]*rate[i]
+            energies[POWERS + item] = power
+        if task == TANGENT:
+            J = at(matrices, element*n*n)
+            for column in range(n):
+                for i in range(n):
+                    J[i*n + column] = 0.0
+                for values, c in ((x, coefficients[2]), (rate, coefficients[1])):
+                    kept = values[column]
+                    h = STEP*max(1.0, abs(kept))
+                    values[column] = kept + h
+                    _evaluate(address, n, t, x, rate, force)
+                    values[column] = kept - h
+                    _evaluate(address, n, t, x, rate, other)
+                    values[column] = kept
+                    for i in range(n):
+                        J[i*n + column] -= c*(force[i] - other[i])/(2.0*h)
+    return 0

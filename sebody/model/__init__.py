@@ -1,0 +1,1 @@
+"""What a user builds; nothing here is compiled."""

@@ -1,0 +1,1 @@
+"""What a run yields: histories by name, balances, pictures, files."""

@@ -1,0 +1,140 @@
+"""Pictures of results (extra ``plot``)."""
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.results.files import check_target
+
+if TYPE_CHECKING:
+    from sebody.results.result import Result
+
+SUFFIXES = (".png", ".pdf", ".svg")
+INSTANTS = 9            # at which the body is drawn
+FLAT = 0.03             # out-of-plane motion below this part of the whole cannot be seen
+INK, ACCENT, PALE = "#1f2a44", "#c8452d", "#9aa5b8"
+COMPONENTS = ((ACCENT, "x"), ("#2a7f62", "y"), (INK, "z"))
+STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
+         "axes.edgecolor": PALE, "axes.labelcolor": INK, "axes.titlecolor": INK,
+         "axes.titlesize": 10, "axes.titlelocation": "left", "xtick.color": INK,
+         "ytick.color": INK, "axes.grid": True, "grid.color": "#e6e9ef", "grid.linewidth": 0.8,
+         "legend.frameon": False, "axes.axisbelow": True}
+
+
+def check_picture(path: str | Path) -> None:
+    """Refuse a picture that cannot be made.
+
+    Raises
+    ------
+    InputError
+        matplotlib is missing, the folder does not exist, or the file type is unknown.
+    """
+    if find_spec("matplotlib") is None:
+        raise InputError("pictures need matplotlib: pip install sebody[plot]")
+    check_target(path, "picture", SUFFIXES)
+
+
+def save_picture(result: "Result", path: str | Path, base: str, tip: str) -> Path:
+    """Draw the angular velocity of one node and the path of another.
+
+    A base without a rotation has no angular velocity: the velocity of the tip is drawn instead.
+
+    Parameters
+    ----------
+    result : Result
+    path : str or Path
+        File to write: png, pdf or svg.
+    base : str
+        Node whose angular velocity is drawn, and where the body starts.
+    tip : str
+        Node whose path is drawn, and where the body ends.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    InputError
+        See `check_picture`; unknown nodes.
+    """
+    check_picture(path)
+    start, end = _spatial(result[f"{base}.position"]), _spatial(result[f"{tip}.position"])
+    title, rates = _rates(result, base, tip)
+
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with rc_context(STYLE):
+        figure = Figure(figsize=(9.6, 4.2), layout="constrained")
+        FigureCanvasAgg(figure)
+        _draw_rates(figure.add_subplot(1, 2, 1), result.t, rates, title)
+        _draw_path(figure, start, end, base, tip)
+        figure.savefig(path, dpi=150, bbox_inches="tight", pad_inches=0.1)
+    return Path(path)
+
+
+def _rates(result: "Result", base: str, tip: str) -> tuple[str, NDArray]:
+    """What the left picture shows: its title and values."""
+    if result.model.nodes[base].rotation is None:
+        return f"velocity of the {tip}", result[f"{tip}.velocity"]
+    return f"angular velocity of the {base}", result[f"{base}.angular_velocity"]
+
+
+def _spatial(points: NDArray) -> NDArray:
+    """Positions (n, 3), with z = 0 for a planar model."""
+    return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
+
+
+def _draw_rates(axes, t: NDArray, rates: NDArray, title: str) -> None:
+    axes.set_title(title)
+    axes.set_xlabel("time")
+    axes.margins(x=0.01)
+    about = "about " if title.startswith("angular") else "along "
+    if about == "about " and (rates.ndim == 1 or
+                              np.abs(rates[:, :2]).max() <= FLAT * np.abs(rates).max()):
+        axes.plot(t, rates if rates.ndim == 1 else rates[:, 2], color=INK, linewidth=1.2)
+        axes.set_ylabel("about z")
+        return
+    for values, (color, label) in zip(rates.T, COMPONENTS, strict=False):
+        axes.plot(t, values, color=color, linewidth=1.0, label=about + label)
+    axes.set_ylabel("component, global axes")
+    axes.legend()
+
+
+def _draw_path(figure, start: NDArray, end: NDArray, base: str, tip: str) -> None:
+    span = np.ptp(np.concatenate([start, end])[:, :2], axis=0).max()
+    height = max(np.ptp(start[:, 2]), np.ptp(end[:, 2]))
+    flat = height <= FLAT * span
+    axes = figure.add_subplot(1, 2, 2, projection=None if flat else "3d")
+    axes.set_title(f"path of the {tip}, with the body from {base} to {tip}")
+    size = 2 if flat else 3
+    start, end = start[:, :size], end[:, :size]
+    axes.plot(*end.T, color=ACCENT, linewidth=1.0, label=f"path of the {tip}")
+    for number, k in enumerate(_instants(end)):
+        color = INK if k == 0 else PALE
+        axes.plot(*np.array([start[k], end[k]]).T, color=color, linewidth=2.0,
+                  solid_capstyle="round", zorder=3 if k == 0 else 1.5,
+                  label={0: "body at the start", 1: "and later"}.get(number))
+        axes.plot(*end[k:k + 1].T, "o", color=color, markersize=4, zorder=3)
+    axes.plot(*start[:1].T, "o", color=INK, markersize=5, zorder=4)
+    for name in "xyz"[:size]:
+        getattr(axes, f"set_{name}label")(name)
+    axes.set_aspect("equal", adjustable="datalim" if flat else "box")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12 if flat else 0.0), ncols=3)
+
+
+def _instants(path: NDArray) -> list[int]:
+    """Samples at about equal distances along the first turn of a path, the first one included."""
+    travelled = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    away = np.linalg.norm(path - path[0], axis=1)
+    back = np.flatnonzero((away < 0.1 * away.max()) & (travelled > 2 * away.max()))
+    length = travelled[back[0]] if back.size else travelled[-1]
+    wanted = np.linspace(0.0, length, INSTANTS, endpoint=not back.size)
+    return sorted(set(np.searchsorted(travelled, wanted).clip(max=len(path) - 1).tolist()))

@@ -1,0 +1,1 @@
+"""Studies over scenes and kernels: bench, chart, atlas, check."""

@@ -1,0 +1,66 @@
+"""``sebody atlas``: where methods fail, what theory says of it, what is measured, what is done.
+
+Every row of the table is a number that theory predicts and a run has to show.
+"""
+
+import warnings
+from collections.abc import Callable, Iterable
+
+from sebody.errors import InputError, LimitWarning
+from sebody.studies.atlas import geometry, inertia, integration, spin
+from sebody.studies.atlas.draw import draw
+from sebody.studies.atlas.finding import Finding, Row
+
+CASES: dict[str, Callable[[], Finding]] = {
+    "divergence": spin.spurious_divergence,
+    "spin-up": spin.spin_up_outcomes,
+    "euler": spin.buckling,
+    "beck": spin.flutter,
+    "impulse": inertia.impulses,
+    "small-increments": inertia.small_increments,
+    "damping": integration.damping_of_constraints,
+    "newton": integration.newton,
+    "million-steps": integration.million_steps,
+    "half-turn": geometry.half_turn,
+    "collinear": geometry.collinear,
+    "massless": geometry.massless_rotations,
+    "weights": geometry.negative_weights,
+}
+
+__all__ = ["CASES", "Finding", "Row", "check_names", "draw", "explore", "report"]
+
+
+def check_names(names: Iterable[str]) -> None:
+    """Refuse unknown cases.
+
+    Raises
+    ------
+    InputError
+        The first one that is unknown.
+    """
+    for name in names:
+        if name not in CASES:
+            raise InputError(f"the atlas has no case {name!r}: there are {', '.join(CASES)}")
+
+
+def explore(name: str) -> Finding:
+    """Run a case; its warnings are part of what it shows and are not given again.
+
+    Raises
+    ------
+    InputError
+        An unknown case.
+    """
+    check_names([name])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LimitWarning)
+        return CASES[name]()
+
+
+def report(finding: Finding) -> str:
+    """Theory, what the program does, and a line for every number."""
+    lines = [finding.title, f"  theory   {finding.theory}", f"  program  {finding.program}"]
+    wide = max(len(row.what) for row in finding.rows)
+    lines += [f"    {row.what:{wide}}  theory {row.theory:<12.6g} measured {row.measured:<12.6g} "
+              f"{'ok' if row.passed else 'DIFFERS'}" for row in finding.rows]
+    return "\n".join(lines)

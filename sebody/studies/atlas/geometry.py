@@ -1,0 +1,189 @@
+"""Awkward bodies: half turns, nodes on a line, rotations without mass, negative weights."""
+
+import numpy as np
+
+from sebody.analysis.simulation import Simulation, simulate
+from sebody.engine.evaluate import assemble
+from sebody.engine.state import FORCES
+from sebody.errors import InputError
+from sebody.fem import straight_beam
+from sebody.kernels.rotations import NEAR_PI, exp_map
+from sebody.model.model import Model
+from sebody.reduction import ReducedBody, craig_bampton
+from sebody.scenes.hinged_beam import SECTION
+from sebody.studies.atlas.finding import Finding, Row
+
+LIMIT = np.degrees(np.arccos(NEAR_PI))      # rotation whose logarithm is refused
+
+
+def _beam(model: Model, length: float = 10.0, first: int = 0, last: int = 4,
+          frame: str = "converged_mean") -> None:
+    """A beam of four elements whose boundary nodes may lie inside."""
+    fe_model = straight_beam((0, 0, 0), (length, 0, 0), SECTION, 4)
+    body = craig_bampton(fe_model, [(first, "full"), (last, "full")], 0)
+    ends = [model.node(name, (length * k / 4, 0, 0)) for name, k in (("a", first), ("b", last))]
+    model.superelement("beam", body, ends, frame=frame)
+
+
+def _status(model: Model, angle: float) -> int:
+    """Status of the kernel when the second node is turned."""
+    run = Simulation(model, 0.01)
+    k = run.numbering.rotations[id(model.nodes["b"].rotation)]
+    run.state.R[9 * k:9 * k + 9] = exp_map(0.0, 0.0, np.radians(angle))
+    return assemble(FORCES, run.system, run.state, run.state.residual)
+
+
+def half_turn() -> Finding:
+    """How far one end of a body can be turned against the other."""
+    finding = Finding(
+        "node rotations towards pi",
+        "The local rotation is a logarithm, which jumps at half a turn. Its derivative grows "
+        f"before: it is refused from {LIMIT:.1f} degrees on, between the ends of a body of two "
+        "nodes, whatever its frame.",
+        "Stops with a message that names the reason; warns long before, at 0.3 rad.",
+        "relative rotation [deg]", "refused")
+    angles = np.arange(10.0, 180.0, 2.5)
+    for frame in ("converged_mean", "mean", "node"):
+        refused = []
+        for angle in angles:
+            model = Model()
+            _beam(model, frame=frame)
+            refused.append(float(_status(model, angle) != 0))
+        first = angles[int(np.argmax(refused))]
+        finding.rows.append(Row(f"{frame}: first refused [deg]", LIMIT, first, 2.5 / LIMIT))
+        finding.curves[frame] = angles, refused
+    return finding
+
+
+def collinear() -> Finding:
+    """Frame by positions whose nodes nearly lie on a line."""
+    finding = Finding(
+        "nearly collinear nodes",
+        "A frame of best fit turns about the line of its nodes by the deflection of the one beside "
+        "it, divided by its distance: with the distance going to zero any deflection becomes a "
+        "rotation.",
+        "Warns where nodes spread by less than 1e-3 of their length across the line, refuses "
+        "1e-6.",
+        "distance from the line / length", "turn of the frame for a deflection of 1e-6 [rad]",
+        logarithmic="xy")
+    offsets, turns = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4), []
+    for offset in offsets:
+        model = triangle(offset)
+        run = Simulation(model, 0.01)
+        at = run.numbering.triplets[id(model.nodes["c"].position)]
+        run.state.q[at + 2] += 1e-6
+        assemble(FORCES, run.system, run.state, run.state.residual)
+        frame = run.state.frames[:9].reshape(3, 3)
+        turns.append(np.arctan2(frame[2, 1], frame[2, 2]))
+        finding.rows.append(Row(f"offset {offset:g}: turn", np.arctan(1e-6 / offset), turns[-1],
+                                1e-3))
+    finding.curves["frame"] = offsets, turns
+    try:
+        triangle(1e-8)
+        refused = 0.0
+    except InputError:
+        refused = 1.0
+    finding.rows.append(Row("offset 1e-08: refused", 1.0, refused, 0.0))
+    return finding
+
+
+def triangle(offset: float) -> Model:
+    """A plate of springs on three nodes, the third beside the line of the others."""
+    points = np.array([[0.0, 0, 0], [2.0, 0, 0], [1.0, offset, 0]])
+    body = _of_springs(points)
+    model = Model()
+    nodes = [model.node("a", points[0]), model.node("b", points[1]),
+             model.node("c", points[2], "translation")]
+    model.superelement("plate", body, nodes, frame="positions")
+    return model
+
+
+def _of_springs(points: np.ndarray) -> ReducedBody:
+    """Two full nodes and one position, masses in them, stiff against all but rigid motion."""
+    n = 15
+    mass = np.diag([1.0] * 9 + [0.1] * 6)
+    centre = points.mean(axis=0)
+    rigid = np.zeros((n, 6))
+    for i, point in enumerate(points):
+        rigid[3 * i:3 * i + 3, :3] = np.eye(3)
+        rigid[3 * i:3 * i + 3, 3:] = np.cross(np.eye(3), point - centre).T
+    for j in range(2):
+        rigid[9 + 3 * j:12 + 3 * j, 3:] = np.eye(3)
+    basis = np.linalg.qr(rigid)[0]
+    return ReducedBody(100.0 * (np.eye(n) - basis @ basis.T), mass, points,
+                       ("full", "full", "translation"))
+
+
+def massless_rotations() -> Finding:
+    """Inertia of the rotation about a beam's axis, down to none."""
+    finding = Finding(
+        "nearly massless rotations",
+        "A rotation with little inertia has a high frequency, which the scheme damps; the motion "
+        "tends to that without it in proportion. Without any its acceleration is undetermined.",
+        "Integrates down to 1e-10 of the beam's own inertia, and refuses what has none by name.",
+        "share of the inertia about the axis", "change of the tip, relative", logarithmic="xy")
+    shares = np.array([1e-1, 1e-2, 1e-3, 1e-4])
+    least = _struck(1e-10)
+    changes = [np.abs(_struck(share) - least).max() / 10.0 for share in shares]
+    order = np.polyfit(np.log(shares), np.log(changes), 1)[0]
+    finding.rows.append(Row("order of the change in the share", 1.0, order, 0.1))
+    finding.curves["tip"] = shares, changes
+    try:
+        _struck(0.0)
+        refused = 0.0
+    except InputError:
+        refused = 1.0
+    finding.rows.append(Row("no inertia: refused", 1.0, refused, 0.0))
+    return finding
+
+
+def _struck(share: float) -> np.ndarray:
+    """Tip of a beam on a spherical joint, pushed across, with less inertia about its axis."""
+    body = craig_bampton(straight_beam((0, 0, 0), (10.0, 0, 0), SECTION, 4),
+                         [(0, "full"), (4, "full")], 0)
+    mass = body.mass.copy()
+    for i in (6, 9):            # rotations about the axis
+        mass[i, :] *= np.sqrt(share)
+        mass[:, i] *= np.sqrt(share)
+    model = Model()
+    ends = model.node("a", (0, 0, 0)), model.node("b", (10.0, 0, 0))
+    model.superelement("beam", ReducedBody(body.stiffness, mass, body.coordinates, body.keeps),
+                       ends)
+    model.fix("a", "position")
+    model.rigid_velocity((0.0, 0.0, 0.0), (2.0, 0.5, 1.0))
+    model.force("b", (0, 1.0, 0), [(0.0, 0.0), (0.5, 40.0), (1.0, 0.0)])
+    return simulate(model, 0.01, 2.0)["b.position"]
+
+
+def negative_weights() -> Finding:
+    """A body whose centre of mass lies outside its nodes."""
+    finding = Finding(
+        "negative weights",
+        "Nodes at 1/4 and 1/2 of a beam give the weights 0 and 1, at 0 and 1/4 the weights -1 and "
+        "2: the frame is extrapolated, and one end turns twice as far against it as the ends "
+        "against each other. Energy is kept to second order as with any weights.",
+        "Uses them; half a turn is refused at half the relative rotation.",
+        "step [s]", "drift of energy, relative", logarithmic="xy")
+    model = Model()
+    _beam(model, 10.0, 0, 1)
+    weights = model.bodies["beam"].alpha
+    finding.rows += [Row("weight of the first node", -1.0, weights[0], 1e-9),
+                     Row("weight of the second node", 2.0, weights[1], 1e-9)]
+    angles = np.arange(70.0, 100.0, 1.0)
+    refused = [_status(model, angle) != 0 for angle in angles]
+    finding.rows.append(Row("first refused relative rotation [deg]", LIMIT / 2,
+                            angles[int(np.argmax(refused))], 1.0 / (LIMIT / 2)))
+    steps = (0.02, 0.01, 0.005, 0.0025)
+    drifts = [_tumbling(h) for h in steps]
+    finding.curves["measured"] = steps, drifts
+    order = np.polyfit(np.log(steps), np.log(drifts), 1)[0]
+    finding.rows.append(Row("order of the drift of energy", 2.0, order, 0.15))
+    return finding
+
+
+def _tumbling(h: float) -> float:
+    model = Model()
+    _beam(model, 10.0, 0, 1)
+    model.rigid_velocity((0.0, 0.0, 0.0), (0.2, 1.0, 0.6))
+    model.force("b", (0.0, 0.0, 1.0), [(0.0, 0.0), (0.5, 60.0), (1.0, 0.0)])
+    return simulate(model, h, 3.0).energy_balance()

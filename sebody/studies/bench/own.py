@@ -1,0 +1,83 @@
+"""Runs of this package: the shipped scenes with the settings of the table."""
+
+import statistics
+from collections.abc import Callable
+from importlib import import_module
+from typing import NamedTuple
+
+from sebody.analysis.simulation import Simulation
+from sebody.engine.system import System
+from sebody.kernels.loader import element_kernel
+from sebody.results.result import Result
+from sebody.studies.bench.measurement import Measurement
+from sebody.studies.bench.references import tip_error
+
+CHAINS = (1, 4, 16, 64, 256, 1024)
+LOOPS = (2, 20)
+
+
+class Case(NamedTuple):
+    """One line of the table."""
+
+    scene: str              # name of a scene
+    variant: str
+    parameters: dict        # of its build
+    t_end: float
+    reference: str          # name of a file of reference data, or nothing
+    runs: int
+
+
+def cases(scene: str) -> list[Case]:
+    """Cases of a scene: chains of several lengths, one of every other scene."""
+    if scene == "chain":
+        return [Case(scene, f"{n} links", {"links": n}, 1.0, "", 9 if n < 256 else 3)
+                for n in CHAINS]
+    if scene == "four-bar":
+        return [Case(scene, f"{n} loops", {"loops": n}, 0.0, "", 3) for n in LOOPS]
+    if scene == "slider-crank":
+        return [Case(scene, "4 superelements", {"bodies": 4, "modes": 0}, 0.0, "", 5)]
+    references = {"hinged-beam": "hinged_beam", "planar-hinged-beam": "hinged_beam",
+                  "spherical-beam": "spherical_beam"}
+    variant = "rigid body" if scene == "heavy-top" else "superelement"
+    return [Case(scene, variant, {}, 0.0, references.get(scene, ""), 9)]
+
+
+def measure(case: Case) -> Measurement:
+    """Run a case several times; time and error are of the same runs."""
+    build = import_module(f"sebody.scenes.{case.scene.replace('-', '_')}").build
+    results = [_run(build, case) for _ in range(case.runs)]
+    last = results[-1]
+    error = (tip_error(case.reference, last.t, last["tip.position"]) if case.reference else None)
+    return Measurement(
+        case.scene, case.variant, last.numbering.free, float(last.t[1] - last.t[0]),
+        statistics.median(r.microseconds_per_step for r in results), last.iterations_per_step,
+        error, statistics.median(r.seconds for r in results), flops_per_step(last))
+
+
+def _run(build: Callable, case: Case) -> Result:
+    scene = build(**case.parameters)
+    return Simulation(scene.model, scene.h).run_to(case.t_end or scene.t_end).result()
+
+
+def flops_per_step(result: Result) -> float:
+    """Floating-point operations a step: forces and substitutions of its iterations.
+
+    From the operation counts of the kernels. Iteration matrices are left out, so the fraction of
+    the machine's rate that is reached is a lower bound.
+    """
+    system, bodies = result.system, list(result.model.bodies.values())
+    forces = sum(_kernel_flops(b.kernel, b.body.stiffness.shape[0]) for b in bodies)
+    forces += sum(element_kernel(item.kind).OPERATIONS["residual"][0]
+                  for item in (*result.model.rigid_bodies.values(),
+                               *result.model.joints, *result.model.loads))
+    return result.iterations_per_step * (forces + _solve_flops(system))
+
+
+def _kernel_flops(kernel, n: int) -> float:
+    alone, products = kernel.OPERATIONS["residual"]
+    return alone + 2.0 * products * n * n
+
+
+def _solve_flops(system: System) -> float:
+    """A product with the inverse, or substitution in the blocks of the factors."""
+    return 2.0 * system.rows.size

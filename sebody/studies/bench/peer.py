@@ -1,0 +1,104 @@
+"""The same scenes in Exudyn, an established C++ code, where it is installed.
+
+Settings are those its documentation advises for speed: the build without range checks, modified
+Newton, loads without Python in the loop, no output but one sensor.
+"""
+
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError
+from importlib.metadata import version as installed_version
+from importlib.util import find_spec
+
+from sebody.errors import InputError
+from sebody.studies.bench.measurement import Measurement
+from sebody.studies.bench.own import LOOPS
+from sebody.studies.bench.references import tip_error
+
+NAME = "Exudyn"
+LINKS = (1, 4, 16, 64, 256)
+
+
+def available() -> bool:
+    """Whether Exudyn can be imported; does not import it."""
+    return find_spec("exudyn") is not None
+
+
+def version() -> str | None:
+    """Its version, None where it is not installed."""
+    try:
+        return installed_version("exudyn")
+    except PackageNotFoundError:
+        return None
+
+
+def measure(scene: str) -> list[Measurement]:
+    """Run the peer's models of a scene.
+
+    Raises
+    ------
+    InputError
+        Exudyn is not installed.
+    """
+    if not available():
+        raise InputError("Exudyn is not installed: pip install exudyn")
+    sys.exudynFast = True       # read by Exudyn when it is first imported
+    models = import_module("sebody.studies.bench.peer_models")
+    mechanisms = import_module("sebody.studies.bench.peer_mechanisms")
+    if scene == "hinged-beam":
+        runs = [_beam(scene, f"{NAME} reduced, 12 + 4 coordinates", models.reduced_beam, h)
+                for h in (0.02, 0.01, 0.005)]
+        return runs + [_beam(scene, f"{NAME} beams in space, {n} elements",
+                             lambda h, n=n: models.spatial_beams(h, n), h)
+                       for n in (2, 4) for h in (0.02, 0.01, 0.005)]
+    if scene == "planar-hinged-beam":
+        return [_beam(scene, f"{NAME} beams in a plane, {n} elements",
+                      lambda h, n=n: models.planar_beams(h, n), h)
+                for n in (2, 3, 4) for h in (0.04, 0.02, 0.01, 0.005)]
+    if scene == "spherical-beam":
+        reduced = _beam(scene, f"{NAME} reduced, 12 + 8 coordinates",
+                        models.reduced_spherical_beam, 0.02)
+        return [reduced, *(_beam(scene, f"{NAME} beams in space, {n} elements",
+                                 lambda h, n=n: models.spherical_beam(h, n), 0.02)
+                           for n in (2, 4))]
+    if scene == "chain":
+        return [_chain(models.chain, n) for n in LINKS]
+    variants = {"four-bar": [(f"{NAME} {n} loops", lambda h, n=n: mechanisms.four_bar(h, n), 1e-3)
+                             for n in LOOPS],
+                "heavy-top": [(f"{NAME} rigid body", mechanisms.heavy_top, 1e-3)],
+                "slider-crank": [(f"{NAME} beams in a plane, 4 elements", mechanisms.slider_crank,
+                                  2e-5)]}
+    return [_timed(scene, *variant) for variant in variants[scene]]
+
+
+def _beam(scene: str, variant: str, model: Callable, h: float) -> Measurement:
+    """Three runs over 30 s; the path of the tip against the reference."""
+    runs = [model(h) for _ in range(3)]
+    path = runs[0].tip
+    name = "spherical_beam" if scene == "spherical-beam" else "hinged_beam"
+    seconds = statistics.median(run.seconds for run in runs)
+    return Measurement(scene, variant, runs[0].unknowns, h, 1e6 * seconds / runs[0].steps,
+                       runs[0].iterations, tip_error(name, path[:, 0], path[:, 1:]), seconds)
+
+
+def _timed(scene: str, variant: str, model: Callable, h: float) -> Measurement:
+    """Three runs of a mechanism, without a reference."""
+    runs = [model(h) for _ in range(3)]
+    seconds = statistics.median(run.seconds for run in runs)
+    return Measurement(scene, variant, runs[0].unknowns, h, 1e6 * seconds / runs[0].steps,
+                       runs[0].iterations, None, seconds)
+
+
+def _chain(model: Callable, links: int) -> Measurement:
+    """The first steps of a chain: all of a second, or less of a long one."""
+    began = time.perf_counter()
+    runs = [model(links, 100 if links <= 16 else 20)]
+    while time.perf_counter() - began < 2.0 and len(runs) < 3:
+        runs.append(model(links, 100 if links <= 16 else 20))
+    seconds = statistics.median(run.seconds for run in runs)
+    return Measurement("chain", f"{NAME} {links} links", runs[0].unknowns, 0.01,
+                       1e6 * seconds / runs[0].steps, runs[0].iterations, None, seconds)
+

@@ -1,0 +1,128 @@
+"""``sebody chart``: error against computing time, over formulations, divisions and steps."""
+
+import csv
+import statistics
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from sebody.analysis.simulation import simulate
+from sebody.errors import SimulationError
+from sebody.results.files import check_target
+from sebody.studies.bench import peer
+from sebody.studies.chart.cases import COARSEST, SCENES, Variant, builder, variants
+from sebody.studies.chart.draw import draw
+from sebody.studies.chart.references import Reference, reference
+
+RUNS = 3
+LEVELS = (1e-2, 1e-3, 3e-4)     # of error, at which front and peer are compared
+
+
+@dataclass(frozen=True)
+class Point:
+    """A variant with its error and its cost, both of the same runs."""
+
+    family: str
+    label: str
+    error: float                # relative L2, never below that of the reference
+    cost: float                 # computing seconds a simulated second
+    unknowns: int
+    h: float
+    iterations: float
+
+
+def measure(scene: str) -> tuple[list[Point], Reference]:
+    """Run all variants of a scene, and the peer where it is installed.
+
+    Raises
+    ------
+    InputError
+        A scene that has no chart.
+    """
+    exact = reference(scene)
+    points = [p for v in variants(scene) if (p := _point(scene, v, exact)) is not None]
+    if peer.available():
+        points += _peer(scene, exact)
+    return points, exact
+
+
+def _point(scene: str, variant: Variant, exact: Reference) -> Point | None:
+    """None where a variant does not get to the end."""
+    try:
+        results = []
+        for _ in range(RUNS):
+            built = builder(scene)(**variant.parameters)
+            h = built.h / variant.finer
+            results.append(simulate(built.model, h, built.t_end, variant.scheme,
+                                    output_every=round(COARSEST * variant.finer)))
+    except SimulationError:
+        return None
+    last = results[-1]
+    seconds = statistics.median(r.seconds for r in results)
+    return Point(variant.family, variant.label, _error(last[SCENES[scene]], exact),
+                 seconds / built.t_end, last.numbering.free, h, last.iterations_per_step)
+
+
+def _error(values, exact: Reference) -> float:
+    error = np.linalg.norm(values - exact.values) / np.linalg.norm(exact.values)
+    return float(max(error, exact.error))
+
+
+def _peer(scene: str, exact: Reference) -> list[Point]:
+    """Points of the bench; its own references are of higher order."""
+    if scene not in ("hinged-beam", "planar-hinged-beam", "spherical-beam"):
+        return []
+    names = (scene, "planar-hinged-beam") if scene == "hinged-beam" else (scene,)
+    return [Point(peer.NAME, m.variant.removeprefix(peer.NAME).strip() + f", h {m.h:g}",
+                  max(m.tip_error, exact.error), m.us_per_step * 1e-6 / m.h, m.unknowns, m.h,
+                  m.iterations_per_step or 0.0)
+            for name in names for m in peer.measure(name) if m.tip_error is not None]
+
+
+def front(points: list[Point]) -> list[Point]:
+    """Points that no other one beats in both error and cost, cheapest first."""
+    best, kept = np.inf, []
+    for point in sorted(points, key=lambda p: (p.cost, p.error)):
+        if point.error < best:
+            kept.append(point)
+            best = point.error
+    return kept
+
+
+def own(points: list[Point]) -> list[Point]:
+    """Points of this package."""
+    return [p for p in points if p.family != peer.NAME]
+
+
+def report(scene: str, points: list[Point], exact: Reference) -> str:
+    """The front by name, and how far it is ahead of the peer."""
+    lines = [f"{scene}: reference good to {exact.error:.1e}, {len(own(points))} points",
+             f"{'front':44} {'error':>9} {'ms per second':>14}"]
+    lines += [f"{p.label:44} {p.error:9.1e} {1e3 * p.cost:14.4f}" for p in front(own(points))]
+    for level in LEVELS:
+        mine = [p.cost for p in own(points) if p.error <= level]
+        theirs = [p.cost for p in points if p.family == peer.NAME and p.error <= level]
+        if mine and theirs:
+            lines.append(f"at an error of {level:.0e} Exudyn's best takes "
+                         f"{min(theirs) / min(mine):.1f} times as long")
+        elif mine and any(p.family == peer.NAME for p in points):
+            lines.append(f"at an error of {level:.0e} there is no point of Exudyn")
+    return "\n".join(lines)
+
+
+def write_csv(points: list[Point], path: Path) -> None:
+    """One line a point.
+
+    Raises
+    ------
+    InputError
+        The folder does not exist.
+    """
+    with check_target(path, "table").open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow([f.name for f in fields(Point)])
+        writer.writerows(astuple(p) for p in points)
+
+
+__all__ = ["Point", "draw", "front", "measure", "own", "report", "write_csv"]

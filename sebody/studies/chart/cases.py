@@ -1,0 +1,81 @@
+"""What a chart compares: frames, inertia options, divisions, modes, steps, schemes."""
+
+import inspect
+from collections.abc import Callable
+from importlib import import_module
+from typing import NamedTuple
+
+from sebody.analysis.simulation import Scheme, generalized_alpha, hht
+from sebody.errors import InputError
+
+# scene: the quantity whose history is compared
+SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
+          "spherical-beam": "tip.position", "spherical-beam-strong": "tip.position",
+          "slider-crank": "pin.rotation", "spin-up": "tip.position"}
+STEPS = {0.25: "4 h", 0.5: "2 h", 1.0: "h", 2.0: "h/2", 4.0: "h/4"}     # finer: name
+COARSEST = 4        # histories are compared on a grid of so many of the scene's own steps
+
+
+class Variant(NamedTuple):
+    """One point of a chart."""
+
+    family: str
+    label: str
+    parameters: dict        # of the scene's build
+    finer: float = 1.0      # than the scene's own step
+    scheme: Scheme = generalized_alpha()
+
+
+def builder(scene: str) -> Callable:
+    """The `build` of a scene.
+
+    Raises
+    ------
+    InputError
+        A scene that has no chart.
+    """
+    if scene not in SCENES:
+        raise InputError(f"there is no chart of scene {scene!r}: use {', '.join(SCENES)}")
+    return import_module(f"sebody.scenes.{scene.replace('-', '_')}").build
+
+
+def variants(scene: str) -> list[Variant]:
+    """All points of a scene's chart, as far as it has the parameters."""
+    known = inspect.signature(builder(scene)).parameters
+    planar = not builder(scene)().model.rotation_size == 3
+    found = [*_frames(planar), *_divisions(), *_beams(), *_schemes()]
+    return [v for v in found if set(v.parameters) <= set(known)]
+
+
+def _frames(planar: bool) -> list[Variant]:
+    frames = ["node", "converged_mean"] + ([] if planar else ["mean", "mean_small"])
+    titles = {"node": "frame at a node", "converged_mean": "mean frame", "mean": "mean, one step",
+              "mean_small": "mean, small increments (20)"}
+    found = [Variant("frames", f"{titles[f]}, B", {"frame": f}) for f in frames]
+    return [*found, Variant("frames", "mean frame, A", {"inertia": "a"})]
+
+
+def _divisions() -> list[Variant]:
+    found = [Variant("modes", f"1 body, {m} modes", {"modes": m, "bodies": 1})
+             for m in (0, 1, 2, 4, 8)]
+    found += [Variant("bodies", f"{n} bodies, {m} modes", {"bodies": n, "modes": m,
+                                                           "elements": 24})
+              for n in (2, 4, 8) for m in (0, 2)]
+    found += [Variant("steps", f"1 body, 2 modes, {STEPS[f]}", {"bodies": 1, "modes": 2}, f)
+              for f in STEPS if f != 1.0]
+    return found + [Variant("steps", f"2 bodies, 0 modes, {STEPS[f]}",
+                            {"bodies": 2, "modes": 0, "elements": 24}, f)
+                    for f in STEPS if f != 1.0]
+
+
+def _beams() -> list[Variant]:
+    return [Variant("nonlinear beams", f"{n} nonlinear beam{'s' * (n > 1)}, {STEPS[f]}",
+                    {"bodies": n, "modes": 0, "elements": n}, f)
+            for n in (1, 2, 3, 5, 8) for f in STEPS]
+
+
+def _schemes() -> list[Variant]:
+    schemes = {"rho 0.5": generalized_alpha(0.5), "rho 1": generalized_alpha(1.0),
+               "HHT -0.1": hht(-0.1), "tolerance 1e-6": generalized_alpha(tolerance=1e-6),
+               "tangent of the paper": generalized_alpha(tangent="paper")}
+    return [Variant("schemes", name, {}, 1.0, scheme) for name, scheme in schemes.items()]

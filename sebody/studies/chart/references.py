@@ -1,0 +1,63 @@
+"""References of a chart: nonlinear beams, extrapolated in the element length and in the step."""
+
+import hashlib
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.analysis.simulation import generalized_alpha, simulate
+from sebody.kernels.loader import user_directory
+from sebody.studies.chart.cases import COARSEST, SCENES, builder
+
+ELEMENTS = 24       # and twice as many
+FINER = 8           # than the scene's own step, and twice that
+
+
+class Reference(NamedTuple):
+    """A history on the grid of a chart and how far it may be off, relative L2."""
+
+    values: NDArray
+    error: float
+
+
+def reference(scene: str, folder: Path | None = None) -> Reference:
+    """The reference of a scene, computed once and kept in the user's directory.
+
+    Both errors are of second order, so a third of the change by halving is taken off; the estimate
+    of what is left is the change that this makes.
+    """
+    folder = folder or user_directory().parent / "references"
+    path = folder / f"{scene}-{_key(scene)}.npz"
+    if path.exists():
+        with np.load(path) as data:
+            return Reference(data["values"], float(data["error"]))
+    coarse = history(scene, ELEMENTS, FINER)
+    finer_beams = history(scene, 2 * ELEMENTS, FINER)
+    finer_steps = history(scene, ELEMENTS, 2 * FINER)
+    correction = (finer_beams - coarse) / 3 + (finer_steps - coarse) * 4 / 3
+    values = finer_beams + correction
+    found = Reference(values, float(np.linalg.norm(correction) / np.linalg.norm(values)))
+    folder.mkdir(parents=True, exist_ok=True)
+    np.savez_compressed(path, values=found.values, error=found.error)
+    return found
+
+
+def history(scene: str, elements: int, finer: int) -> NDArray:
+    """The compared quantity of nonlinear beams, on the grid of the chart."""
+    built = builder(scene)(bodies=elements, modes=0, elements=elements)
+    result = simulate(built.model, built.h / finer, built.t_end, generalized_alpha(0.9, 1e-9),
+                      output_every=COARSEST * finer)
+    return result[SCENES[scene]]
+
+
+def _key(scene: str) -> str:
+    """Changes with what the scene is."""
+    built = builder(scene)()
+    text = [built.h, built.t_end, ELEMENTS, FINER, COARSEST]
+    text += [(load.name, load.constants.tolist(), load.history.times, load.history.cubics)
+             for load in built.model.loads]
+    text += [b.body.stiffness.tobytes() + b.body.mass.tobytes()
+             for b in built.model.bodies.values()]
+    return hashlib.sha256(repr(text).encode()).hexdigest()[:12]

@@ -1,0 +1,156 @@
+"""Kernels in generic states, and the numerical derivatives they are compared with.
+
+Differences are of sixth order, since axial stiffness makes central ones lose the digits asked for.
+"""
+
+from collections.abc import Iterable
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from sebody.errors import InputError
+from sebody.kernels.abi import ENERGY, POWERS, RESIDUAL, TANGENT, call_kernel, padded
+
+STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))      # sixth-order central differences
+LIMIT = 1e-7
+STATES = 2
+
+
+class CheckRow(NamedTuple):
+    """One line of the table."""
+
+    kernel: str
+    criterion: str
+    state: int
+    error: float            # relative to the largest entry
+    slope: float | None     # order of a difference that is there by design
+    passed: bool
+
+
+class Case(NamedTuple):
+    """A kernel with a generic state to evaluate it in."""
+
+    module: ModuleType
+    n: int
+    index: NDArray
+    constants: NDArray
+    q: NDArray
+    R: NDArray
+    v: NDArray
+    a: NDArray
+    reference: NDArray
+    frames: NDArray
+    field: NDArray = np.zeros(3)
+    loads: NDArray = np.zeros(3)    # amplitude and two rates
+
+    @property
+    def planar(self) -> bool:
+        """Motion in a plane: angles among q in place of rotation matrices."""
+        return getattr(self.module, "PLANAR", getattr(self.module, "LAYOUT", "").startswith(
+            "planar"))
+
+    @property
+    def turning(self) -> list[int]:
+        """First unknown of each rotation triplet."""
+        first = getattr(self.module, "ROTATIONS", 0)
+        return [] if not self.R.size else [first + 3 * j for j in range(self.module.N_ROTATIONS)]
+
+
+@njit(cache=True)
+def _call(address, task, stride, width, index, constants, q, R, v, a, reference, frames, T, loads,
+          coefficients, g, J, work, energy):
+    return call_kernel(address, task, 1, stride, width, (
+        index, constants, q, R, v, a, reference, frames, T, loads, coefficients, g, J, work,
+        energy))
+
+
+def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)
+             ) -> tuple[NDArray, NDArray, NDArray]:
+    """Forces, matrix and energies of a kernel in the state of a case."""
+    n, module = case.n, case.module
+    g, J, energy = np.zeros(n), np.zeros(n * n), np.zeros(POWERS + 1)
+    work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
+    T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
+    frame = case.frames.copy()
+    status = _call(module.kernel.address, task, len(case.index), n, case.index, case.constants,
+                   case.q, case.R, case.v, case.a, case.reference, frame, T,
+                   case.loads, np.array([*coefficients, *case.field], dtype=float), g, J, work,
+                   energy)
+    if status:
+        raise InputError(f"kernel {module.__name__} refuses the check's state (status {status})")
+    return g, _in_global_axes(J.reshape(n, n), frame, module), energy
+
+
+def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:
+    """Matrix with positions in global axes: superelements leave them in those of the frame."""
+    if not hasattr(module, "FRAME"):
+        return J
+    turn, d = np.eye(len(J)), 2 if "planar" in getattr(module, "LAYOUT", "") else 3
+    R0 = frame.reshape(3, 3)[:d, :d]
+    for i in range(0, module.ROTATIONS, d):
+        turn[i:i + d, i:i + d] = R0
+    return turn @ J @ turn.T
+
+
+def moved(case: Case, direction: NDArray, size: float) -> Case:
+    """The case with its configuration moved: rotations multiplied, the rest added."""
+    q, R = case.q + size * direction, case.R.copy()
+    for j, at in enumerate(case.turning):
+        turn = Rotation.from_rotvec(size * direction[at:at + 3]).as_matrix()
+        R[9 * j:9 * j + 9] = (R[9 * j:9 * j + 9].reshape(3, 3) @ turn).ravel()
+    return case._replace(q=q, R=R)
+
+
+def derivative(function, step: float):
+    """Sixth-order central derivative of a function of one number at zero."""
+    return sum(w * (function(k * step) - function(-k * step)) for k, w in STENCIL) / step
+
+
+def gradient(case: Case, function, step: float) -> NDArray:
+    """Derivatives of a function of the case along every coordinate, as columns."""
+    return np.array([derivative(lambda s, d=d: function(moved(case, d, s)), step)
+                     for d in np.eye(case.n)]).T
+
+
+def difference(a: NDArray, b: NDArray) -> float:
+    """Largest difference relative to the largest entry."""
+    return float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-300))
+
+
+def tangent_rate(case: Case) -> float:
+    """Velocity tangent (61)-(63) against differences; the force is quadratic in the velocity."""
+    columns = [(evaluate(case._replace(v=case.v + d), RESIDUAL)[0]
+                - evaluate(case._replace(v=case.v - d), RESIDUAL)[0]) / 2 for d in np.eye(case.n)]
+    return difference(evaluate(case, TANGENT, (0, 1, 0, 1, 1))[1], np.array(columns).T)
+
+
+def tangent_mass(case: Case) -> float:
+    """Mass (48), (60) against differences; the force is linear in the acceleration."""
+    columns = [evaluate(case._replace(a=case.a + d), RESIDUAL)[0]
+               - evaluate(case, RESIDUAL)[0] for d in np.eye(case.n)]
+    return difference(evaluate(case, TANGENT, (1, 0, 0, 1, 1))[1], np.array(columns).T)
+
+
+def momenta(case: Case) -> NDArray:
+    """``dT/dv`` by central differences, exact since T is quadratic."""
+    def kinetic(v):
+        return evaluate(case._replace(v=v), ENERGY)[2][0]
+    return np.array([(kinetic(case.v + d) - kinetic(case.v - d)) / 2 for d in np.eye(case.n)])
+
+
+def along_path(case: Case, t: float) -> Case:
+    """The case a time t later on a path with its velocity and acceleration at t = 0."""
+    step = case.v * t + case.a * t * t / 2
+    v = case.v + case.a * t
+    for at in case.turning:
+        psi, rate = step[at:at + 3], v[at:at + 3].copy()
+        angle = np.linalg.norm(psi)
+        if angle > 0:       # Omega = T(psi) psidot
+            once = np.cross(psi, rate)
+            v[at:at + 3] = (rate - (1 - np.cos(angle)) / angle**2 * once
+                            + (angle - np.sin(angle)) / angle**3 * np.cross(psi, once))
+    return moved(case, step, 1.0)._replace(v=v) if t else case

@@ -1,0 +1,106 @@
+"""Time integration: coefficients, resuming, cut steps, and what a failing run leaves."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from sebody import InputError, Simulation, SimulationError, generalized_alpha, hht
+from sebody.engine.state import CUTS
+from sebody.scenes.hinged_beam import build
+
+
+def amplification(scheme, omega_h):
+    """Matrix of one step of ``x'' + omega^2 x = 0`` in (x, h v, h^2 vdot, h^2 a), row by row.
+
+    Written out from the scheme's own equations, independent of the loop.
+    """
+    am, af, beta, gamma = scheme[:4]
+    w2 = omega_h**2
+    # unknowns x1, v1, vdot1, a1 from x0, v0, vdot0, a0 (h = 1)
+    left = np.array([[1, 0, 0, -beta], [0, 1, 0, -gamma], [w2, 0, 1, 0],
+                     [0, 0, -(1 - af), 1 - am]])
+    right = np.array([[1, 1, 0, 0.5 - beta], [0, 1, 0, 1 - gamma], [0, 0, 0, 0],
+                      [0, 0, af, -am]])
+    return np.linalg.solve(left, right)
+
+
+@pytest.mark.parametrize("scheme, omega_h, expected", [
+    (hht(0.0), 1.0, 1.0), (hht(-0.05), 1.0, 0.996490), (hht(-0.1), 2.0, 0.962366),
+    (hht(-0.3), 10.0, 0.684611), (hht(-1 / 3), 100.0, 0.537174),
+    (generalized_alpha(0.9), 5.0, 0.994792), (generalized_alpha(0.8), 10.0, 0.929792),
+    (generalized_alpha(0.0), 1.0, 0.906563)])
+def test_spectral_radius_against_closed_forms(scheme, omega_h, expected):
+    radius = np.abs(np.linalg.eigvals(amplification(scheme, omega_h))).max()
+    assert radius == pytest.approx(expected, abs=2e-6)
+
+
+def test_loop_follows_the_scheme():
+    """Auxiliary and true accelerations of a run satisfy the recurrences of the scheme."""
+    scene = build()
+    run = Simulation(scene.model, 0.01, generalized_alpha(0.8, tolerance=1e-12)).run_to(1.0)
+    am, af, beta, gamma = run.scheme[:4]
+    s, h = run.state, 0.01
+    assert np.allclose((1 - am) * s.aux + am * s.aux_old, (1 - af) * s.a + af * s.a_old,
+                       rtol=1e-9, atol=1e-9)
+    assert np.allclose(s.v, s.v_old + h * ((1 - gamma) * s.aux_old + gamma * s.aux), atol=1e-12)
+    assert np.allclose(s.dq[:3], h * s.v_old[:3] + h * h * (
+        (0.5 - beta) * s.aux_old[:3] + beta * s.aux[:3]), atol=1e-12)
+
+
+def test_run_in_pieces_equals_one_run():
+    whole = Simulation(build().model, 0.01).run_to(2.0).result()
+    pieces = Simulation(build().model, 0.01)
+    for t in (0.5, 0.51, 2.0):
+        pieces.run_to(t)
+    assert np.array_equal(whole["tip.position"], pieces.result()["tip.position"])
+    assert np.array_equal(whole.t, pieces.result().t)
+
+
+def test_state_restarts_a_run():
+    """A copy of the state continues exactly as the original does."""
+    first = Simulation(build().model, 0.01).run_to(1.0)
+    other = Simulation(build().model, 0.01)
+    for field in fields(first.state):
+        getattr(other.state, field.name)[:] = getattr(first.state, field.name)
+    assert np.array_equal(first.run_to(2.0).result()["tip.position"][-1],
+                          other.run_to(2.0).result()["tip.position"][-1])
+
+
+def test_output_every():
+    every = Simulation(build().model, 0.01).run_to(1.0).result()
+    thin = Simulation(build().model, 0.01, output_every=10).run_to(1.0).result()
+    assert np.array_equal(every["tip.position"][::10], thin["tip.position"])
+    assert np.allclose(thin.t, np.arange(11) * 0.1)
+
+
+def struck(height, h=0.01):
+    """The hinged beam pushed at its tip so hard that long steps cannot converge."""
+    scene = build()
+    scene.model.force("tip", (0, 0, height), [(0.1, 0.0), (0.11, 1.0), (0.12, 0.0)])
+    return Simulation(scene.model, h)
+
+
+def test_cut_steps_rejoin_the_grid():
+    run = struck(1e6).run_to(0.3)
+    result = run.result()
+    assert result.cuts > 0
+    assert np.allclose(result.t, np.arange(31) * 0.01, atol=1e-12)
+    fine = struck(1e6, 0.000625).run_to(0.3).result()["tip.position"][::16]
+    assert np.abs(result["tip.position"][:10] - fine[:10]).max() < 1e-3
+
+
+def test_failed_run_keeps_what_it_has():
+    run = struck(1e12)
+    with pytest.raises(SimulationError, match="stopped at t = 0.1.*half a turn|converge") as caught:
+        run.run_to(0.5)
+    kept = caught.value.result
+    assert 0.09 < kept.t[-1] < 0.12
+    assert np.isfinite(kept["tip.position"]).all()
+    assert "FAILED" in kept.summary()
+    assert run.state.control[CUTS] >= 12
+
+
+def test_cannot_run_backwards():
+    with pytest.raises(InputError, match="later time"):
+        Simulation(build().model, 0.01).run_to(0.5).run_to(0.2)

@@ -1,0 +1,255 @@
+"""The start of a run: what is refused, and accelerations and multipliers at t = 0."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sebody import InputError, Model, Simulation, generalized_alpha, hht, simulate
+from sebody.engine import evaluate
+from sebody.engine.state import HALF_TURN
+from sebody.fem import straight_beam
+from sebody.reduction import craig_bampton
+from sebody.scenes.hinged_beam import SECTION
+
+LENGTH = 60.0
+TORQUE = 50.0
+# about z through an end: consistent for a beam with rotary inertia
+INERTIA = SECTION.density * (SECTION.area * LENGTH**3 / 3 + SECTION.inertia_z * LENGTH)
+
+
+def placed(stiffer=1.0):
+    section = replace(SECTION, youngs_modulus=stiffer * SECTION.youngs_modulus)
+    end = (LENGTH, 0.0, 0.0)
+    body = craig_bampton(straight_beam(np.zeros(3), end, section, 8), [(0, "full"), (8, "full")], 0)
+    model = Model()
+    nodes = [model.node("base", np.zeros(3)), model.node("tip", end)]
+    model.superelement("beam", body, nodes)
+    return model
+
+
+def hinged(torque=(0, 0, TORQUE), stiffer=1.0):
+    model = placed(stiffer)
+    model.revolute("base")
+    model.torque("base", torque, [(0.0, 1.0)])
+    return model
+
+
+def accelerations(run):
+    """In the order of the reduced body: positions, then rotations; zero where fixed."""
+    nodes, at = run.model.nodes.values(), run.numbering.triplets
+    triplets = [n.position for n in nodes] + [n.rotation for n in nodes]
+    return np.concatenate([run.state.a[at[id(t)]:at[id(t)] + 3] for t in triplets])
+
+
+@pytest.mark.parametrize("h", [0.0, -0.01, np.nan, np.inf])
+def test_step(h):
+    with pytest.raises(InputError, match="the time step is .*: give a positive number"):
+        Simulation(placed(), h)
+
+
+def test_output_interval():
+    with pytest.raises(InputError, match="output_every is 0: give a whole number of steps >= 1"):
+        Simulation(placed(), 0.01, output_every=0)
+
+
+@pytest.mark.parametrize("t_end", [np.nan, np.inf, -1.0])
+def test_end_of_the_run(t_end):
+    with pytest.raises(InputError, match="cannot run to t = .* from t = 0.0: give a later time"):
+        Simulation(placed(), 0.01).run_to(t_end)
+
+
+@pytest.mark.parametrize("make, message", [
+    (lambda: generalized_alpha(1.5), "rho is 1.5: use a spectral radius between 0 and 1"),
+    (lambda: generalized_alpha(-0.1), "rho is -0.1: use a spectral radius between 0 and 1"),
+    (lambda: generalized_alpha(np.nan), "rho is nan: use a spectral radius"),
+    (lambda: hht(0.1), "alpha is 0.1: HHT needs a value between -1/3 and 0"),
+    (lambda: hht(-0.34), "alpha is -0.34: HHT needs a value between"),
+    (lambda: generalized_alpha(0.9, tolerance=0.0), "tolerance is 0.0: use a number between 0 and "
+                                                    "1, such as 1e-8"),
+    (lambda: hht(tolerance=1.0), "tolerance is 1.0: use a number between"),
+    (lambda: hht(tolerance=np.nan), "tolerance is nan: use a number between"),
+    (lambda: generalized_alpha(0.9, tangent="none"), "tangent 'none' is unknown: use 'consistent' "
+                                                     "or 'paper'"),
+])
+def test_scheme(make, message):
+    with pytest.raises(InputError, match=message):
+        make()
+
+
+def test_ends_of_the_ranges_are_allowed():
+    assert generalized_alpha(0.0).alpha_f == 0.0 and generalized_alpha(1.0).alpha_f == 0.5
+    assert hht(0.0).gamma == 0.5 and hht(-1 / 3).alpha_f == pytest.approx(1 / 3)
+
+
+def test_empty_model():
+    with pytest.raises(InputError, match="no body: add one with model.superelement"):
+        Simulation(Model(), 0.01)
+
+
+def test_node_without_a_body():
+    model = placed()
+    model.node("far", (0, 9, 0))
+    with pytest.raises(InputError, match="far.position belongs to no body, so nothing holds "
+                                         "it: attach a body or fix it"):
+        Simulation(model, 0.01)
+
+
+def test_load_on_a_fixed_node_without_a_body():
+    model = placed()
+    model.node("far", (0, 9, 0))
+    model.fix("far")
+    model.force("far", (0, 0, 1))
+    with pytest.raises(InputError, match="force on far.position: no body is there to bear it: "
+                                         "attach one"):
+        Simulation(model, 0.01)
+
+
+def hinge_twice(model):
+    model.revolute("base")
+    model.revolute("base")
+
+
+def ball_twice(model):
+    model.spherical("base")
+    model.spherical("base")
+
+
+@pytest.mark.parametrize("joints, name", [(hinge_twice, "revolute"), (ball_twice, "spherical")])
+def test_redundant_joints_share_their_force(joints, name):
+    """Multipliers of least norm: each of two equal joints bears half; the run says so."""
+    model, single = placed(), placed()
+    joints(model)
+    getattr(single, name)("base")
+    for m in (model, single):
+        m.force("tip", (3.0, 4.0, 5.0))
+    exact = generalized_alpha(tolerance=1e-12)
+    run = Simulation(model, 0.01, exact)
+    assert run.start.redundant == (f"{name} at base",)
+    twice, once = run.run_to(0.5).result(), simulate(single, 0.01, 0.5, exact)
+    assert np.abs(twice["tip.position"] - once["tip.position"]).max() < 1e-8
+    assert "redundant            constraints of " + name + " at base: multipliers" in (
+        twice.summary())
+    both, one = (r[f"{name} at base.multipliers"] for r in (twice, once))
+    for half in np.split(both, 2, axis=1):
+        assert np.abs(half - one / 2).max() < 1e-6 * np.abs(one).max()
+
+
+def test_hinge_at_a_fixed_node():
+    model = placed()
+    model.fix("base")
+    model.revolute("base")
+    with pytest.raises(InputError, match="multiplier . of revolute at base acts on nothing that "
+                                         "can move: remove the joint or free a node"):
+        Simulation(model, 0.01)
+
+
+def test_hinge_to_itself():
+    with pytest.raises(InputError, match="revolute joint: node 'base' is joined to itself"):
+        placed().revolute("base", to="base")
+
+
+def test_nothing_left_to_move():
+    model = placed()
+    model.fix("base")
+    model.fix("tip")
+    with pytest.raises(InputError, match="every node of the model is fixed: nothing is left to "
+                                         "move, free one"):
+        Simulation(model, 0.01)
+
+
+def test_velocity_against_the_hinge():
+    model = placed()
+    model.revolute("base")
+    model.initial_velocity("base", angular=(1.0, 0.0, 0.0))
+    with pytest.raises(InputError, match="the given initial velocity of base.rotation does not fit "
+                                         "the joints and the other given ones, it would have to "
+                                         "change by 1: leave some of them out"):
+        Simulation(model, 0.01)
+
+
+def test_velocities_that_are_not_given_are_solved_for():
+    """Turning about the hinge is given, turning across it is not: that goes."""
+    model = placed()
+    model.revolute("base")
+    model.rigid_velocity((0, 0, 0), (0.5, 0.0, 1.0))
+    run = Simulation(model, 0.01)
+    assert run.start.changed["base.rotation"] == pytest.approx(0.5, rel=1e-6)
+    assert run.state.v[run.numbering.triplets[id(model.nodes["base"].rotation)]] == (
+        pytest.approx(0.0, abs=1e-12))
+    assert "solved for           initial velocity of base.rotation (by 0.5)" in (
+        run.run_to(0.02).result().summary())
+
+
+def test_velocity_along_the_hinge():
+    model = placed()
+    model.revolute("base")
+    model.rigid_velocity((0, 0, 0), (0.0, 0.0, 1.0))
+    assert Simulation(model, 0.01).result()["tip.velocity"][0] == pytest.approx([0, LENGTH, 0])
+
+
+def test_position_off_the_joint():
+    model = placed()
+    model.spherical("base")
+    model.nodes["base"].position.start = np.array([0.0, 1e-3, 0.0])
+    with pytest.raises(InputError, match="the initial position violates multiplier 1 of "
+                                         "spherical at base by 0.001"):
+        Simulation(model, 0.01)
+
+
+def test_half_turn_between_nodes_is_refused():
+    """A twist of 3.1 rad between the ends: the logarithm is stopped before it breaks."""
+    run = Simulation(placed(), 0.01)
+    c, s = np.cos(0.05), np.sin(0.05)
+    run.state.R[:9] = [1, 0, 0, 0, -1, 0, 0, 0, -1]
+    run.state.R[9:18] = [1, 0, 0, 0, c, -s, 0, s, c]
+    run.state.frames[:] = np.eye(3).ravel()
+    assert evaluate.run_kernels(0, 0, 1, run.system, run.state) == HALF_TURN
+
+
+def test_initial_acceleration_from_the_mass_matrix():
+    """A torque at t = 0 on a beam without internal modes: M a = F on the free coordinates."""
+    run = Simulation(hinged(), 0.01)
+    keep = [3, 4, 5, 8, 11]             # tip position, base and tip rotation about z
+    force = np.array([0.0, 0.0, 0.0, TORQUE, 0.0])
+    mass = run.model.bodies["beam"].body.mass
+    expected = np.linalg.solve(mass[np.ix_(keep, keep)], force)
+    assert accelerations(run)[keep] == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("spin", [0.0, 0.8])
+def test_initial_acceleration_of_the_rigid_motion(spin):
+    """Moment of the accelerations about the hinge: torque over the inertia of a rigid beam.
+
+    A steady spin adds forces, but no moment about the hinge.
+    """
+    model = hinged()
+    model.rigid_velocity((0, 0, 0), (0, 0, spin))
+    body = model.bodies["beam"].body
+    turning = body.rigid_modes[:, 5]
+    run = Simulation(model, 0.01)
+    assert turning @ body.mass @ turning == pytest.approx(INERTIA, rel=1e-12)
+    moment = turning @ body.mass @ accelerations(run)
+    assert moment / INERTIA == pytest.approx(TORQUE / INERTIA, rel=1e-9)
+
+
+def test_stiff_beam_turns_as_a_rigid_one():
+    """Torque on from t = 0: angular velocity M t / J, vibrations damped out within some steps."""
+    result = simulate(hinged(stiffer=1e4), 0.01, 1.0, generalized_alpha(0.0))
+    later = result.t >= 0.5
+    rate = result["base.angular_velocity"][later, 2]
+    assert rate == pytest.approx(TORQUE / INERTIA * result.t[later], rel=1e-6)
+
+
+def test_multiplier_resists_what_the_hinge_blocks():
+    """A torque across the hinge is carried by the multipliers from the start."""
+    run = Simulation(hinged((70.0, 0, 0)), 0.01)
+    multipliers = run.state.q[np.flatnonzero(run.system.is_multiplier)]
+    assert np.linalg.norm(multipliers) == pytest.approx(70.0, rel=1e-6)
+    assert np.abs(run.state.a).max() < 1e-6
+
+
+def test_start_does_not_depend_on_the_step():
+    fine, coarse = (Simulation(hinged(), h) for h in (1e-4, 1e-1))
+    assert np.array_equal(fine.state.a, coarse.state.a)
+    assert np.array_equal(fine.state.q, coarse.state.q)

@@ -1,0 +1,200 @@
+"""The command line as a user sees it, and the README's example."""
+
+import io
+import re
+import sys
+import types
+from contextlib import redirect_stderr
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sebody import errors
+from sebody.cli import main as cli
+from sebody.scenes import hinged_beam
+
+ROOT = Path(__file__).parents[2]
+KEYS = {"t": (51,), "base.angular_velocity": (51, 3), "tip.position": (51, 3),
+        "energy.kinetic": (51,), "energy.strain": (51,), "energy.external_work": (51,)}
+
+
+def test_run_saves_and_draws(tmp_path, capsys):
+    output, picture = tmp_path / "beam.npz", tmp_path / "beam.png"
+    assert cli.main(["run", "hinged-beam", "--t-end", "0.5", "--output", str(output),
+                     "--plot", str(picture)]) == 0
+    with np.load(output) as saved:
+        assert {key: saved[key].shape for key in KEYS} == KEYS
+        assert saved["t"][-1] == pytest.approx(0.5)
+    assert picture.stat().st_size > 10_000
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "hinged-beam: the paper's hinged beam, spun up by a torque at its base"
+    assert lines[1] == "unknowns             15"
+    assert lines[2] == "steps                50 (0 cut), to t = 0.5"
+    assert lines[-2:] == [f"histories            {output}", f"picture              {picture}"]
+
+
+def test_run_with_other_parameters(capsys):
+    assert cli.main(["run", "hinged-beam", "--t-end", "0.1", "--step", "0.005", "--rho", "0.5",
+                     "--set", "modes=0", "--set", "elements=4", "--set", "frame=node"]) == 0
+    out = capsys.readouterr().out
+    assert "unknowns             11" in out
+    assert "steps                20 (0 cut), to t = 0.1" in out
+
+
+def test_run_with_an_accuracy(capsys):
+    assert cli.main(["run", "squeezer", "--step", "1e-4", "--t-end", "0.005", "--accuracy",
+                     "1e-3"]) == 0
+    assert re.search(r"error +0\.\d\d of the tolerance, estimated", capsys.readouterr().out)
+
+
+def test_run_stops_and_goes_on(tmp_path, capsys):
+    state = tmp_path / "state.npz"
+    assert cli.main(["run", "hinged-beam", "--t-end", "0.2", "--save", str(state)]) == 0
+    assert cli.main(["run", "hinged-beam", "--t-end", "0.5", "--resume", str(state)]) == 0
+    assert "steps                50 (0 cut), to t = 0.5" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["triple-beam"], "scene 'triple-beam' is unknown: there are "),
+    (["hinged-beam", "--set", "length=3"], "scene 'hinged-beam' has no parameter 'length': there "
+     "are frame=converged_mean, inertia=b, modes=4, elements=20"),
+    (["hinged-beam", "--set", "modes"], "cannot read --set modes: write --set NAME=VALUE"),
+    (["hinged-beam", "--set", "modes=two"], "parameter modes is 'two': give a value of type int"),
+    (["hinged-beam", "--set", "frame=best"], "frame 'best' is unknown: use one of"),
+    (["hinged-beam", "--step", "0"], "the time step is 0.0: give a positive number"),
+    (["hinged-beam", "--rho", "1.5"], "rho is 1.5: use a spectral radius between 0 and 1"),
+    (["hinged-beam", "--t-end", "nan"], "the end time is nan: give a number >= 0"),
+    (["hinged-beam", "--output", "beam.txt"], "output file beam.txt must end in .npz"),
+    (["hinged-beam", "--output", "nowhere/b.npz"], "folder nowhere of the output file does not"),
+    (["hinged-beam", "--plot", "beam.exe"], "picture beam.exe must end in .png"),
+    (["hinged-beam", "--accuracy", "-1"], "tolerance relative is -1.0: give a number >= 0"),
+    (["hinged-beam", "--accuracy", "1e-3", "--save", "a.npz"], "--accuracy repeats the run with"),
+    (["hinged-beam", "--resume", "none.npz"], "restart file none.npz does not exist"),
+    (["hinged-beam", "--resume", "a.npz", "--step", "1"], "--resume goes on with the step that"),
+    (["hinged-beam", "--resume", "a.npz", "--rho", "1"], "--resume goes on with the rho that"),
+    (["hinged-beam", "--save", "state.txt"], "restart file state.txt must end in .npz"),
+    (["hinged-beam", "--index", "0"], "index is 0: use 3, or 2 for the stabilised form"),
+    (["hinged-beam", "--index", "1"], "index is 1: use 3, or 2 for the stabilised form"),
+])
+def test_bad_input_is_named(arguments, message, capsys):
+    assert cli.main(["run", *arguments]) == 2
+    assert capsys.readouterr().err.startswith("error: " + message)
+
+
+def test_a_failed_run_keeps_what_it_has(tmp_path, capsys, monkeypatch):
+    def build(name, changes):
+        scene = hinged_beam.build(modes=2, elements=4)
+        scene.model.force("tip", (0, 0, 1e12), [(0.1, 0.0), (0.11, 1.0), (0.12, 0.0)])
+        return scene
+
+    monkeypatch.setattr(cli, "_build", build)
+    output, picture = tmp_path / "kept.npz", tmp_path / "kept.png"
+    assert cli.main(["run", "struck", "--t-end", "1", "--output", str(output), "--plot",
+                     str(picture)]) == 1
+    out, err = capsys.readouterr()
+    assert "FAILED" in out
+    assert err.startswith("error: stopped at t = 0.1")
+    assert picture.exists()
+    with np.load(output) as saved:
+        assert 10 <= saved["t"].size < 20
+
+
+def test_values_take_the_type_of_the_default():
+    assert cli._value("modes", "3", 4) == 3
+    assert cli._value("length", "3", 4.0) == 3.0
+    assert cli._value("frame", "3", "mean") == "3"
+    assert cli._value("planar", "True", False) is True
+    assert cli._value("load", "(0, 1)", None) == (0, 1)
+    with pytest.raises(errors.InputError, match="type int, such as 4"):
+        cli._value("modes", "3.5", 4)
+
+
+def test_list_shows_every_scene_and_kernel(capsys):
+    assert cli.main(["list"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^  hinged-beam +The paper's hinged beam", out, re.M)
+    assert not re.search(r"^  scene ", out, re.M)
+    assert re.search(r"^  f2 +converged_mean +b$", out, re.M)
+    assert re.search(r"^  planar-f2 +converged_mean +b$", out, re.M)
+    assert "rigid_body" in out.splitlines()[-1]
+
+
+def test_list_shows_the_kernels_of_the_user(capsys, monkeypatch, tmp_path):
+    (tmp_path / "superelement_f9_mean_a.py").write_text(
+        'LAYOUT = "f9"\nFRAME = "mean"\nINERTIA = "a"\nraise RuntimeError("imported")\n')
+    monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
+    assert cli.main(["list"]) == 0
+    assert re.search(r"^  f9 +mean +a$", capsys.readouterr().out, re.M)
+
+
+@pytest.mark.parametrize("passed, code", [(True, 0), (False, 1)])
+def test_check_prints_the_table(passed, code, capsys, monkeypatch):
+    asked = []
+
+    def check_kernels(names=None):
+        asked.append(names)
+        return [types.SimpleNamespace(passed=True), types.SimpleNamespace(passed=passed)]
+
+    stand_in = types.SimpleNamespace(check_kernels=check_kernels,
+                                     format_table=lambda rows: f"{len(rows)} rows")
+    monkeypatch.setitem(sys.modules, "sebody.studies.check", stand_in)
+    assert cli.main(["check", "element_force"]) == code
+    assert cli.main(["check"]) == code
+    assert asked == [["element_force"], None]
+    assert capsys.readouterr().out == "2 rows\n2 rows\n"
+
+
+def test_warm_compiles_kernels_and_loop(capsys, monkeypatch):
+    two = [k for k in cli.kernels() if k.name in ("element_force", "element_torque")]
+    monkeypatch.setattr(cli, "kernels", lambda: two)
+    assert cli.main(["warm"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^  element_force +\d+\.\d s$", out, re.M)
+    assert re.search(r"^  time loop +\d+\.\d s$", out, re.M)
+    assert "2 kernels and the time loop are compiled" in out
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize("patience, stream, expected", [
+    (0.0, Terminal(), "\r[" + "#" * 10 + "." * 30 + "]  25 %\r[" + "#" * 40 + "] 100 %\n"),
+    (0.0, io.StringIO(), ""), (1e3, Terminal(), "")])
+def test_progress_is_for_long_runs_on_a_terminal(patience, stream, expected, monkeypatch):
+    monkeypatch.setattr(cli, "PATIENCE", patience)
+    with redirect_stderr(stream):
+        progress = cli.Progress()
+        progress(0.25)
+        progress(1.0)
+        progress.close()
+    assert stream.getvalue() == expected
+
+
+def test_no_command_and_unknown_commands_are_refused(capsys):
+    for arguments in ([], ["fly"]):
+        with pytest.raises(SystemExit) as caught:
+            cli.main(arguments)
+        assert caught.value.code == 2
+    assert "COMMAND" in capsys.readouterr().err
+
+
+def test_example_of_the_readme(capsys):
+    code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S).group(1)
+    names = {}
+    exec(code, names)
+    assert "steps                3000 (0 cut), to t = 30" in capsys.readouterr().out
+    reference = np.load(ROOT / "tests" / "data" / "hinged_beam.npz")["tip_position"]
+    error = np.linalg.norm(names["result"]["tip.position"] - reference)
+    assert error / np.linalg.norm(reference) <= 1.0e-3
+
+
+def test_names_in_the_readme_exist():
+    text = (ROOT / "README.md").read_text()
+    assert set(re.findall(r"sebody run ([a-z][\w-]*)", text)) <= set(cli.scenes())
+    for folder in re.findall(r"^\| .*?`([a-z/]+/)`", text, re.M):
+        assert (ROOT / folder).is_dir()
+    for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
+        assert (ROOT / picture).exists()

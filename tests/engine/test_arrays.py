@@ -1,0 +1,72 @@
+"""Groups of arrays in compiled code: members by name, in place, alive as long as their group."""
+
+from dataclasses import FrozenInstanceError, dataclass
+
+import numpy as np
+import pytest
+from numba import njit
+from numpy.typing import NDArray
+
+from sebody.engine import arrays
+from sebody.engine.arrays import Arrays
+
+
+@dataclass(frozen=True, eq=False)
+class Inner(Arrays):
+    places: NDArray
+    table: NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Outer(Arrays):
+    values: NDArray
+    inner: Inner
+    counts: NDArray
+
+
+def group():
+    return Outer(np.arange(4.0), Inner(np.array([2, 0]), np.arange(6.0).reshape(2, 3)),
+                 np.array([7, 8, 9]))
+
+
+@njit
+def read(group):
+    return (group.values[group.inner.places[0]], group.inner.table[1, 2],
+            group.inner.table.shape[0], group.counts.size, group.counts[2])
+
+
+@njit
+def write(group):
+    for i in range(group.values.size):
+        group.values[i] += group.inner.table[0, 1]
+    group.inner.table[1, :] = group.values[1:]
+
+
+def test_members_are_read_and_written_in_place():
+    outer = group()
+    assert read(outer) == (2.0, 5.0, 2, 3, 9)
+    write(outer)
+    assert outer.values.tolist() == [1.0, 2.0, 3.0, 4.0]
+    assert outer.inner.table[1].tolist() == [2.0, 3.0, 4.0]
+
+
+def test_one_compiled_version_serves_all_sizes():
+    read(group())
+    other = Outer(np.zeros(9), Inner(np.array([8]), np.zeros((5, 4))), np.arange(30))
+    assert read(other)[2:4] == (5, 30)
+    assert len(read.signatures) == 1
+
+
+def test_members_are_never_replaced():
+    with pytest.raises(FrozenInstanceError):
+        group().values = np.zeros(3)
+    with pytest.raises(AssertionError):
+        Inner(np.zeros(2), np.zeros((4, 4))[:, ::2])
+
+
+def test_changed_sources_are_other_types(monkeypatch):
+    """Numba's cache must not serve what was compiled from other sources."""
+    before = group()._kind
+    assert before == group()._kind
+    monkeypatch.setattr(arrays, "SOURCES", "changed")
+    assert group()._kind != before

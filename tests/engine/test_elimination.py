@@ -1,0 +1,152 @@
+"""Elimination by blocks against SciPy, and the loop with it against the loop with SuperLU."""
+
+import numpy as np
+import pytest
+from numba import njit
+from scipy.sparse import coo_array
+from scipy.sparse.linalg import spsolve
+
+from sebody import Simulation
+from sebody.assembly import build as assembly
+from sebody.engine import elimination, state
+from sebody.engine.evaluate import assemble, assemble_moved
+from sebody.kernels.abi import LANES, pointer_to
+from sebody.scenes import chain
+
+
+@njit
+def factorized(pattern, matrix, column, scale):
+    unknowns = np.arange(LANES * pattern.diagonal.size)
+    return elimination.eliminate(
+        pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
+        pointer_to(pattern.diagonal), pointer_to(unknowns), pointer_to(matrix), pointer_to(column),
+        pointer_to(scale))
+
+
+@njit
+def substituted(pattern, factors, x):
+    elimination.substitute(pattern.diagonal.size, pointer_to(pattern.starts),
+                           pointer_to(pattern.rows), pointer_to(pattern.diagonal),
+                           pointer_to(factors), pointer_to(x))
+
+
+def system(n, seed, links):
+    """A random matrix with a dominant diagonal and a structurally symmetric pattern."""
+    random = np.random.default_rng(seed)
+    row, column = random.integers(0, n, (2, links))
+    row, column = np.r_[row, column, np.arange(n)], np.r_[column, row, np.arange(n)]
+    value = random.normal(size=len(row))
+    value[-n:] += 20.0 * np.sign(value[-n:])
+    return row, column, value
+
+
+def solved(pattern, slot, row, column, value, b):
+    """Solution by slots, all of them."""
+    slots = LANES * len(pattern.diagonal)
+    matrix = np.zeros(len(pattern.rows) * LANES**2)
+    np.add.at(matrix, elimination.entries(pattern, slot[row], slot[column]), value)
+    free = np.setdiff1d(np.arange(slots), slot)
+    matrix[elimination.entries(pattern, free, free)] = 1.0
+    assert factorized(pattern, matrix, np.zeros(LANES * slots), np.ones(slots))
+    x = np.zeros(slots)
+    x[slot] = b
+    substituted(pattern, matrix, x)
+    assert not x[free].any()
+    return x
+
+
+@pytest.mark.parametrize("n, links", [(4, 3), (17, 30), (63, 100), (200, 500)])
+def test_solves_what_scipy_solves(n, links):
+    row, column, value = system(n, n, links)
+    b = np.random.default_rng(0).normal(size=n)
+    x = solved(elimination.block_pattern(row, column, n), np.arange(n), row, column, value, b)
+    exact = spsolve(coo_array((value, (row, column)), shape=(n, n)).tocsc(), b)
+    assert np.abs(x[:n] - exact).max() < 1e-12 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("groups", [[0, 3, 9, 14], [0, 0, 8, 30, 30], [0]])
+def test_slots_leave_the_solution_as_it_is(groups):
+    n = 30
+    row, column, value = system(n, 5, 60)
+    slot, pattern = elimination.best_slots(row, column, np.array(groups), n)
+    assert len(set(slot)) == n and np.all(np.diff(slot) > 0)
+    b = np.random.default_rng(1).normal(size=n)
+    x = solved(pattern, slot, row, column, value, b)
+    exact = spsolve(coo_array((value, (row, column)), shape=(n, n)).tocsc(), b)
+    assert np.abs(x[slot] - exact).max() < 1e-12 * np.abs(exact).max()
+
+
+def test_bodies_on_whole_blocks_are_less_work(monkeypatch):
+    asked, best = [], elimination.best_slots
+
+    def spy(*arguments):
+        asked.append(arguments)
+        return best(*arguments)
+    monkeypatch.setattr(elimination, "best_slots", spy)
+    Simulation(chain.build(links=12).model, 0.01)
+    (row, column, groups, n), = asked
+    _, pattern = best(row, column, groups, n)
+    plain = elimination.block_pattern(row, column, n)
+    assert pattern.products < 0.6 * plain.products
+
+
+def test_elements_that_do_not_move_keep_their_forces():
+    run = Simulation(chain.build(links=12).model, 0.01).run_to(0.3)
+    system, now, n = run.system, run.state, run.numbering.free
+    assert assemble(state.FORCES, system, now, now.residual) == 0
+    moved = run.numbering.names.index("joint 5.position[0]")
+    now.last_change[:] = 0.0
+    now.last_change[moved] = 1e-3
+    now.q[moved] -= 1e-3
+    limit = 1e-6 * now.weight[:n].min()
+    assert assemble_moved(system, now, limit) == 0
+    assert now.moved.sum() == 2             # the links on both sides; the joint is on rotations
+    residual = now.residual.copy()
+    assert assemble(state.FORCES, system, now, now.residual) == 0
+    assert np.array_equal(residual, now.residual)
+    now.last_change[moved] = 1e-3 * limit / now.weight[moved]
+    now.q[moved] += 1e-3
+    assert assemble_moved(system, now, limit) == 0
+    assert not now.moved.any() and np.array_equal(residual, now.residual)
+
+
+def test_a_small_pivot_is_noticed():
+    row = column = np.arange(5)
+    pattern = elimination.block_pattern(row, column, 5)
+    matrix = np.zeros(len(pattern.rows) * LANES**2)
+    matrix[elimination.entries(pattern, row, column)] = [1.0, 1.0, 1e-12, 1.0, 1.0]
+    assert not factorized(pattern, matrix, np.zeros(2 * LANES**2), np.ones(8))
+
+
+def test_every_entry_has_its_place():
+    row, column, _ = system(30, 1, 50)
+    pattern = elimination.block_pattern(row, column, 30)
+    rows, columns = elimination.places(pattern)
+    place = elimination.entries(pattern, row, column)
+    assert np.array_equal(rows[place], row) and np.array_equal(columns[place], column)
+
+
+def multipliers_first(number):
+    """The same numbering, but multipliers before what they act on: their pivots are zero."""
+    def changed(model):
+        old = number(model)
+        order = sorted(range(old.total),
+                       key=lambda i: (i >= old.free, not old.names[i].startswith("multiplier")))
+        place = {i: k for k, i in enumerate(order)}
+
+        def moved(firsts):
+            return {key: place.get(first, first) for key, first in firsts.items()}
+        return old._replace(triplets=moved(old.triplets), modes=moved(old.modes),
+                            multipliers=moved(old.multipliers),
+                            names=[old.names[i] for i in order])
+    return changed
+
+
+def test_superlu_takes_over_at_small_pivots(monkeypatch):
+    own = Simulation(chain.build(links=8).model, 0.01).run_to(0.3)
+    monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
+    exchanged = Simulation(chain.build(links=8).model, 0.01).run_to(0.3)
+    assert own.state.control[state.PIVOTED] == 0 and exchanged.state.control[state.PIVOTED] == 1
+    for name in ("tip.position", "energy.strain", "energy.kinetic"):
+        a, b = own.result()[name], exchanged.result()[name]
+        assert np.abs(a - b).max() < 1e-9 * np.abs(a).max(), name

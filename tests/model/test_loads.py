@@ -1,0 +1,183 @@
+"""Load histories: tables and compiled functions, and what is said about those that fail."""
+
+import functools
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from sebody import InputError, Model, Simulation, simulate
+from sebody.engine import evaluate
+from sebody.model.histories import History, history
+from sebody.scenes.hinged_beam import build
+
+TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]
+
+
+def ramps(t):
+    """The table as a function."""
+    if t < 0.05:
+        return 2.0e5 * t
+    return max(1.0e4 - 1.2e5 * (t - 0.05), -2.0e3)
+
+
+def two_nodes():
+    model = Model()
+    model.node("base", (0, 0, 0))
+    model.node("tip", (60, 0, 0))
+    return model
+
+
+@pytest.mark.parametrize("table, message", [
+    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must increase: sort the rows "
+                                           "and merge equal times"),
+    ([(0.0, 1.0), (0.0, 2.0)], "times of a load history must increase"),
+    ([1.0, 2.0], r"load history has shape \(2,\): give rows \(t, value\)"),
+    ([(0.0, 1.0, 2.0)], r"load history has shape \(1, 3\): give rows"),
+    ([], "load history has shape .*: give rows"), (3.0, r"load history has shape \(\): give rows"),
+    ([(0.0, np.nan)], "load history contains NaN or infinite entries: give finite numbers"),
+    ([(np.inf, 1.0)], "NaN or infinite entries"),
+])
+def test_wrong_tables(table, message):
+    with pytest.raises(InputError, match=message):
+        history(table)
+
+
+def opens_a_file(t):
+    return open(t)
+
+
+def returns_nothing(t):
+    return None
+
+
+@pytest.mark.parametrize("function", [opens_a_file, returns_nothing, lambda t: 1j * t, np.sin])
+def test_function_that_cannot_be_compiled(function):
+    with pytest.raises(InputError, match=f"load history '{function.__name__}' cannot be compiled: "
+                                         "use only arithmetic, math and numpy in it"):
+        history(function)
+
+
+@pytest.mark.parametrize("source", [
+    pytest.param(lambda a, b: a, id="two arguments"),
+    pytest.param(functools.partial(max, 1.0), id="partial"),
+    pytest.param("abc", id="text"), pytest.param([(0, 1), (1,)], id="ragged rows")])
+def test_histories_to_be_refused(source):
+    with pytest.raises(InputError, match="load history"):
+        history(source)
+
+
+@pytest.mark.parametrize("action, message", [
+    (lambda m: m.force("base", (0, 1)), "force on base.position is .0, 1.: give 3 finite numbers"),
+    (lambda m: m.force("base", (0, 0, np.inf)), "force on base.position is .*finite numbers"),
+    (lambda m: m.torque("base", (0, 0)), "torque on base.rotation is .*give 3 finite"),
+    (lambda m: m.torque("base", (0, np.nan, 0)), "torque on base.rotation is .*give 3 finite"),
+    (lambda m: m.force("far", (0, 0, 1)), "node 'far' is unknown: the model has base, tip"),
+    (lambda m: m.force("tip", (0, 0, 1), [(0.0, 1.0), (0.0, 2.0)]), "must increase: sort the rows"),
+])
+def test_wrong_loads(action, message):
+    model = two_nodes()
+    with pytest.raises(InputError, match=message):
+        action(model)
+    assert not model.loads
+
+
+def test_planar_torque_is_one_number():
+    model = Model(planar=True)
+    model.node("base", (0, 0))
+    with pytest.raises(InputError, match="torque on base.rotation is .*: give 1 finite number"):
+        model.torque("base", (0, 0, 1))
+    model.torque("base", 2.0)
+    assert model.loads[0].direction == [2.0]
+
+
+def test_histories():
+    assert history(None) == History((0.0,), ((1.0, 0.0, 0.0, 0.0),))
+    table = history(np.array(TABLE))
+    assert table.times == (0.0, 0.05, 0.15)
+    assert [row[0] for row in table.cubics] == [0.0, 1.0e4, -2.0e3]
+    assert table.addresses == (0, 0, 0) and history(table) is table
+    assert history(ramps).addresses[0] != 0
+
+
+def amplitudes(run, t):
+    """Amplitude and rates of every item at a time."""
+    loads = np.zeros_like(run.state.loads)
+    evaluate.set_loads(run.system, loads, t)
+    return loads.reshape(-1, 3)
+
+
+def test_amplitudes_in_the_loop():
+    """Linear between the rows, end values outside, functions as they are."""
+    model = build().model
+    for source in (TABLE, ramps, None, [(0.1, 7.0)]):
+        model.force("tip", (0, 0, 1), source)
+    run = Simulation(model, 0.01)
+    for t in (-1.0, 0.0, 0.02, 0.05, 0.0999, 0.15, 9.0):
+        expected = np.interp(t, *zip(*TABLE, strict=True))
+        of_table, of_function, constant, single = amplitudes(run, t)[1:]
+        assert of_table[0] == pytest.approx(expected, abs=1e-9)
+        assert of_function == pytest.approx([ramps(t), 0.0, 0.0])
+        assert (constant[0], single[0]) == (1.0, 7.0)
+
+
+def wave(t):
+    return np.sin(3.0 * t)
+
+
+def wave_rate(t):
+    return 3.0 * np.cos(3.0 * t)
+
+
+def wave_second(t):
+    return -9.0 * np.sin(3.0 * t)
+
+
+def test_motions_in_the_loop():
+    """Tables become splines at rest at both ends; rates are those of what moves."""
+    rows = [(0.0, 0.0), (0.5, 0.4), (1.0, 1.0), (2.0, 0.7)]
+    model = Model(planar=True)
+    model.node("a", (0.0, 0.0))
+    model.point_mass("ball", "a", 1.0)
+    for k, source in enumerate((rows, (wave, wave_rate, wave_second))):
+        model.node(f"moved {k}", (1.0, 0.0))
+        model.move(f"moved {k}", (1.0, 0.0), source)
+        model.fix(f"moved {k}", "rotation")
+    model.fix("a", "rotation")
+    run = Simulation(model, 0.01)
+    spline = CubicSpline(*zip(*rows, strict=True), bc_type="clamped")
+    for t in (0.0, 0.3, 0.5, 1.7, 2.0):
+        of_table, of_functions = amplitudes(run, t)
+        expected = [float(spline(t, k)) * (k < 2 or 0 < t < 2) for k in range(3)]
+        assert of_table == pytest.approx(expected, abs=1e-12)
+        assert of_functions == pytest.approx([wave(t), wave_rate(t), wave_second(t)])
+    assert amplitudes(run, 5.0)[0] == pytest.approx([0.7, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("source, message", [
+    (wave, r"is one function: give three, \(value, rate, second rate\), or a table"),
+    ((wave, wave, wave_second), "second function is not the derivative of the first: at t = 0.137"),
+    ((wave, wave_rate, wave), "third function is not the derivative of the second"),
+    ([(0.0, 0.0)], "has one row: give at least two rows"),
+    ([(0.0, 1.0), (1.0, 2.0)], "the motion at 'a' is 1 at t = 0: motions count from the start"),
+    ("abc", "motion of a drive cannot be read as numbers")])
+def test_wrong_motions(source, message):
+    model = Model(planar=True)
+    model.node("a", (0.0, 0.0))
+    with pytest.raises(InputError, match=message):
+        model.move("a", (1.0, 0.0), source)
+    assert not model.nodes["a"].position.fixed
+
+
+def test_compiled_history_gives_the_run_of_the_table():
+    results = []
+    for source in (TABLE, ramps):
+        scene = build()
+        scene.model.loads.clear()
+        scene.model.torque("base", (0, 0, 1), source)
+        results.append(simulate(scene.model, 0.01, 0.2))
+    tips = [r["tip.position"] for r in results]
+    assert np.abs(tips[0] - tips[0][0]).max() > 1e-2
+    assert np.abs(tips[0] - tips[1]).max() < 1e-10
+    assert results[0]["energy.external_work"] == pytest.approx(
+        results[1]["energy.external_work"], rel=1e-9, abs=1e-9)

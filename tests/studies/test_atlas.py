@@ -1,0 +1,114 @@
+"""Every number of the atlas; warnings fire in their cases and in no regular scene."""
+
+import math
+import warnings
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from sebody import LimitWarning, Simulation, generalized_alpha, hht
+from sebody.analysis.limits import spin_limit
+from sebody.cli import main as cli
+from sebody.scenes import heavy_top, hinged_beam, spherical_beam_strong, spin_up
+from sebody.studies import atlas
+from sebody.studies.atlas.beams import arm
+from sebody.studies.atlas.finding import Row
+from sebody.studies.atlas.theory import cantilever, divergence
+
+STRESSED = {"spherical-beam-strong"}    # spins above its limit, on purpose
+
+
+@pytest.mark.parametrize("name", atlas.CASES)
+def test_theory_is_measured(name):
+    finding = atlas.explore(name)
+    assert finding.rows and finding.curves and finding.theory and finding.program
+    wrong = [row for row in finding.rows if not row.passed]
+    assert not wrong, wrong
+
+
+def test_rows_can_fail():
+    assert Row("", 1.0, 1.05, 0.1).passed and not Row("", 1.0, 1.2, 0.1).passed
+    assert Row("", 0.0, 1e-3, 1e-2).passed and not Row("", 0.0, 1.0, 1e-2).passed
+    assert Row("", math.inf, math.inf, 0.1).passed and not Row("", math.inf, 2.0, 0.1).passed
+    assert not Row("", 1.0, math.nan, 0.1).passed
+
+
+def test_page_and_table(tmp_path, capsys):
+    page = tmp_path / "atlas.png"
+    assert cli.main(["atlas", "collinear", "damping", "--output", str(page)]) == 0
+    out = capsys.readouterr().out
+    assert "collinear: nearly collinear nodes" in out and "measured" in out
+    assert "DIFFERS" not in out and page.stat().st_size > 10_000
+    assert cli.main(["atlas", "moon"]) == 2
+    assert "the atlas has no case 'moon': there are divergence" in capsys.readouterr().err
+    assert cli.main(["atlas", "damping", "--output", str(tmp_path / "a.txt")]) == 2
+
+
+def warned(run):
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        run()
+    return [str(w.message) for w in found if issubclass(w.category, LimitWarning)]
+
+
+@pytest.mark.parametrize("name", [n for n in cli.scenes() if n not in STRESSED])
+def test_regular_scenes_are_not_warned(name):
+    scene = import_module(f"sebody.scenes.{name.replace('-', '_')}").build()
+    t_end = min(scene.t_end, 400 * scene.h) if name in ("four-bar", "squeezer") else scene.t_end
+    assert warned(lambda: Simulation(scene.model, scene.h).run_to(t_end)) == []
+
+
+def test_spin_is_warned_of_once():
+    scene = spin_up.build("kane", 1, frame="node")
+    run = Simulation(scene.model, 0.01)
+
+    def go():
+        for t in (9.0, 9.5, 10.0):
+            run.run_to(t)
+    messages = warned(go)
+    spins = [m for m in messages if m.startswith("spin ")]
+    assert len(spins) == 1
+    assert "is above the limit 2.48 of body 'arm'" in spins[0] and "divide it in two" in spins[0]
+    assert run.result().warnings == tuple(messages)
+    assert "WARNING              spin" in run.result().summary()
+
+
+@pytest.mark.parametrize("frame", ["node", "mean"])
+def test_the_limit_of_one_body_is_that_of_theory(frame):
+    body = arm(1, frame).bodies["arm"]
+    limit = divergence(cantilever(1, frame), option_b=True)
+    assert spin_limit(body, np.array([0.0, 0.0, 1.0])) == pytest.approx(limit, rel=1e-6)
+    assert spin_limit(body, None) <= limit
+
+
+def test_spin_about_any_axis_of_a_beam_in_space():
+    run = Simulation(spherical_beam_strong.build().model, 0.005)
+    messages = warned(lambda: run.run_to(30.0))
+    assert any("of body 'beam'" in m and m.startswith("spin") for m in messages)
+
+
+def test_local_rotation_is_warned_of():
+    scene = hinged_beam.build(elements=4)
+    scene.model.force("tip", (0.0, 0.0, 1.0), [(0.0, 0.0), (0.05, 2e5), (0.1, 0.0)])
+    messages = warned(lambda: Simulation(scene.model, 0.001).run_to(0.3))
+    assert any(m.startswith("local rotation") and "of body 'beam' exceeds the linear range" in m
+               for m in messages)
+
+
+def test_schemes_without_damping_are_warned_of():
+    def start(scheme, explicit):
+        return warned(lambda: Simulation(heavy_top.build(explicit).model, 1e-3, scheme))
+    for scheme in (hht(0.0), generalized_alpha(1.0)):
+        assert "oscillate and grow" in start(scheme, True)[0]
+        assert start(scheme, False) == []       # no multipliers
+    assert start(hht(0.0, index=2), True) == [] and start(hht(-0.01), True) == []
+
+
+def test_flat_bodies_are_warned_of():
+    from sebody.studies.atlas.geometry import triangle
+    assert warned(lambda: Simulation(triangle(0.1), 0.01)) == []
+    messages = warned(lambda: Simulation(triangle(1e-4), 0.01))
+    assert len(messages) == 1
+    assert messages[0].startswith("nodes of body 'plate' lie nearly on a line (spread ")
+

@@ -1,0 +1,69 @@
+"""`sebody bench`: what it prints and refuses. The peer itself is run only where it is installed."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from sebody import InputError, simulate
+from sebody.cli.main import main
+from sebody.scenes import hinged_beam
+from sebody.studies import bench
+from sebody.studies.bench import own, peer
+from sebody.studies.bench.measurement import Measurement
+
+MINE = Measurement("hinged-beam", "superelement", 15, 0.01, 2.0, 2.4, 9e-4, 6e-3, 7000.0)
+THEIRS = Measurement("hinged-beam", "Exudyn beams", 24, 0.01, 80.0, 2.0, 5e-4, 0.24)
+
+
+@pytest.fixture
+def alone(monkeypatch):
+    monkeypatch.setattr(peer, "available", lambda: False)
+
+
+def test_json_has_cost_and_error_of_the_same_run(alone, capsys):
+    assert main(["bench", "planar-hinged-beam", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    row, = answer["measurements"]
+    assert row["scene"] == "planar-hinged-beam" and row["unknowns"] == 6 and row["h"] == 0.01
+    assert {"variant", "us_per_step", "iterations_per_step", "tip_error"} <= row.keys()
+    assert row["tip_error"] < 9.5e-4 and row["iterations_per_step"] > 1.0
+    assert row["us_per_step"] * 3000 == pytest.approx(1e6 * row["wall_seconds"])
+    fraction = row["flops_per_step"] / answer["flops_per_second"] / (1e-6 * row["us_per_step"])
+    assert 0.0 < fraction < 1.0
+
+
+def test_operations_grow_with_bodies_and_iterations():
+    """At least two flops for each entry of S and M, each of which a product meets once."""
+    result = simulate(hinged_beam.build().model, 0.01, 1.0)
+    n = result.model.bodies["beam"].body.stiffness.shape[0]
+    assert own.flops_per_step(result) > result.iterations_per_step * 2 * 2 * n * n
+
+
+def test_report_names_ratios_and_fractions():
+    text = bench.report([MINE, THEIRS], 1e10)
+    assert "Exudyn beams takes 40.0 times as long a step" in text
+    assert "to a tip error of 1e-3: 6.00 ms, Exudyn beams (h 0.01) 240.0 ms: 40.0 times" in text
+    assert "35%" in text and "10.00 Gflop/s" in text
+    poor = replace(THEIRS, tip_error=2e-3)
+    assert "no model of the peer gets there" in bench.report([MINE, poor], 1e10)
+
+
+def test_a_run_without_the_peer_compares_nothing():
+    assert bench.ratios([MINE]) == []
+
+
+def test_unknown_scene_is_named(capsys):
+    assert main(["bench", "shaft"]) == 2
+    assert "no benchmark of scene 'shaft': use hinged-beam" in capsys.readouterr().err
+
+
+def test_missing_peer_is_named(alone):
+    with pytest.raises(InputError, match="Exudyn is not installed: pip install exudyn"):
+        peer.measure("chain")
+
+
+@pytest.mark.skipif(not peer.available(), reason="Exudyn is not installed")
+def test_the_peer_computes_the_same_beam():
+    found = [m for m in peer.measure("planar-hinged-beam") if m.h == 0.01]
+    assert min(m.tip_error for m in found) < 1e-3
