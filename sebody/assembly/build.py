@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly import elimination_pattern
 from sebody.assembly.links import link_arrays, with_entries
 from sebody.assembly.numbering import Numbering, coordinates, number
-from sebody.engine import elimination
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -193,14 +193,14 @@ def _sparse_layout(row: NDArray, column: NDArray, numbering: Numbering) -> dict[
     """The same in the blocks of an elimination."""
     n = numbering.free
     free = (row < n) & (column < n)
-    slot, pattern = elimination.best_slots(row[free], column[free], numbering.groups, n)
+    slot, pattern = elimination_pattern.best_slots(row[free], column[free], numbering.groups, n)
     slots = LANES * len(pattern.diagonal)
     unknowns = np.full(slots, n)
     unknowns[slot] = np.arange(n)
-    rows, columns = elimination.places(pattern)
+    rows, columns = elimination_pattern.places(pattern)
     entries = np.full(len(row), len(rows))
-    entries[free] = elimination.entries(pattern, slot[row[free]], slot[column[free]])
-    diagonal = elimination.entries(pattern, np.arange(slots), np.arange(slots))
+    entries[free] = elimination_pattern.entries(pattern, slot[row[free]], slot[column[free]])
+    diagonal = elimination_pattern.entries(pattern, np.arange(slots), np.arange(slots))
     return {"entries": entries, "rows": unknowns[rows].astype(np.int32),
             "columns": unknowns[columns].astype(np.int32), "diagonal": diagonal[slot],
             "padding": diagonal[unknowns == n], "block_starts": pattern.starts,

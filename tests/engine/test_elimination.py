@@ -8,6 +8,7 @@ from scipy.sparse.linalg import spsolve
 
 from sebody import Simulation
 from sebody.assembly import build as assembly
+from sebody.assembly import elimination_pattern
 from sebody.engine import elimination, state
 from sebody.engine.evaluate import assemble, assemble_moved
 from sebody.kernels.abi import LANES, pointer_to
@@ -44,9 +45,9 @@ def solved(pattern, slot, row, column, value, b):
     """Solution by slots, all of them."""
     slots = LANES * len(pattern.diagonal)
     matrix = np.zeros(len(pattern.rows) * LANES**2)
-    np.add.at(matrix, elimination.entries(pattern, slot[row], slot[column]), value)
+    np.add.at(matrix, elimination_pattern.entries(pattern, slot[row], slot[column]), value)
     free = np.setdiff1d(np.arange(slots), slot)
-    matrix[elimination.entries(pattern, free, free)] = 1.0
+    matrix[elimination_pattern.entries(pattern, free, free)] = 1.0
     assert factorized(pattern, matrix, np.zeros(LANES * slots), np.ones(slots))
     x = np.zeros(slots)
     x[slot] = b
@@ -59,7 +60,8 @@ def solved(pattern, slot, row, column, value, b):
 def test_solves_what_scipy_solves(n, links):
     row, column, value = system(n, n, links)
     b = np.random.default_rng(0).normal(size=n)
-    x = solved(elimination.block_pattern(row, column, n), np.arange(n), row, column, value, b)
+    pattern = elimination_pattern.block_pattern(row, column, n)
+    x = solved(pattern, np.arange(n), row, column, value, b)
     exact = spsolve(coo_array((value, (row, column)), shape=(n, n)).tocsc(), b)
     assert np.abs(x[:n] - exact).max() < 1e-12 * np.abs(exact).max()
 
@@ -68,7 +70,7 @@ def test_solves_what_scipy_solves(n, links):
 def test_slots_leave_the_solution_as_it_is(groups):
     n = 30
     row, column, value = system(n, 5, 60)
-    slot, pattern = elimination.best_slots(row, column, np.array(groups), n)
+    slot, pattern = elimination_pattern.best_slots(row, column, np.array(groups), n)
     assert len(set(slot)) == n and np.all(np.diff(slot) > 0)
     b = np.random.default_rng(1).normal(size=n)
     x = solved(pattern, slot, row, column, value, b)
@@ -77,16 +79,16 @@ def test_slots_leave_the_solution_as_it_is(groups):
 
 
 def test_bodies_on_whole_blocks_are_less_work(monkeypatch):
-    asked, best = [], elimination.best_slots
+    asked, best = [], elimination_pattern.best_slots
 
     def spy(*arguments):
         asked.append(arguments)
         return best(*arguments)
-    monkeypatch.setattr(elimination, "best_slots", spy)
+    monkeypatch.setattr(elimination_pattern, "best_slots", spy)
     Simulation(chain.build(links=12).model, 0.01)
     (row, column, groups, n), = asked
     _, pattern = best(row, column, groups, n)
-    plain = elimination.block_pattern(row, column, n)
+    plain = elimination_pattern.block_pattern(row, column, n)
     assert pattern.products < 0.6 * plain.products
 
 
@@ -112,17 +114,17 @@ def test_elements_that_do_not_move_keep_their_forces():
 
 def test_a_small_pivot_is_noticed():
     row = column = np.arange(5)
-    pattern = elimination.block_pattern(row, column, 5)
+    pattern = elimination_pattern.block_pattern(row, column, 5)
     matrix = np.zeros(len(pattern.rows) * LANES**2)
-    matrix[elimination.entries(pattern, row, column)] = [1.0, 1.0, 1e-12, 1.0, 1.0]
+    matrix[elimination_pattern.entries(pattern, row, column)] = [1.0, 1.0, 1e-12, 1.0, 1.0]
     assert not factorized(pattern, matrix, np.zeros(2 * LANES**2), np.ones(8))
 
 
 def test_every_entry_has_its_place():
     row, column, _ = system(30, 1, 50)
-    pattern = elimination.block_pattern(row, column, 30)
-    rows, columns = elimination.places(pattern)
-    place = elimination.entries(pattern, row, column)
+    pattern = elimination_pattern.block_pattern(row, column, 30)
+    rows, columns = elimination_pattern.places(pattern)
+    place = elimination_pattern.entries(pattern, row, column)
     assert np.array_equal(rows[place], row) and np.array_equal(columns[place], column)
 
 

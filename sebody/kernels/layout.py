@@ -1,0 +1,222 @@
+"""The contracts between kernels and whoever calls them: one table for every row of numbers.
+
+Kernels work on flat arrays. What stands where in these is written here and nowhere else: the
+printer of the kernels, the packers of models, the compiled loop, the checks and the results all
+read these tables. Sizes are products of counts, which specialised kernels know beforehand:
+
+============  ======================================================================================
+N_POSITIONS   nodes of the element that keep their position
+N_ROTATIONS   nodes that keep their rotation
+D             coordinates of a position: 3, in a plane 2
+n             unknowns of the element
+============  ======================================================================================
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
+
+# what a kernel is asked for: constraints differentiated in time are VELOCITY and ACCELERATION
+RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
+# what a kernel answers: HALF_TURN where a node is turned by nearly half a turn against the frame of
+# its body, NO_FRAME where the search for that frame does not end
+OK, HALF_TURN, NO_FRAME = range(3)
+
+Counts = Mapping[str, int]
+Size = str | int        # a count, or a number
+
+
+class Part(NamedTuple):
+    """A named stretch of a row: a number, a vector or a matrix.
+
+    `columns` stores a matrix column after column, each filled with zeros to whole vectors.
+    """
+
+    name: str
+    shape: tuple[Size, ...] = ()
+    meaning: str = ""
+    columns: bool = False
+
+    def size(self, counts: Counts) -> int:
+        """How many numbers it takes."""
+        sizes = [counts[s] if isinstance(s, str) else s for s in self.shape]
+        if self.columns:
+            return sizes[1] * whole_vectors(sizes[0])
+        return int(np.prod(sizes, dtype=int))
+
+    def expression(self, known: Counts) -> str:
+        """The same as text for a kernel: known counts are numbers, the others names."""
+        sizes = [str(known.get(s, s)) for s in self.shape]
+        if self.columns:
+            return f"{sizes[1]}*padded({sizes[0]})"
+        return "*".join(sizes) or "1"
+
+
+class Row(NamedTuple):
+    """Parts one after the other."""
+
+    title: str
+    parts: tuple[Part, ...]
+
+    def slices(self, counts: Counts) -> dict[str, slice]:
+        """Where every part is."""
+        return {name: slice(first, first + size) for name, first, size in self._walk(counts)}
+
+    def size(self, counts: Counts) -> int:
+        """Numbers of the whole row."""
+        return sum(part.size(counts) for part in self.parts)
+
+    def first(self, name: str) -> int:
+        """Where a part begins, if all before it are of fixed size."""
+        return self.slices(_Fixed())[name].start
+
+    def pack(self, counts: Counts, values: Mapping[str, ArrayLike]) -> NDArray:
+        """The row of some values, given by name.
+
+        Raises
+        ------
+        ContractError
+            A part without a value, a value of another shape, or one that is no part.
+        """
+        names = [part.name for part in self.parts]
+        if set(names) != set(values):
+            raise ContractError(f"{self.title}: the kernel reads {', '.join(names) or 'nothing'}; "
+                                f"given are {', '.join(values) or 'none'}")
+        pieces = [np.zeros(0)]
+        for part in self.parts:
+            value = np.asarray(values[part.name], dtype=float)
+            shape = tuple(counts[s] if isinstance(s, str) else s for s in part.shape)
+            if value.shape != shape:
+                raise ContractError(f"{self.title}: {part.name} has shape {value.shape}, the "
+                                    f"kernel reads {shape}")
+            pieces.append(padded_columns(value) if part.columns else value.ravel())
+        return np.concatenate(pieces)
+
+    def unpack(self, counts: Counts, row: NDArray) -> dict[str, NDArray]:
+        """The values of a row by name, in their shapes."""
+        values = {}
+        for part in self.parts:
+            shape = tuple(counts[s] if isinstance(s, str) else s for s in part.shape)
+            piece = row[self.slices(counts)[part.name]]
+            if part.columns:
+                values[part.name] = piece.reshape(shape[1], -1)[:, :shape[0]].T
+            else:
+                values[part.name] = piece.reshape(shape)
+        return values
+
+    def _walk(self, counts: Counts) -> Iterator[tuple[str, int, int]]:
+        first = 0
+        for part in self.parts:
+            try:
+                size = part.size(counts)
+            except KeyError:        # what follows has no fixed place
+                yield part.name, first, 0
+                return
+            yield part.name, first, size
+            first += size
+
+
+class ContractError(ValueError):
+    """What a model gives and what a kernel reads do not agree."""
+
+
+class _Fixed(dict):
+    """No counts at all: only parts of fixed size have a place."""
+
+
+def whole_vectors(n: int) -> int:
+    """Length of a column of n numbers in a kernel's matrices: whole vectors."""
+    return (n + LANES - 1) // LANES * LANES
+
+
+def padded_columns(matrix: NDArray) -> NDArray:
+    """Columns of a matrix one after the other, each filled with zeros to whole vectors."""
+    height, width = matrix.shape
+    columns = np.zeros((width, whole_vectors(height)))
+    columns[:, :height] = matrix.T
+    return columns.ravel()
+
+
+# arguments of every kernel after task, count, stride and width: their types and meaning
+ARGUMENTS = (
+    ("index", "int64", "rows of INDEX, one for each element"),
+    ("constants", "float64", "rows of constants: of superelements one for each body type"),
+    ("q", "float64", "coordinates: positions, modes, multipliers; rotations' step increments"),
+    ("R", "float64", "rotations, nine numbers each, row by row"),
+    ("v", "float64", "velocities of the coordinates"),
+    ("a", "float64", "their accelerations"),
+    ("references", "float64", "frames of the last converged step, nine numbers each"),
+    ("frames", "float64", "frames of the current iterate; superelements write theirs"),
+    ("T", "float64", "tangent operators of the step increments of rotations, nine numbers each"),
+    ("loads", "float64", "of every item its amplitude now, and the two rates of that"),
+    ("coefficients", "float64", "the row COEFFICIENTS"),
+    ("forces", "float64", "written: forces of every element, (count, n)"),
+    ("matrices", "float64", "written: matrices of every element, (count, n, n)"),
+    ("work", "float64", "scratch memory: WORK_ROWS padded rows"),
+    ("energies", "float64", "added to: the row ENERGIES"),
+)
+
+INDEX = Row("index row of an element", (
+    Part("constants", (), "where its row of constants begins"),
+    Part("frame", (), "number of its frame"),
+    Part("item", (), "number of the item it is: what does work, a load, damper or drive"),
+    Part("nodes", ("N_ROTATIONS",), "numbers of its rotation matrices"),
+    Part("unknowns", ("n",), "its coordinates, then its multipliers"),
+))
+AT_CONSTANTS, AT_FRAME, AT_ITEM, HEADER = (
+    INDEX.first(name) for name in ("constants", "frame", "item", "nodes"))
+
+# J = c_mass dG/da + c_rate dG/dv + c_place dG/dq T: rotations vary multiplicatively, and T turns
+# the variation of the step's increment into that of the rotation
+COEFFICIENTS = Row("coefficients of the iteration matrix, and gravity", (
+    Part("c_mass", (), "of the derivatives by accelerations"),
+    Part("c_rate", (), "of the derivatives by velocities"),
+    Part("c_place", (), "of the derivatives by positions and rotations"),
+    Part("c_geo", (), "1 for consistent tangents, 0 for the paper's"),
+    Part("c_constraint", (), "of constraints and multipliers"),
+    Part("field", (3,), "gravity [length/time^2]"),
+))
+C_MASS, C_RATE, C_PLACE, C_GEO, C_CONSTRAINT, FIELD = (
+    COEFFICIENTS.first(part.name) for part in COEFFICIENTS.parts)
+
+ENERGIES = Row("sums over the elements, and powers", (
+    Part("kinetic", (), "kinetic energy"),
+    Part("strain", (), "strain energy, that of springs included"),
+    Part("momentum", (3,), "momentum in global axes"),
+    Part("moment", (3,), "its moment about the origin"),
+    Part("potential", (), "potential of gravity"),
+    Part("powers", ("items",), "rate of work of every item"),
+))
+KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS = (
+    ENERGIES.first(part.name) for part in ENERGIES.parts)
+
+RECORD = Row("what is recorded of a state", (
+    Part("t", (), "time"),
+    Part("iterations", (), "Newton iterations since the start"),
+    Part("works", ("items",), "work of every item since the start"),
+    Part("q", ("coordinates",), "positions, modes, angles, multipliers; rotations' increments"),
+    Part("R", ("rotations", 9), "rotation matrices"),
+    Part("v", ("coordinates",), "velocities"),
+    Part("a", ("coordinates",), "accelerations"),
+    Part("frames", ("bodies", 9), "frames of superelements"),
+    Part("frames_old", ("bodies", 9), "the same of the last accepted step"),
+))
+
+# what every superelement reads; its frame and inertia option may declare more
+SUPERELEMENT_CONSTANTS = (
+    Part("alphas", ("N_POSITIONS",), "frame weights of the positions"),
+    Part("fits", ("N_POSITIONS",), "weights in the rotation of best fit"),
+    Part("alpha_rs", ("N_ROTATIONS",), "frame weights of the rotations"),
+    Part("X", ("N_POSITIONS", "D"), "nodes in the undeformed frame [length]"),
+    Part("S", ("n", "n"), "reduced stiffness", columns=True),
+    Part("M", ("n", "n"), "reduced mass", columns=True),
+    Part("mass_columns", ("n", "D"), "Mbar r of the rigid translations r", columns=True),
+    Part("mass_rows", ("D", "n"), "its transpose", columns=True),
+    Part("mc", ("D",), "first moment of mass about the origin of the frame"),
+    Part("masses", (1,), "mass"),
+)
+DAMPING_CONSTANTS = (Part("C", ("n", "n"), "reduced damping", columns=True),)
