@@ -43,7 +43,8 @@ from sebody.engine.state import (
 )
 from sebody.engine.system import System
 from sebody.errors import InputError, SimulationError
-from sebody.kernels.abi import LANES, POWERS, padded
+from sebody.kernels.abi import padded
+from sebody.kernels.layout import LANES, POWERS
 from sebody.model.model import Model
 from sebody.results.result import Result
 

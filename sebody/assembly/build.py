@@ -11,8 +11,8 @@ from sebody.assembly.numbering import Numbering, coordinates, number
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.abi import LANES, padded
-from sebody.kernels.dense import padded_columns
+from sebody.kernels.abi import padded
+from sebody.kernels.layout import LANES, padded_columns
 from sebody.kernels.loader import element_kernel
 from sebody.model.model import Model, Superelement
 from sebody.model.nodes import Element

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.engine.elimination import BLOCK
-from sebody.kernels.abi import LANES
+from sebody.kernels.layout import LANES
 
 
 class Pattern(NamedTuple):

@@ -5,8 +5,6 @@ takes a minute. Members are read without reference counts, which cost as much as
 """
 
 from dataclasses import fields
-from hashlib import sha256
-from pathlib import Path
 
 import numpy as np
 from numba import typeof, types
@@ -22,17 +20,10 @@ from numba.extending import (
     unbox,
 )
 
+from sebody.kernels.sources import room_hash
 
-def _sources() -> str:
-    """Hash of all compiled modules: part of every compiled type.
-
-    Numba's cache sees changes of the file a function is in, not of what that calls.
-    """
-    texts = [path.read_bytes() for path in sorted(Path(__file__).parents[1].glob("[ek]*/*.py"))]
-    return sha256(b"".join(text for text in texts if b"\n@njit" in text)).hexdigest()[:12]
-
-
-SOURCES = _sources()
+# part of every compiled type: what is compiled for other sources is never used
+SOURCES = room_hash("kernels", "engine")
 
 
 class Arrays:

@@ -10,16 +10,16 @@ have ones on the diagonal.
 """
 
 
-from numba import njit
-
-from sebody.kernels.abi import LANES, at
+from sebody.kernels.abi import at
 from sebody.kernels.dense import subtract_block_times, subtract_product
+from sebody.kernels.layout import LANES
+from sebody.kernels.pipeline import compiled
 
 BLOCK = LANES * LANES
 SMALL_PIVOT = 1e-9      # of the scaled matrix
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def eliminate(across, starts, rows, diagonal, unknowns, matrix, column, scale):
     """Factors L (unit diagonal blocks) and U (inverted ones) in place; False at a small pivot.
 
@@ -49,7 +49,7 @@ def eliminate(across, starts, rows, diagonal, unknowns, matrix, column, scale):
     return True
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _subtract_negative(C, A, B):
     """``C = A B`` for C zero at the start."""
     subtract_product(C, A, B)
@@ -57,7 +57,7 @@ def _subtract_negative(C, A, B):
         C[i] = -C[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _invert_block(D, inverse, unknowns, scale):
     """Inverse of a block by Gauss and Jordan in order; False at a small pivot."""
     for i in range(BLOCK):
@@ -79,7 +79,7 @@ def _invert_block(D, inverse, unknowns, scale):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def substitute(across, starts, rows, diagonal, factors, x):
     """Solve in place with the factors; x is by slots."""
     for j in range(across):

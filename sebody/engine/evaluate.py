@@ -1,23 +1,15 @@
 """Forces and matrices of all elements in a state, for compiled code."""
 
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
 
 from sebody.engine.links import place_hanging, pull_back
 from sebody.engine.state import FORCES, RENEWED, START
 from sebody.engine.tables import cubic_at
-from sebody.kernels.abi import (
-    ACCELERATION,
-    ENERGY,
-    POWERS,
-    RESIDUAL,
-    TANGENT,
-    VELOCITY,
-    at,
-    call_kernel,
-    pointer_to,
-)
+from sebody.kernels.abi import at, call_kernel, pointer_to
+from sebody.kernels.layout import ACCELERATION, ENERGY, POWERS, RESIDUAL, TANGENT, VELOCITY
+from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import tangent_operator, turn
 
 
@@ -29,7 +21,7 @@ def _call_function(typingctx, address, t):
     return types.float64(address, t), codegen
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def run_kernels(task, first, last, system, state):
     """Evaluate batches; returns the status of the first element that fails."""
     for b in range(first, last):
@@ -39,7 +31,7 @@ def run_kernels(task, first, last, system, state):
     return 0
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _run_part(task, b, first, count, system, state):
     """Evaluate some elements of a batch."""
     index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
@@ -52,7 +44,7 @@ def _run_part(task, b, first, count, system, state):
          at(J, system.at_J[b] + first * width * width), state.work, state.energy))
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def set_loads(system, loads, t):
     """Amplitudes of the items and their rates at a time."""
     for k in range(system.functions.shape[0]):
@@ -65,7 +57,7 @@ def set_loads(system, loads, t):
                                 if system.functions[k, i] != 0 else 0.0)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def move_prescribed(system, state):
     """Motion of the prescribed coordinates; of rotations the increment of the step."""
     loads, old = state.loads, state.loads_old
@@ -83,7 +75,7 @@ def move_prescribed(system, state):
         state.a[i] += factor * loads[item + 2]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def turn_rotations(system, state):
     """Rotations from their increments of the step."""
     places, dq, q = pointer_to(system.rotation_at), pointer_to(state.dq), pointer_to(state.q)
@@ -96,7 +88,7 @@ def turn_rotations(system, state):
         place_hanging(system.links, state.q, state.v, state.a, state.R)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def set_tangent_operators(system, state):
     """``T(dTheta)`` of the rotation increments, for the columns of the matrix."""
     for r in range(system.rotation_at.size):
@@ -107,7 +99,7 @@ def set_tangent_operators(system, state):
                                                 state.dq[at + 2])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def assemble(level, system, state, residual):
     """Sum of the element forces in `residual`; element matrices, see `matrix` for their sum.
 
@@ -129,7 +121,7 @@ def assemble(level, system, state, residual):
     return 0
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def sum_forces(system, state, residual):
     """Sum of the element forces, those on rigid links pulled back."""
     for i in range(residual.size):
@@ -141,7 +133,7 @@ def sum_forces(system, state, residual):
         pull_back(system.links, state.q, state.R, residual)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _find_moved(system, state, limit):
     """Which elements the last correction moved; it moved all others by less than `limit`."""
     k = first = 0
@@ -158,7 +150,7 @@ def _find_moved(system, state, limit):
         first += system.count[b]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _run_moved(system, state):
     """Forces of the elements that moved; those of the others are kept."""
     first = 0                   # of the elements, for `moved`
@@ -179,7 +171,7 @@ def _run_moved(system, state):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def assemble_moved(system, state, limit):
     """Sum of the forces, new ones of the elements that moved by more than a share of `limit`."""
     _find_moved(system, state, limit)
@@ -188,7 +180,7 @@ def assemble_moved(system, state, limit):
     return status
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def take_rates(system, state):
     """Residuals of the constraints' rates in place of those of the constraints.
 
@@ -209,7 +201,7 @@ def take_rates(system, state):
     return status
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def to_body_axes(system, frames, vector, back):
     """Turn the free positions of a vector into body axes, or back."""
     turned, spatial = pointer_to(system.turned), system.dimension[0] == 3
@@ -232,7 +224,7 @@ def to_body_axes(system, frames, vector, back):
             p[2] = R[2] * x + R[5] * y + R[8] * z
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def set_powers(system, state):
     """Rate of work of the items in the current state."""
     if state.powers.size == 0:
@@ -246,7 +238,7 @@ def set_powers(system, state):
         add_prescribed_powers(system, state)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def add_prescribed_powers(system, state):
     """What moves coordinates in a prescribed way bears the forces on them."""
     run_kernels(RESIDUAL, 0, system.address.size, system, state)

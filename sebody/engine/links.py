@@ -11,11 +11,11 @@ acceleration are not: of order h in an iteration matrix, nothing in a converged 
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from sebody.engine.arrays import Arrays
 from sebody.kernels.abi import at, pointer_to
+from sebody.kernels.pipeline import compiled
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class Links(Arrays):
     arm_entries: NDArray
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def place_hanging(links, q, v, a, R):
     """Positions, velocities and accelerations at the ends of the links."""
     spatial = links.arm_vectors.shape[1] == 3
@@ -69,7 +69,7 @@ def place_hanging(links, q, v, a, R):
                 a[x + 1] += a[c] * s - v[c] * v[c] * t
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _place_in_space(R, r, c, x, q, v, a):
     u, w = _cross(v[c], v[c + 1], v[c + 2], r[0], r[1], r[2]), _cross(
         a[c], a[c + 1], a[c + 2], r[0], r[1], r[2])
@@ -81,18 +81,18 @@ def _place_in_space(R, r, c, x, q, v, a):
         a[x + i] += f * (w[0] + z[0]) + g * (w[1] + z[1]) + h * (w[2] + z[2])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _cross(a, b, c, x, y, z):
     return b * z - c * y, c * x - a * z, a * y - b * x
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _turned(angle, r):
     c, s = np.cos(angle), np.sin(angle)
     return c * r[0] - s * r[1], s * r[0] + c * r[1]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def pull_back(links, q, R, residual):
     """Add the forces at the ends of the links to those on root and rotations."""
     spatial = links.arm_vectors.shape[1] == 3
@@ -112,14 +112,14 @@ def pull_back(links, q, R, residual):
                 residual[c] += s * residual[x + 1] - t * residual[x]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _in_body(R, f, x):
     return (R[0] * f[x] + R[3] * f[x + 1] + R[6] * f[x + 2],
             R[1] * f[x] + R[4] * f[x + 1] + R[7] * f[x + 2],
             R[2] * f[x] + R[5] * f[x + 1] + R[8] * f[x + 2])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
     """Add the matrix J of an element with links, its rows and columns replaced."""
     w, wide = links.elements[k, 1], links.elements[k, 2]
@@ -144,7 +144,7 @@ def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
         matrix[links.entries[entry + i]] += whole[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
     """Columns, then rows, of a hanging position, given to root and rotations."""
     d = links.arm_vectors.shape[1]
@@ -165,7 +165,7 @@ def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
                         target[(to + j) * wide + c] += g * source[(first + i) * wide + c]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _replacement(links, b, part, column, frames, q, rotations, operators, G):
     """Derivative of a hanging position by its root (part 0) or the rotation of an arm.
 
@@ -195,7 +195,7 @@ def _replacement(links, b, part, column, frames, q, rotations, operators, G):
     return 3
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def add_second_order(links, place, q, rotations, operators, forces, matrix):
     """Change of the pulled-back moments as the arms turn and the forces stay."""
     d = links.arm_vectors.shape[1]

@@ -8,7 +8,6 @@ matrix is kept in body axes and reused until convergence asks for a new one.
 """
 
 import numpy as np
-from numba import njit
 
 from sebody.engine.evaluate import (
     assemble,
@@ -79,6 +78,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.step_control import SHORTEST, accurate, choose_step, go_on, write_between
 from sebody.kernels.abi import at, pointer_to
+from sebody.kernels.pipeline import compiled
 
 MAX_ITERATIONS = 12
 YOUNG = 3               # steps with new matrices that tell how fast the iteration can be
@@ -94,7 +94,7 @@ QUICK = 0.05            # contraction so good needs no acceleration
 MEMORY = 0.99           # for the size of the accelerations, a step
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def begin_step(system, state, scheme):
     """Remember the accepted state, predict the next one."""
     h = state.clock[CURRENT_STEP]
@@ -124,7 +124,7 @@ def begin_step(system, state, scheme):
     state.clock[LAST_NORM] = 0.0
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def set_coefficients(state, scheme, h):
     """Derivatives of acceleration and velocity by the increment."""
     state.coefficients[0] = (1 - scheme.alpha_m) / ((1 - scheme.alpha_f) * scheme.beta * h * h)
@@ -134,7 +134,7 @@ def set_coefficients(state, scheme, h):
     state.coefficients[4] = 1.0
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def apply_correction(system, state, scheme, mixed):
     """Add the solved correction; returns 1 converged, 0 go on, -1 new matrix, -2 give up."""
     n, h = system.diagonal.size, state.clock[CURRENT_STEP]
@@ -190,7 +190,7 @@ def apply_correction(system, state, scheme, mixed):
     return -1 if rate > POOR or np.log(target / norm) / np.log(rate) > min(price, left) else 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def accelerate(state, n, norm):
     """Anderson's mixing with the last correction; returns the norm of what is left to iterate.
 
@@ -215,13 +215,13 @@ def accelerate(state, n, norm):
     return norm
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def next_matrix(system, state):
     """First the bodies' old matrices in their new places, where that helps, then new ones."""
     return TURNED if system.linked[0] == 1 and state.control[FRESH] == 0 else RENEWED
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def accept(system, state, record):
     """End a converged step: rotations stay orthogonal, work of the loads, output."""
     clock, control = state.clock, state.control
@@ -241,7 +241,7 @@ def accept(system, state, record):
         go_on_grid(state, record)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def go_on_grid(state, record):
     """Time and length of the next step where steps are parts of a grid, output on it."""
     clock, control = state.clock, state.control
@@ -259,7 +259,7 @@ def go_on_grid(state, record):
     clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def watch_age(state):
     """Ask for new matrices once the old ones have cost as many extra iterations as these would.
 
@@ -278,7 +278,7 @@ def watch_age(state):
         control[WANTED] = RENEWED
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def add_work(system, state, h):
     """Work of the items over a step, by the trapezoidal rule."""
     for k in range(state.powers.size):
@@ -291,7 +291,7 @@ def add_work(system, state, h):
         state.loads_old[k] = state.loads[k]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _orthogonalize(R):
     """One Newton step ``R (3 I - R^T R) / 2`` towards the nearest rotation."""
     for i in range(3):
@@ -309,7 +309,7 @@ def _orthogonalize(R):
                 R[3 * j + k] -= 0.5 * dot * x
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def write_record(state, record):
     """Store the accepted state."""
     k = state.control[RECORDED]
@@ -319,7 +319,7 @@ def write_record(state, record):
     state.control[RECORDED] = k + 1
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def back(state):
     """Back to the accepted state."""
     for i in range(state.q.size):       # loops: assigned slices compile slowly
@@ -336,7 +336,7 @@ def back(state):
     state.clock[CONTRACTION] = 0.95     # nothing is known of the next attempt
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def cut_step(state, reason):
     """Half the step; False when it cannot be cut further."""
     clock, control = state.clock, state.control
@@ -351,14 +351,14 @@ def cut_step(state, reason):
     return (1 << control[LEVEL]) <= FINEST
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def swap(a, b):
     """Exchange the contents of two vectors."""
     for i in range(a.size):
         a[i], b[i] = b[i], a[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def advance(system, state, record, scheme, last_grid, chunk, dense):
     """Run until `last_grid`, for at most `chunk` steps, or until Python is asked for something."""
     control, clock = state.control, state.clock

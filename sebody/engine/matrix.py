@@ -1,19 +1,19 @@
 """The iteration matrix in compiled code: sum of the element matrices, scales, factors, solution."""
 
 import numpy as np
-from numba import njit
 
 from sebody.engine import elimination
 from sebody.engine.links import add_expanded, add_second_order
 from sebody.engine.state import FLOOR, PIVOTED, RENEWED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
+from sebody.kernels.pipeline import compiled
 
 SUMMAND = 5             # numbers of an element in System.summands
 RELAXATION = 1e-7       # of redundant constraints, in the scaled iteration matrix alone
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def sum_matrices(system, state, forces):
     """The matrix from the element matrices, which stay as they are; links need the forces."""
     for k in range(state.matrix.size):
@@ -27,7 +27,7 @@ def sum_matrices(system, state, forces):
                          state.matrix)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _sum_element(system, state, element):
     """Add an element matrix, positions turned to the axes they are solved for in."""
     summand = at(pointer_to(system.summands), SUMMAND * element)
@@ -49,7 +49,7 @@ def _sum_element(system, state, element):
         matrix[entries[k]] += own[k]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _product_row(to, own, block, i):
     """Row of ``to^T own``, of frames that may be global axes."""
     if block[3] < 0:
@@ -61,7 +61,7 @@ def _product_row(to, own, block, i):
             x * own[2] + y * own[5] + z * own[8])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _turn_block(block, dimension, J, frames):
     """Rows and columns of a position in an element matrix, to the axes it is solved for in."""
     width, row = block[1], block[2]
@@ -82,7 +82,7 @@ def _turn_block(block, dimension, J, frames):
                 p[2 * step] = g * x + h * y + k * z
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def equilibrate(system, state):
     """Scales that give the matrix a unit diagonal and unit constraint rows: free of units and h."""
     n = system.diagonal.size
@@ -107,7 +107,7 @@ def equilibrate(system, state):
     state.clock[FLOOR] = 8.0 * 2.2e-16 * np.sqrt(floor)     # what rounding of positions leaves
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def relax(system, state):
     """Make the matrix of redundant constraints regular.
 
@@ -119,7 +119,7 @@ def relax(system, state):
             state.matrix[system.diagonal[i]] -= RELAXATION * state.weight[i] * state.weight[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def invert_dense(system, state, n):
     """Inverse of a small system, by columns, scales included; False if it is singular."""
     dense = np.empty((n, n))
@@ -141,7 +141,7 @@ def invert_dense(system, state, n):
     return size * inverse_size < 1e16 * n
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def renew(system, state, level, dense):
     """Sum and factorize; False if a small matrix is singular, PIVOTED and the sum at small pivots.
 
@@ -167,7 +167,7 @@ def renew(system, state, level, dense):
     return True
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def solve(system, state, dense):
     """Correction from the residual."""
     if dense:
@@ -178,7 +178,7 @@ def solve(system, state, dense):
         _substitute(system, state)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _substitute(system, state):
     n, unknowns, x = (system.diagonal.size, pointer_to(system.slot_unknowns),
                       pointer_to(state.solution))

@@ -5,7 +5,6 @@ needs a new matrix, worth many iterations: steps stay until much is to be gained
 """
 
 import numpy as np
-from numba import njit
 
 from sebody.engine.links import place_hanging
 from sebody.engine.state import (
@@ -22,6 +21,7 @@ from sebody.engine.state import (
     TIME,
 )
 from sebody.kernels.abi import pointer_to
+from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import inverse_tangent_coefficients, turn
 
 AIM = 0.5               # of the error that is allowed
@@ -34,7 +34,7 @@ FAR = 1e3               # steps
 SHORTEST = 1e-9         # of an output interval
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def accurate(system, state, scheme):
     """Whether the error of a step is allowed; chooses the length of the next attempt.
 
@@ -70,7 +70,7 @@ def accurate(system, state, scheme):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def choose_step(system, state):
     """The length of a step: as the error asks, but corners of the loads are met exactly."""
     clock, control = state.clock, state.control
@@ -86,7 +86,7 @@ def choose_step(system, state):
     clock[CURRENT_STEP] = h
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def go_on(system, state):
     """Time after an accepted step."""
     clock, control = state.clock, state.control
@@ -97,7 +97,7 @@ def go_on(system, state):
             clock[TIME] = corner
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def write_between(system, state, record, last_grid):
     """Output on the grid within the last step."""
     clock, control = state.clock, state.control
@@ -113,7 +113,7 @@ def write_between(system, state, record, last_grid):
             control[RECORDED] += 1
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _write_row(system, state, row, t, s, h):
     """The state at a share `s` of the last step: cubics through values and rates at its ends."""
     row[:] = state.now
@@ -143,7 +143,7 @@ def _write_row(system, state, row, t, s, h):
         place_hanging(system.links, q, v, a, R)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _cubic(s, start, rate, end, end_rate):
     """Hermite's cubic; rates are those by the share `s`."""
     d = end - start
@@ -151,7 +151,7 @@ def _cubic(s, start, rate, end, end_rate):
                                     + s * (rate + end_rate - 2.0 * d)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _rate_of_increment(x, y, z, p, q, r):
     """``T^-1`` of a rotation increment times an angular velocity."""
     e = inverse_tangent_coefficients(x * x + y * y + z * z)[0]

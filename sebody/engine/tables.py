@@ -1,9 +1,9 @@
 """Tables of loads and drives in compiled code."""
 
-from numba import njit
+from sebody.kernels.pipeline import compiled
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def cubic_at(times, cubics, first, last, t, out, at):
     """Value and rates at t of the cubics `first` to `last`; held outside."""
     out[at + 1], out[at + 2] = 0.0, 0.0

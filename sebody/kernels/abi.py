@@ -1,7 +1,7 @@
 """The one signature of every compiled kernel, and how the time loop calls it.
 
 A kernel is reached through its address: a call costs a few nanoseconds and the loop's cache does
-not depend on which kernels a scene uses.
+not depend on which kernels a scene uses. What the arguments hold is in `sebody.kernels.layout`.
 
 ===============  =================================================================================
 argument         meaning
@@ -11,37 +11,28 @@ task             RESIDUAL, TANGENT (residual and matrix), ENERGY, or VELOCITY an
 count            number of elements in the batch
 stride           length of an index row
 width            number n of unknowns of an element (coordinates, then multipliers)
-index            rows: offset into constants, frame, item, ids of rotations, ids of unknowns; an
-                 item is something that does work: load, damper, drive
-constants        one flat row per body type; matrices by padded columns, see `padded`
-q, R             coordinates (positions, modes, multipliers; rotations' step increments), rotations
-v, a             velocities and accelerations of the coordinates
-reference        frames of the last converged step, (frames, 9)
-frames           frames of the current iterate, (frames, 9); superelements write theirs
-T                tangent operators of the step increments of rotations, (rotations, 9)
-loads            of every item its amplitude now, and the two rates of that
-coefficients     c_mass, c_rate, c_place, c_geo, c_constraint of the matrix; gravity (3)
-g, J             element blocks: forces (count, n), matrices (count, n, n)
-work             scratch memory, WORK_ROWS padded rows
-energy           sums: kinetic, strain, momentum (3), moment of momentum (3), potential; then the
-                 power of every item
 ===============  =================================================================================
-
-``J = c_mass dG/da + c_rate dG/dv + c_place dG/dq T``: rotations vary multiplicatively, and T
-turns the variation of the step's increment into that of the rotation.
 """
 
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
 
-RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
-HEADER = 3          # integers of an index row before the ids
-LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
-POTENTIAL, POWERS = 8, 9      # among the energies; powers are the last
+from sebody.kernels.layout import (  # noqa: F401  (kernels take them from here)
+    ACCELERATION,
+    ARGUMENTS,
+    ENERGY,
+    HEADER,
+    LANES,
+    POWERS,
+    RESIDUAL,
+    TANGENT,
+    VELOCITY,
+)
+from sebody.kernels.pipeline import compiled
 
 
-@njit(cache=True)
+@compiled
 def padded(n):
     """Length of a column of n numbers in a kernel's matrices: whole vectors."""
     return (n + LANES - 1) // LANES * LANES
@@ -67,8 +58,8 @@ def pointer_to(typingctx, array):
 
 _floats = types.CPointer(types.float64)
 _ints = types.CPointer(types.int64)
-SIGNATURE = types.int64(types.int64, types.int64, types.int64, types.int64, _ints,
-                        *(_floats,) * 14)
+SIGNATURE = types.int64(*(types.int64,) * 4, *(
+    {"int64": _ints, "float64": _floats}[kind] for _, kind, _ in ARGUMENTS))
 
 
 @intrinsic

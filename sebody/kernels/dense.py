@@ -1,23 +1,14 @@
 """Small dense products the kernels and the loop call."""
 
-import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
-from numpy.typing import NDArray
 
-from sebody.kernels.abi import LANES, padded
+from sebody.kernels.layout import LANES
+from sebody.kernels.pipeline import compiled
 
 _UNROLLED = 2       # columns at a time: hides the latency of one sum
-
-
-def padded_columns(matrix: NDArray) -> NDArray:
-    """Columns of a matrix one after the other, each filled with zeros to whole vectors."""
-    height, width = matrix.shape
-    columns = np.zeros((width, padded(height)))
-    columns[:, :height] = matrix.T
-    return columns.ravel()
 
 
 @intrinsic
@@ -121,7 +112,7 @@ def _broadcast(builder, number, vector):
     return builder.shuffle_vector(lane, undefined, lanes)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def inverse_3(a, b, c, d, e, f, g, h, i):
     """Inverse of a 3x3 matrix, row by row, by cofactors."""
     A, B, C = e * i - f * h, f * g - d * i, d * h - e * g

@@ -6,9 +6,8 @@ or NO_FRAME where the search does not end.
 
 import math
 
-from numba import njit
-
 from sebody.kernels.dense import inverse_3
+from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import (
     NEAR_PI,
     inverse_tangent_coefficients,
@@ -22,7 +21,7 @@ HALF_TURN = 1
 NO_FRAME = 2
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def converged_mean(count, nodes, alpha, R, frame, psi):
     """The rotation with ``sum alpha_j psi_j = 0``, by Newton from the frame of the last iterate."""
     if count == 2 and _mean_of_two(nodes, alpha, R, frame, psi):
@@ -44,7 +43,7 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
     return NO_FRAME
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _mean_of_two(nodes, alpha, R, frame, psi):
     """Mean of two rotations: a point of the shortest way between them, in closed form.
 
@@ -67,7 +66,7 @@ def _mean_of_two(nodes, alpha, R, frame, psi):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _mean_step(count, alpha, psi, x, y, z):
     """``B^-1 (x, y, z)`` with ``B = sum alpha_j T^-T(psi_j)``."""
     xx = xy = xz = yx = yy = yz = zx = zy = zz = 0.0
@@ -87,7 +86,7 @@ def _mean_step(count, alpha, psi, x, y, z):
     return xx * x + xy * y + xz * z, yx * x + yy * y + yz * z, zx * x + zy * y + zz * z
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def weighted_mean(count, nodes, alpha, R, reference, frame, beta, psi):
     """The paper's mean (15)-(16) of the rotation increments since the reference frame."""
     if relative_rotations(count, nodes, R, reference, beta) != 0:
@@ -101,7 +100,7 @@ def weighted_mean(count, nodes, alpha, R, reference, frame, beta, psi):
     return relative_rotations(count, nodes, R, frame, psi)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def planar_mean(count, alpha, angles, frame, psi):
     """Weighted mean of angles; the frame is its rotation about z."""
     mean = 0.0
@@ -115,7 +114,7 @@ def planar_mean(count, alpha, angles, frame, psi):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def best_fit(count, fit, X, alpha, x, frame):
     """The rotation with ``sum w_j X_j x R0^T (x_j - x0) = 0``, by Newton from the last iterate."""
     cx = cy = cz = 0.0
@@ -150,7 +149,7 @@ def best_fit(count, fit, X, alpha, x, frame):
     return NO_FRAME
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz):
     """Turn towards the best fit, and whether it is a minimum that is being approached.
 
@@ -170,7 +169,7 @@ def _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz):
     return mx / size, my / size, mz / size, False
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def planar_fit(count, fit, X, alpha, x, frame):
     """The rotation of best fit in a plane, in closed form."""
     cx = cy = 0.0
@@ -191,7 +190,7 @@ def planar_fit(count, fit, X, alpha, x, frame):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def planar_relative_angles(count, angles, frame, psi):
     """Angles of the nodes in a frame, between -pi and pi."""
     mean = math.atan2(frame[3], frame[0])
@@ -203,7 +202,7 @@ def planar_relative_angles(count, angles, frame, psi):
 
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _wrapped(angle):
     """The angle less full turns, between -pi and pi."""
     return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)

@@ -5,6 +5,10 @@ variable has one type, so single static assignments are left to LLVM, and a sum 
 not be looked up among NumPy's functions two thousand times.
 """
 
+from collections.abc import Callable
+from functools import partial
+
+from numba import njit
 from numba.core import types
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, register_pass
@@ -58,3 +62,10 @@ class KernelPasses(CompilerBase):
             manager.add_pass(one, one.__name__)
         manager.finalize()
         return [manager]
+
+
+def compiled(function: Callable | None = None, **options) -> Callable:
+    """Compile a function of the runtime, and keep what was compiled."""
+    if function is None:
+        return partial(compiled, **options)
+    return njit(cache=True, error_model="numpy", **options)(function)

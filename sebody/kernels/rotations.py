@@ -5,12 +5,12 @@ Rotation matrices are nine numbers in row-major order.
 
 import math
 
-from numba import njit
+from sebody.kernels.pipeline import compiled
 
 NEAR_PI = -0.98     # cosine beyond which the logarithm of a relative rotation is refused
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def stumpff(k, s):
     """``c_k(s) = sum_j (-s)^j / (k + 2j)!``; 24 terms serve ``0 <= s <= 10`` to rounding."""
     term = 1.0
@@ -25,7 +25,7 @@ def stumpff(k, s):
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def stumpff_23(s):
     """``c_2, c_3``: nested series for small arguments, closed forms where these are exact."""
     if s < 0.25:
@@ -39,14 +39,14 @@ def stumpff_23(s):
     return 2.0 * half * half / s, (t - math.sin(t)) / (s * t)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def stumpff_2345(s):
     """``c_2, c_3, c_4, c_5``."""
     c4, c5 = stumpff(4, s), stumpff(5, s)
     return 0.5 - s * c4, 1.0 / 6.0 - s * c5, c4, c5
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def inverse_tangent_coefficients(s):
     """``e`` and ``de/ds`` of ``T^-1 = I + skew/2 + e skew^2``, ``e = (c_3 - 2 c_4)/(2 c_2)``."""
     if s < 0.25:        # series in Bernoulli numbers: B_2k / (2k)!
@@ -64,7 +64,7 @@ def inverse_tangent_coefficients(s):
     return top / (2.0 * c2), (d_top - top * d_c2 / c2) / (2.0 * c2)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def tangent_operator(x, y, z):
     """``T(psi)``, row by row: ``Omega = T(psi) psidot``."""
     c2, c3 = stumpff_23(x * x + y * y + z * z)
@@ -73,7 +73,7 @@ def tangent_operator(x, y, z):
             c2 * y + c3 * x * z, c3 * y * z - c2 * x, 1 - c3 * (x * x + y * y))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def exp_map(x, y, z):
     """Rotation matrix of a rotation vector, row by row."""
     s = x * x + y * y + z * z
@@ -84,7 +84,7 @@ def exp_map(x, y, z):
             c2 * x * z - c1 * y, c2 * y * z + c1 * x, 1 - c2 * (x * x + y * y))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
     """Rotation vector of a rotation matrix less than `NEAR_PI` from half a turn, and its cosine."""
     x, y, z = 0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)
@@ -102,7 +102,7 @@ def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
     return ratio * x, ratio * y, ratio * z, cosine
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def turned(R, first, x, y, z):
     """``R exp(psi)`` of the rotation at `first` of R, row by row."""
     a, b, c, d, e, f, g, h, i = exp_map(x, y, z)
@@ -114,14 +114,14 @@ def turned(R, first, x, y, z):
             s * a + t * d + u * g, s * b + t * e + u * h, s * c + t * f + u * i)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def turn(R, first, x, y, z, out, to):
     """``out = R exp(psi)``: the rotation at `first` of R, turned, to `to` of out."""
     (out[to], out[to + 1], out[to + 2], out[to + 3], out[to + 4], out[to + 5], out[to + 6],
      out[to + 7], out[to + 8]) = turned(R, first, x, y, z)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def relative_log(A, first, B, second):
     """Rotation vector and cosine of ``A^T B`` of two stored rotations."""
     a0, a1, a2, a3, a4, a5, a6, a7, a8 = (
@@ -137,7 +137,7 @@ def relative_log(A, first, B, second):
                    a2 * b2 + a5 * b5 + a8 * b8)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def relative_rotations(count, nodes, R, frame, psi):
     """``psi_j = log(R0^T R_j)``; returns 1 where one is too near half a turn."""
     for j in range(count):

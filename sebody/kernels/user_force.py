@@ -12,7 +12,9 @@ from numba.core.errors import NumbaError
 from numba.extending import intrinsic
 
 from sebody.errors import InputError
-from sebody.kernels.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import ENERGY, HEADER, POWERS, TANGENT
+from sebody.kernels.pipeline import compiled
 
 PLANAR = False
 N_ROTATIONS = 0
@@ -27,7 +29,7 @@ _floats = types.CPointer(types.float64)
 FUNCTION = types.void(types.int64, types.float64, _floats, _floats, _floats)
 
 
-def compiled(name: str, function: Callable[..., None]) -> object:
+def compile_force(name: str, function: Callable[..., None]) -> object:
     """A user's ``function(t, x, v, force)`` as a C function of pointers.
 
     Raises
@@ -56,7 +58,7 @@ def _call(typingctx, address, n, t, x, v, force):
     return types.void(types.int64, types.int64, types.float64, x, v, force), codegen
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _evaluate(address, n, t, x, v, force):
     for i in range(n):
         force[i] = 0.0

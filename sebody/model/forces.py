@@ -72,13 +72,13 @@ class Forces:
         InputError
             A function that cannot be compiled, or no nodes.
         """
-        from sebody.kernels.user_force import compiled
+        from sebody.kernels.user_force import compile_force
 
         triplets = tuple(self._triplet(self._known(n), "position") for n in nodes)
         if not triplets:
             raise InputError(f"user force {name!r} has no nodes: give those it acts on")
         self.loads.append(Element(name, "user_force", triplets, np.zeros(1), 0, clock(),
-                                  function=compiled(name, function)))
+                                  function=compile_force(name, function)))
 
     def spring(self, node: Node | str, to: Node | str, stiffness: float = 0.0,
                damping: float = 0.0, length: float | None = None, cubic: float = 0.0) -> None:

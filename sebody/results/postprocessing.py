@@ -6,13 +6,13 @@ All of it is evaluated for the recorded states, after the loop.
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from sebody.engine.evaluate import assemble, run_kernels, set_loads
 from sebody.engine.state import FORCES, RATES
 from sebody.errors import InputError
-from sebody.kernels.abi import ENERGY
+from sebody.kernels.layout import ENERGY
+from sebody.kernels.pipeline import compiled
 
 if TYPE_CHECKING:
     from sebody.results.result import Result
@@ -75,7 +75,7 @@ def _over_records(result: "Result", what: str, evaluate, *out: NDArray) -> None:
         raise InputError(f"the {what} of a recorded state cannot be evaluated")
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _evaluate_energies(system, state, rows, out):
     for k in range(len(rows)):
         state.now[:] = rows[k]
@@ -87,7 +87,7 @@ def _evaluate_energies(system, state, rows, out):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _evaluate_forces(system, state, rows, elements, sums):
     for k in range(len(rows)):
         state.now[:] = rows[k]
@@ -99,7 +99,7 @@ def _evaluate_forces(system, state, rows, elements, sums):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _evaluate_constraints(system, state, rows, out):
     for k in range(len(rows)):
         state.now[:] = rows[k]

@@ -12,7 +12,7 @@ from sebody.assembly.numbering import Numbering
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS, State, recorded_parts
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.abi import POTENTIAL
+from sebody.kernels.layout import POTENTIAL
 from sebody.model.model import Model
 from sebody.model.nodes import Triplet
 from sebody.results.files import check_target

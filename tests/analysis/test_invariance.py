@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from sebody import Model, Simulation, generalized_alpha, simulate
 from sebody.engine import evaluate
 from sebody.fem import Section, frame, straight_beam
-from sebody.kernels.abi import ENERGY
+from sebody.kernels.layout import ENERGY
 from sebody.reduction import craig_bampton
 
 EXACT = generalized_alpha(tolerance=1e-13)

@@ -16,7 +16,8 @@ import numpy as np
 from numba import njit
 
 from sebody import simulate
-from sebody.kernels.abi import ENERGIES, RESIDUAL, TANGENT, call_kernel, padded
+from sebody.kernels.abi import ENERGIES, call_kernel, padded
+from sebody.kernels.layout import RESIDUAL, TANGENT
 from sebody.kernels.loader import load
 from sebody.scenes import hinged_beam, planar_hinged_beam
 from sebody.studies.check import superelements

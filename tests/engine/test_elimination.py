@@ -11,7 +11,8 @@ from sebody.assembly import build as assembly
 from sebody.assembly import elimination_pattern
 from sebody.engine import elimination, state
 from sebody.engine.evaluate import assemble, assemble_moved
-from sebody.kernels.abi import LANES, pointer_to
+from sebody.kernels.abi import pointer_to
+from sebody.kernels.layout import LANES
 from sebody.scenes import chain
 
 

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
 from sebody.engine import evaluate
-from sebody.kernels.abi import ENERGY
+from sebody.kernels.layout import ENERGY
 from sebody.scenes import hinged_beam, slider_crank, spherical_beam_strong, spin_up
 from sebody.scenes.hinged_beam import SECTION, TORQUE
 

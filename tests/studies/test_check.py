@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sebody import InputError
-from sebody.kernels.abi import ACCELERATION, POTENTIAL, POWERS, VELOCITY
+from sebody.kernels.layout import ACCELERATION, POTENTIAL, POWERS, VELOCITY
 from sebody.kernels.loader import load
 from sebody.studies import check
 from sebody.studies.check import elements, states, superelements

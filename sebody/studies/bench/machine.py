@@ -3,15 +3,16 @@
 import time
 
 import numpy as np
-from numba import njit
 
 from sebody.kernels.abi import pointer_to
-from sebody.kernels.dense import columns_times, padded_columns
+from sebody.kernels.dense import columns_times
+from sebody.kernels.layout import padded_columns
+from sebody.kernels.pipeline import compiled
 
 SIZE = 16
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _repeat(times, A, x, out, n):
     for _ in range(times):
         columns_times(pointer_to(A), pointer_to(x), pointer_to(out), n, n)

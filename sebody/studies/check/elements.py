@@ -6,7 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.kernels.abi import ACCELERATION, ENERGY, POTENTIAL, POWERS, RESIDUAL, TANGENT, VELOCITY
+from sebody.kernels.layout import (
+    ACCELERATION,
+    ENERGY,
+    POTENTIAL,
+    POWERS,
+    RESIDUAL,
+    TANGENT,
+    VELOCITY,
+)
 from sebody.studies.check.states import (
     LIMIT,
     STATES,

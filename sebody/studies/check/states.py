@@ -8,12 +8,13 @@ from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
-from sebody.kernels.abi import ENERGY, POWERS, RESIDUAL, TANGENT, call_kernel, padded
+from sebody.kernels.abi import call_kernel, padded
+from sebody.kernels.layout import ENERGY, POWERS, RESIDUAL, TANGENT
+from sebody.kernels.pipeline import compiled
 
 STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))      # sixth-order central differences
 LIMIT = 1e-7
@@ -60,7 +61,7 @@ class Case(NamedTuple):
         return [] if not self.R.size else [first + 3 * j for j in range(self.module.N_ROTATIONS)]
 
 
-@njit(cache=True)
+@compiled
 def _call(address, task, stride, width, index, constants, q, R, v, a, reference, frames, T, loads,
           coefficients, g, J, work, energy):
     return call_kernel(address, task, 1, stride, width, (

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.kernels.abi import ENERGY, POTENTIAL, POWERS, RESIDUAL, TANGENT, padded
-from sebody.kernels.dense import padded_columns
+from sebody.kernels.abi import padded
+from sebody.kernels.layout import ENERGY, POTENTIAL, POWERS, RESIDUAL, TANGENT, padded_columns
 from sebody.studies.check.states import (
     LIMIT,
     STATES,
