@@ -5,7 +5,8 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import NamedTuple
 
-from sebody.analysis.simulation import Scheme, generalized_alpha, hht
+from sebody.analysis.schemes import generalized_alpha, hht
+from sebody.engine.state import Scheme
 from sebody.errors import InputError
 
 # scene: the quantity whose history is compared
