@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import order
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
@@ -91,8 +92,7 @@ def test_second_order_in_the_length_of_the_elements():
     counts = np.array([3, 6, 12])
     errors = [np.linalg.norm(simulate(spun(n, planar=True), 0.01, 15.0)["tip.position"] - finest)
               for n in counts]
-    slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    assert 1.8 < slope < 2.4
+    assert 1.8 < order(1 / counts, errors) < 2.4
 
 
 def test_strong_impulse_against_the_reference():
