@@ -19,31 +19,17 @@ from sebody.engine.evaluate import (
 )
 from sebody.engine.links import place_hanging
 from sebody.engine.matrix import sum_matrices
-from sebody.engine.state import (
-    HALF_TURN,
-    INACCURATE,
-    NO_FRAME,
-    NOT_FINITE,
-    RATES,
-    RENEWED,
-    SLOW,
-    START,
-    State,
-)
+from sebody.engine.state import REASONS, State
 from sebody.engine.system import System
 from sebody.errors import InputError
+from sebody.kernels.layout import ACCELERATION, RESIDUAL, TANGENT, VELOCITY
 from sebody.model.model import Model
 from sebody.model.nodes import Triplet
 
-REASONS = {
-    HALF_TURN: "a node is turned by nearly half a turn against its body's frame",
-    NO_FRAME: "the search for a body's frame did not end",
-    NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
-    SLOW: "Newton's iteration did not converge",
-    INACCURATE: "the error of a step is above the tolerance",
-}
 SMALL = 1e-8            # residuals of constraints, relative to lengths and velocities
 HEAVY = 1e10            # mass that keeps velocities the user gave
+# coefficients of the mass matrix with the constraints
+MASS = {"c_mass": 1.0, "c_rate": 0.0, "c_place": 0.0, "c_geo": 1.0, "c_constraint": 1.0}
 LARGEST = 3000          # unknowns up to which redundant constraints are sorted out
 
 
@@ -68,7 +54,7 @@ def start(model: Model, system: System, numbering: Numbering, state: State) -> S
     move_prescribed(system, state)
     place_hanging(system.links, state.q, state.v, state.a, state.R)
     multipliers = np.flatnonzero(system.is_multiplier)
-    state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
+    state.set_coefficients(**MASS)
     matrix = _matrix(system, state)
     gaps = state.residual[multipliers]
     _check(gaps, np.abs(state.q).max(), "position", multipliers, numbering,
@@ -89,7 +75,7 @@ def _accelerate(system: System, numbering: Numbering, state: State, solver: "_So
     solved = np.arange(numbering.total) < numbering.free
     state.a[solved & moving], state.q[~moving] = 0.0, 0.0
     place_hanging(system.links, state.q, state.v, state.a, state.R)
-    _evaluate(system, state, START)
+    _evaluate(system, state, RESIDUAL, ACCELERATION)
     to_body_axes(system, state.frames, state.residual, False)
     answer = np.zeros(numbering.total)
     answer[:numbering.free] = -solver(state.residual[:numbering.free].copy())
@@ -108,7 +94,7 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
     set_loads(system, state.loads, dt)
     move_prescribed(system, state)
     turn_rotations(system, state)
-    state.coefficients[:5] = (1.0, 0.0, 0.0, 1.0, 1.0)
+    state.set_coefficients(**MASS)
     multipliers = np.flatnonzero(system.is_multiplier)
     _accelerate(system, numbering, state, _Solver(_matrix(system, state), numbering, multipliers))
     later = state.a.copy()
@@ -127,13 +113,13 @@ def assembled(system: System, state: State) -> csc_matrix:
 
 def _matrix(system: System, state: State) -> csc_matrix:
     """The matrix of the present coefficients; leaves the forces in `residual`."""
-    _evaluate(system, state, RENEWED)
+    _evaluate(system, state, TANGENT, TANGENT)
     sum_matrices(system, state, state.residual)
     return assembled(system, state)
 
 
-def _evaluate(system: System, state: State, level: int) -> None:
-    status = assemble(level, system, state, state.residual)
+def _evaluate(system: System, state: State, of_bodies: int, of_others: int) -> None:
+    status = assemble(of_bodies, of_others, system, state, state.residual)
     if status:
         raise InputError(f"the initial state cannot be evaluated: {REASONS[status]}")
 
@@ -185,7 +171,7 @@ def _fit_velocities(model: Model, system: System, numbering: Numbering, state: S
 
 
 def _rates(system: System, state: State, multipliers: NDArray) -> NDArray:
-    _evaluate(system, state, RATES)
+    _evaluate(system, state, RESIDUAL, VELOCITY)
     return state.residual[multipliers]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
-from sebody.engine.state import Scheme, recorded_parts
+from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
 
 if TYPE_CHECKING:
@@ -61,8 +61,7 @@ class Watch:
             self._groups = _grouped(run)
         most = min(max(FEWEST, STATES // max(len(run.model.bodies), 1)), MOST)
         rows = rows[::-(-len(rows) // most)]
-        parts = recorded_parts(run.numbering.total, len(run.numbering.rotations),
-                               len(run.model.bodies), len(run.numbering.histories))
+        parts = run.state.recorded_parts
         for group in self._groups:
             turned, spins = _motion(run.model.planar, group, rows, parts)
             for k in np.flatnonzero(turned > LINEAR):

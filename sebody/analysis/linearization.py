@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csc_matrix
 
-from sebody.analysis.initial_state import REASONS, assembled
+from sebody.analysis.initial_state import assembled
 from sebody.analysis.simulation import Simulation
 from sebody.assembly.numbering import coordinates
 from sebody.engine.evaluate import assemble, to_body_axes
 from sebody.engine.matrix import sum_matrices
-from sebody.engine.state import RENEWED, WANTED
+from sebody.engine.state import REASONS, RENEWED, WANTED
 from sebody.errors import InputError
+from sebody.kernels.layout import TANGENT
 from sebody.results.result import Result
 
 
@@ -121,9 +122,9 @@ def matrix(run: Simulation | Result, mass: float, rate: float, place: float) -> 
     """
     state = run.state
     state.control[WANTED] = RENEWED     # a run that goes on needs its own matrix again
-    state.coefficients[:5] = (mass, rate, place, 1.0, place)
+    state.set_coefficients(c_mass=mass, c_rate=rate, c_place=place, c_geo=1.0, c_constraint=place)
     state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
-    status = assemble(RENEWED, run.system, state, state.residual)
+    status = assemble(TANGENT, TANGENT, run.system, state, state.residual)
     if status:
         raise InputError(f"the state cannot be evaluated: {REASONS[status]}")
     sum_matrices(run.system, state, state.residual)

@@ -1,7 +1,7 @@
 """Stop a run, save it, and go on later as if it had not stopped, bit for bit."""
 
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 from hashlib import sha256
 from pathlib import Path
 from zipfile import BadZipFile
@@ -10,7 +10,7 @@ import numpy as np
 
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
-from sebody.engine.state import PIVOTED, Record, Scheme, State
+from sebody.engine.state import PIVOTED, Scheme, State
 from sebody.errors import InputError
 from sebody.model.model import Model
 from sebody.results.files import check_target
@@ -55,7 +55,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
     for field in fields(State):
         getattr(run.state, field.name)[...] = arrays[field.name]
     run.system.relaxed[:] = arrays["relaxed"]
-    run.records = [Record(arrays["rows"], np.array([run.every]))]
+    run.records = [replace(run.records[0], rows=arrays["rows"])]
     run.seconds = settings["seconds"]
     if run.state.control[PIVOTED]:
         run.factorize()

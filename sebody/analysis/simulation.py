@@ -8,12 +8,12 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from sebody.analysis.initial_state import REASONS, Start, acceleration_rates, assembled, start
+from sebody.analysis.initial_state import Start, acceleration_rates, assembled, start
 from sebody.analysis.limits import Watch
 from sebody.analysis.tolerance import Tolerance
 from sebody.assembly.build import DENSE_LIMIT, build, work_size
 from sebody.assembly.numbering import Numbering, turning
-from sebody.engine import loop
+from sebody.engine.loop import advance
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
@@ -30,6 +30,7 @@ from sebody.engine.state import (
     GRID,
     LARGEST_ERROR,
     REASON,
+    REASONS,
     RECORDED,
     RENEWED,
     SOLVE,
@@ -39,12 +40,12 @@ from sebody.engine.state import (
     Record,
     Scheme,
     State,
-    recorded_parts,
 )
+from sebody.engine.step import write_record
 from sebody.engine.system import System
 from sebody.errors import InputError, SimulationError
 from sebody.kernels.abi import padded
-from sebody.kernels.layout import LANES, POWERS
+from sebody.kernels.layout import COEFFICIENTS, ENERGIES, FIELD, LANES
 from sebody.model.model import Model
 from sebody.results.result import Result
 
@@ -150,12 +151,12 @@ class Simulation:
             self._choose_steps(tolerance.check())
         if self.scheme.stabilized:
             self._offset_accelerations()
-        first = _record(self.state, 1, self.every)
+        first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
-        loop.write_record(self.state, first)
+        write_record(self.state, first)
         self.records.append(first)
         # nothing to do yet: compiles the loop, or reads it from the cache, before time is measured
-        loop.advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
+        advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
 
     @property
     def time(self) -> float:
@@ -176,13 +177,12 @@ class Simulation:
         if last < self.state.control[GRID]:
             raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
         steps = last // self.every - self.state.control[GRID] // self.every
-        record = _record(self.state, int(steps), self.every)
+        record = Record.of(self.state, int(steps), self.every)
         self.state.control[RECORDED] = 0
         code = CHUNK
         while code not in (DONE, FAILED):
             began = time.perf_counter()
-            code = loop.advance(self.system, self.state, record, self.scheme, last, chunk,
-                                self.dense)
+            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
             if code == FACTOR:
                 self.factorize()
             elif code == SOLVE:
@@ -273,19 +273,15 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
     identities = np.tile(np.eye(3).ravel(), max(turns, bodies))
     R, frames = identities[:9 * turns], identities[:9 * bodies]
     items = len(numbering.histories)
-    parts = recorded_parts(total, turns, bodies, items)
-    now = zeros(parts["frames_old"].stop)
-    for name, value in {"q": q, "v": v, "R": R, "frames": frames, "frames_old": frames}.items():
-        now[parts[name]] = value
+    counts = {"items": items, "coordinates": total, "rotations": turns, "bodies": bodies}
     clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
     clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
     clock[CONTRACTION] = 0.95
     control[WANTED] = RENEWED
-    coefficients = zeros(8)
-    coefficients[5:5 + model.dimension] = model.gravity_field
-    return State(
-        now, *[now[parts[name]] for name in ("works", "q", "R", "v", "a", "frames", "frames_old")],
-        aux=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
+    coefficients = zeros(COEFFICIENTS.size(counts))
+    coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
+    state = State.of(
+        counts, aux=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
         v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total), T=R.copy(),
         loads=zeros(3 * items), loads_old=zeros(3 * items), powers=zeros(items),
         powers_old=zeros(items), coefficients=coefficients,
@@ -300,8 +296,7 @@ def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
         scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, padded(n)) if dense else (1, 1)),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
-        energy=zeros(POWERS + items), clock=clock, control=control)
-
-
-def _record(state: State, steps: int, every: int) -> Record:
-    return Record(np.zeros((steps, state.now.size)), np.array([every]))
+        energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
+    state.q[:], state.v[:], state.R[:] = q, v, R
+    state.frames[:] = state.frames_old[:] = frames
+    return state

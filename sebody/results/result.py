@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from sebody.analysis.initial_state import Start
 from sebody.assembly.numbering import Numbering
-from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS, State, recorded_parts
+from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS, State
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import POTENTIAL
+from sebody.kernels.layout import KINETIC, MOMENT, MOMENTUM, POTENTIAL, STRAIN
 from sebody.model.model import Model
 from sebody.model.nodes import Triplet
 from sebody.results.files import check_target
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
 NODE_QUANTITIES = ("position", "rotation", "velocity", "angular_velocity", "acceleration",
                    "reaction", "reaction_moment")
-SYSTEM_QUANTITIES = {"energy.kinetic": 0, "energy.strain": 1, "momentum": slice(2, 5),
-                     "angular_momentum": slice(5, 8), "energy.potential": POTENTIAL}
+SYSTEM_QUANTITIES = {"energy.kinetic": KINETIC, "energy.strain": STRAIN,
+                     "momentum": slice(MOMENTUM, MOMENTUM + 3),
+                     "angular_momentum": slice(MOMENT, MOMENT + 3), "energy.potential": POTENTIAL}
 OUTPUT = "output file", (".npz",)        # what is saved, see `files.check_target`
 CONSTRAINTS = ("constraints.position", "constraints.velocity")
 
@@ -67,10 +68,8 @@ class Result:
                    run.start, warnings=tuple(run.watch.messages))
 
     def recorded(self, name: str) -> NDArray:
-        """History of one of `recorded_parts`, (n, size)."""
-        parts = recorded_parts(self.numbering.total, len(self.numbering.rotations),
-                                    len(self.model.bodies), len(self.numbering.histories))
-        return self.rows[:, parts[name]]
+        """History of a part of `sebody.kernels.layout.RECORD`, (n, size)."""
+        return self.rows[:, self.state.recorded_parts[name]]
 
     @property
     def t(self) -> NDArray:
