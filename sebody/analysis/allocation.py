@@ -19,7 +19,7 @@ from sebody.engine.state import (
 from sebody.engine.system import System
 from sebody.kernels.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
 from sebody.model.model import Model
-from sebody.results.recording import recorded_parts
+from sebody.results.recording import record_counts
 
 SLOW_CONTRACTION = 0.95     # what Newton's iteration is taken to contract by before it was seen
 
@@ -34,19 +34,19 @@ def allocate(model: Model, system: System, numbering: Numbering, h: float, dense
     dense : bool
         Whether the loop keeps an inverse of the iteration matrix.
     """
-    n, total, items = numbering.free, numbering.total, len(numbering.histories)
+    counts = record_counts(numbering)
+    n, total, items = numbering.free, numbering.total, counts["items"]
+    q, v = _start(model, numbering)
+    R = np.tile(np.eye(3).ravel(), counts["rotations"])
     zeros = np.zeros
-    parts = recorded_parts(numbering)
-    now = _start(model, numbering, parts)
-    q, R, v = (now[parts[name]] for name in ("q", "R", "v"))
     clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
     clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
     clock[CONTRACTION] = SLOW_CONTRACTION
     control[WANTED] = RENEWED
-    coefficients = zeros(COEFFICIENTS.size({}))
+    coefficients = zeros(COEFFICIENTS.size(counts))
     coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
-    return State(
-        now, *[now[parts[name]] for name in ("works", "q", "R", "v", "a", "frames", "frames_old")],
+    state = State.of(
+        counts,
         aux=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
         v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total), T=R.copy(),
         loads=zeros(3 * items), loads_old=zeros(3 * items), powers=zeros(items),
@@ -60,13 +60,15 @@ def allocate(model: Model, system: System, numbering: Numbering, h: float, dense
         matrix=zeros(system.rows.size + 1), scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
-        energy=zeros(ENERGIES.size({"items": items})), clock=clock, control=control)
+        energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
+    state.q[:], state.v[:], state.R[:] = q, v, R
+    state.frames[:] = state.frames_old[:] = np.tile(np.eye(3).ravel(), counts["bodies"])
+    return state
 
 
-def _start(model: Model, numbering: Numbering, parts: dict[str, slice]) -> NDArray:
-    """The first row of what is recorded: initial places, unturned rotations and frames."""
-    now = np.zeros(parts["frames_old"].stop)
-    q, v = now[parts["q"]], now[parts["v"]]
+def _start(model: Model, numbering: Numbering) -> tuple[NDArray, NDArray]:
+    """Initial places and velocities of all coordinates."""
+    q, v = np.zeros((2, numbering.total))
     for node in (*model.nodes.values(), *model.grounds):
         for triplet in (node.position, node.rotation):
             if triplet is not None and id(triplet) in numbering.triplets:
@@ -76,9 +78,7 @@ def _start(model: Model, numbering: Numbering, parts: dict[str, slice]) -> NDArr
     for body in model.bodies.values():
         first = numbering.modes[body.name]
         v[first:first + body.body.modes] = body.mode_rates
-    for name in ("R", "frames", "frames_old"):
-        now[parts[name]].reshape(-1, 3, 3)[:] = np.eye(3)
-    return now
+    return q, v
 
 
 def _expansion_size(system: System) -> int:

@@ -1,33 +1,25 @@
-"""Forces and matrices of one state, outside the loop, and the reasons for which there are none."""
+"""Forces and matrices of one state, outside the loop."""
 
 import numpy as np
 from scipy.sparse import csc_matrix
 
 from sebody.engine.evaluate import assemble
 from sebody.engine.matrix import sum_matrices
-from sebody.engine.state import HALF_TURN, INACCURATE, NO_FRAME, NOT_FINITE, RENEWED, SLOW, State
+from sebody.engine.state import REASONS, State
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import COEFFICIENTS, FIELD
-
-REASONS = {
-    HALF_TURN: "a node is turned by nearly half a turn against its body's frame",
-    NO_FRAME: "the search for a body's frame did not end",
-    NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
-    SLOW: "Newton's iteration did not converge",
-    INACCURATE: "the error of a step is above the tolerance",
-}
+from sebody.kernels.layout import TANGENT
 
 
-def evaluate(system: System, state: State, level: int, what: str) -> None:
-    """Assemble what a level of `assemble` asks for; forces go to `state.residual`.
+def evaluate(system: System, state: State, of_bodies: int, of_others: int, what: str) -> None:
+    """Ask kernels of superelements and the others for their tasks; forces go to `state.residual`.
 
     Raises
     ------
     InputError
         The state cannot be evaluated; `what` names it in the message.
     """
-    status = assemble(level, system, state, state.residual)
+    status = assemble(of_bodies, of_others, system, state, state.residual)
     if status:
         raise InputError(f"{what} cannot be evaluated: {REASONS[status]}")
 
@@ -49,10 +41,9 @@ def matrix(system: System, state: State, what: str, *, mass: float, rate: float,
     InputError
         The state cannot be evaluated.
     """
-    state.coefficients[:] = COEFFICIENTS.pack({}, {
-        "c_mass": mass, "c_rate": rate, "c_place": place, "c_geo": 1.0, "c_constraint": constraint,
-        "field": state.coefficients[FIELD:]})
-    evaluate(system, state, RENEWED, what)
+    state.set_coefficients(c_mass=mass, c_rate=rate, c_place=place, c_geo=1.0,
+                           c_constraint=constraint)
+    evaluate(system, state, TANGENT, TANGENT, what)
     sum_matrices(system, state, state.residual)
     return assembled(system, state)
 

@@ -15,9 +15,10 @@ from sebody.engine.evaluate import (
     turn_rotations,
 )
 from sebody.engine.links import place_hanging
-from sebody.engine.state import RATES, START, State
+from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
+from sebody.kernels.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.model.model import Model
 from sebody.results.recording import Start
 
@@ -60,7 +61,7 @@ def _accelerate(system: System, numbering: Numbering, state: State, solver: Solv
     solved = np.arange(numbering.total) < numbering.free
     state.a[solved & moving], state.q[~moving] = 0.0, 0.0
     place_hanging(system.links, state.q, state.v, state.a, state.R)
-    evaluate(system, state, START, WHAT)
+    evaluate(system, state, RESIDUAL, ACCELERATION, WHAT)
     to_body_axes(system, state.frames, state.residual, False)
     answer = np.zeros(numbering.total)
     answer[:numbering.free] = -solver(state.residual[:numbering.free].copy())
@@ -140,5 +141,5 @@ def _fit_velocities(model: Model, system: System, numbering: Numbering, state: S
 
 
 def _rates(system: System, state: State, multipliers: NDArray) -> NDArray:
-    evaluate(system, state, RATES, WHAT)
+    evaluate(system, state, RESIDUAL, VELOCITY, WHAT)
     return state.residual[multipliers]

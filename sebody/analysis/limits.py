@@ -13,8 +13,9 @@ from scipy.linalg import eigh, null_space
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
+from sebody.kernels.layout import RECORD
 from sebody.model.model import Model, Superelement
-from sebody.results.recording import recorded_parts
+from sebody.results.recording import record_counts
 
 LINEAR = 0.3            # rad, local rotation up to which stiffness is linear, see README
 STATES = 3000           # of bodies that are looked at in a stretch of a run,
@@ -65,7 +66,7 @@ class Watch:
             self._groups = _grouped(model, numbering)
         most = min(max(FEWEST, STATES // max(len(model.bodies), 1)), MOST)
         rows = rows[::-(-len(rows) // most)]
-        parts = recorded_parts(numbering)
+        parts = RECORD.slices(record_counts(numbering))
         for group in self._groups:
             turned, spins = _motion(model.planar, group, rows, parts)
             for k in np.flatnonzero(turned > LINEAR):

@@ -9,14 +9,14 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
 from sebody.analysis.allocation import allocate
-from sebody.analysis.evaluation import REASONS, assembled
+from sebody.analysis.evaluation import assembled
 from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance
 from sebody.assembly.build import DENSE_LIMIT, build
 from sebody.assembly.numbering import turning
-from sebody.engine import loop
+from sebody.engine.loop import advance
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
@@ -29,13 +29,14 @@ from sebody.engine.state import (
     GRID,
     LARGEST_ERROR,
     REASON,
+    REASONS,
     RECORDED,
     SOLVE,
     TIME,
     Record,
     Scheme,
-    State,
 )
+from sebody.engine.step import write_record
 from sebody.errors import InputError, SimulationError
 from sebody.model.model import Model
 from sebody.results.recording import Start
@@ -96,12 +97,12 @@ class Simulation:
             self._choose_steps(tolerance.check())
         if self.scheme.stabilized:
             self._offset_accelerations()
-        first = _record(self.state, 1, self.every)
+        first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
-        loop.write_record(self.state, first)
+        write_record(self.state, first)
         self.rows.append(first.rows)
         # nothing to do yet: compiles the loop, or reads it from the cache, before time is measured
-        loop.advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
+        advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
 
     @property
     def time(self) -> float:
@@ -122,13 +123,12 @@ class Simulation:
         if last < self.state.control[GRID]:
             raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
         steps = last // self.every - self.state.control[GRID] // self.every
-        record = _record(self.state, int(steps), self.every)
+        record = Record.of(self.state, int(steps), self.every)
         self.state.control[RECORDED] = 0
         code = CHUNK
         while code not in (DONE, FAILED):
             began = time.perf_counter()
-            code = loop.advance(self.system, self.state, record, self.scheme, last, chunk,
-                                self.dense)
+            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
             if code == FACTOR:
                 self.factorize()
             elif code == SOLVE:
@@ -200,7 +200,3 @@ def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              tolerance: Tolerance | None = None) -> Result:
     """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
     return Simulation(model, h, scheme, output_every, tolerance).run_to(t_end, progress).result()
-
-
-def _record(state: State, steps: int, every: int) -> Record:
-    return Record(np.zeros((steps, state.now.size)), np.array([every]))

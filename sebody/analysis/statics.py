@@ -8,11 +8,10 @@ from sebody.analysis.simulation import Simulation
 from sebody.analysis.sparse import Scaled
 from sebody.engine.evaluate import set_loads, to_body_axes, turn_rotations
 from sebody.errors import InputError, SimulationError
-from sebody.kernels.layout import FIELD, RECORD
+from sebody.kernels.layout import FIELD, RECORD_T
 from sebody.model.model import Model
 from sebody.results.result import Result
 
-TIME_AT = RECORD.first("t")
 ITERATIONS = 25
 SMALLEST = 1.0 / 1024       # share of the load, below which its step is not cut
 PUSH = 1e-6                 # of the forces: that acts on what nothing holds
@@ -63,7 +62,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         state.loads[:], state.coefficients[FIELD:] = target * loads, target * field
         if _balance(run, tolerance, turning.times(np.sqrt(target))):
             share = target
-            state.now[TIME_AT] = share
+            state.now[RECORD_T] = share
             rows.append(state.now.copy())
             continue
         state.now[:] = kept

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.engine.evaluate import assemble, run_kernels, set_loads
-from sebody.engine.state import FORCES, RATES, State
+from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import ENERGY
+from sebody.kernels.layout import ENERGY, RECORD_T, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
 
 
@@ -90,8 +90,8 @@ def _evaluate_energies(system, state, rows, out):
 def _evaluate_forces(system, state, rows, elements, sums):
     for k in range(len(rows)):
         state.now[:] = rows[k]
-        set_loads(system, state.loads, state.now[0])
-        status = assemble(FORCES, system, state, state.residual)
+        set_loads(system, state.loads, state.now[RECORD_T])
+        status = assemble(RESIDUAL, RESIDUAL, system, state, state.residual)
         if status != 0:
             return status
         elements[k], sums[k] = state.g, state.residual
@@ -102,9 +102,9 @@ def _evaluate_forces(system, state, rows, elements, sums):
 def _evaluate_constraints(system, state, rows, out):
     for k in range(len(rows)):
         state.now[:] = rows[k]
-        set_loads(system, state.loads, state.now[0])
-        for j, level in enumerate((FORCES, RATES)):
-            status = assemble(level, system, state, state.residual)
+        set_loads(system, state.loads, state.now[RECORD_T])
+        for j, task in enumerate((RESIDUAL, VELOCITY)):
+            status = assemble(RESIDUAL, task, system, state, state.residual)
             if status != 0:
                 return status
             for i in range(system.diagonal.size):

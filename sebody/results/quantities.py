@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES
 from sebody.model.nodes import Triplet
-from sebody.results.recording import Recording
+from sebody.results.recording import Recording, record_counts
 
 
 class NodeQuantity(NamedTuple):
@@ -73,7 +73,7 @@ def saved(recording: Recording) -> list[str]:
 
 
 def _energy(name: str, recording: Recording) -> NDArray:
-    values = ENERGIES.slices({"items": len(recording.numbering.histories)})[name]
+    values = ENERGIES.slices(record_counts(recording.numbering))[name]
     part = recording.energies[:, values]
     return part if values.stop - values.start > 1 else part[:, 0]
 

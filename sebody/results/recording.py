@@ -39,7 +39,7 @@ class Recording:
 
     def recorded(self, name: str) -> NDArray:
         """History of one of the parts of `layout.RECORD`, (n, size)."""
-        return self.rows[:, recorded_parts(self.numbering)[name]]
+        return self.rows[:, RECORD.slices(record_counts(self.numbering))[name]]
 
     @cached_property
     def energies(self) -> NDArray:
@@ -57,7 +57,7 @@ class Recording:
         return constraint_residuals(self.system, self.state, self.rows)
 
 
-def recorded_parts(numbering: Numbering) -> dict[str, slice]:
-    """Where the parts of `layout.RECORD` are in a row, and in `State.now`."""
-    return RECORD.slices({"items": len(numbering.histories), "coordinates": numbering.total,
-                          "rotations": len(numbering.rotations), "bodies": len(numbering.modes)})
+def record_counts(numbering: Numbering) -> dict[str, int]:
+    """What the sizes in `layout.RECORD` and `layout.ENERGIES` are for a model."""
+    return {"items": len(numbering.histories), "coordinates": numbering.total,
+            "rotations": len(numbering.rotations), "bodies": len(numbering.modes)}

@@ -219,14 +219,14 @@ def test_damped_oscillator():
 def test_matrices_are_derivatives_of_the_forces():
     """About a moving, deformed state: stiffness and damping of its instant by differences."""
     from sebody.engine.evaluate import assemble, to_body_axes
-    from sebody.engine.state import FORCES
+    from sebody.kernels.layout import RESIDUAL
     run = Simulation(hinged_beam.build(elements=4).model, 0.01).run_to(3.0)
     found = linearize(run)
     state, n = run.state, run.numbering.free
     kept = state.now.copy()
 
     def force():
-        assert assemble(FORCES, run.system, state, state.residual) == 0
+        assert assemble(RESIDUAL, RESIDUAL, run.system, state, state.residual) == 0
         residual = state.residual.copy()
         to_body_axes(run.system, state.frames, residual, False)
         return residual[:n]

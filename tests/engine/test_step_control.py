@@ -35,7 +35,7 @@ def driven(model, sequence, carried=True):
     run = Simulation(model, 1.0, STRICT, tolerance=Tolerance(1.0))
     run.state.strictness[:] = 0.0
     run.state.control[CORNER] = run.system.corners.size
-    record = Record(np.zeros((0, run.state.now.size)), np.array([10**9]))
+    record = Record.of(run.state, 0, 10**9)
     for h in sequence:
         run.state.clock[CHOSEN] = h
         if not carried:
@@ -97,7 +97,7 @@ def test_corners_of_tables_are_met():
     """The torque of the hinged beam has corners at 2.5, 5 and 7.5."""
     run = Simulation(hinged_beam.build().model, 1.0, tolerance=Tolerance(1e-3))
     assert run.system.corners.tolist() == [0.0, 2.5, 5.0, 7.5]
-    record = Record(np.zeros((40, run.state.now.size)), np.array([1]))
+    record = Record.of(run.state, 40)
     times = [0.0]
     while run.time < 9.0:
         loop.advance(run.system, run.state, record, run.scheme, 30, 1, run.dense)
@@ -117,11 +117,11 @@ def test_output_between_steps_is_of_third_order():
         run.state.strictness[:] = 0.0
         run.state.clock[CHOSEN], run.state.control[RECORDED] = h, 0
         run.scheme = run.scheme._replace(tolerance=1e-12)
-        record = Record(np.zeros((8, run.state.now.size)), np.array([1]))
+        record = Record.of(run.state, 8)
         loop.advance(run.system, run.state, record, run.scheme, 8, 1, run.dense)
         start, end = run.state.R_old.copy(), run.state.R.copy()
         assert run.state.clock[CURRENT_STEP] == h == run.state.clock[TIME]
-        R = record.rows[:4, run.numbering.total + 2:run.numbering.total + 11]
+        R = record.rows[:4, run.state.recorded_parts["R"]]
         assert R[3] == pytest.approx(end, abs=1e-13) and not np.allclose(R[1], start)
         fine = Simulation(heavy_top.build().model, h / 400).run_to(h / 2)
         found.append(np.abs(R[1] - fine.state.R).max())

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
 from sebody.engine import evaluate
-from sebody.kernels.layout import ENERGY
+from sebody.kernels.layout import ENERGY, STRAIN
 from sebody.scenes import hinged_beam, slider_crank, spherical_beam_strong, spin_up
 from sebody.scenes.hinged_beam import SECTION, TORQUE
 
@@ -69,7 +69,7 @@ def test_strain_energy_is_that_of_simo_and_reissner(section):
     strain = length / 2 * (E * A * gamma[0]**2 + (gamma[1]**2 + gamma[2]**2) / flexibility) + (
         G * section.torsion * psi[0]**2 + E * section.inertia_z * (psi[1]**2 + psi[2]**2)
     ) / (2 * length)
-    assert run.state.energy[1] == pytest.approx(strain, rel=1e-10)
+    assert run.state.energy[STRAIN] == pytest.approx(strain, rel=1e-10)
 
 
 def test_hinged_beam_against_the_reference():
