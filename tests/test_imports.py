@@ -72,7 +72,7 @@ def test_kernels_use_leaf_functions_only(path, package):
 
 
 def test_sympy_is_not_loaded():
-    code = ("import sys, sebody, sebody.cli.main, sebody.scenes.hinged_beam\n"
+    code = ("import sys, sebody, sebody.cli.entry, sebody.scenes.hinged_beam\n"
             "print(sorted({'sympy', 'matplotlib', 'sebody.derive'} & set(sys.modules)))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -1,7 +1,6 @@
 """The paper's hinged beam against a geometrically exact reference, and its balances."""
 
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,8 +8,8 @@ from helpers import order
 
 from sebody import generalized_alpha, hht, simulate
 from sebody.scenes.hinged_beam import build
+from sebody.studies import references
 
-DATA = Path(__file__).parents[1] / "data"
 TORQUE_ENDS = 7.5
 
 
@@ -23,7 +22,7 @@ def run(frame="converged_mean", h=0.01, t_end=30.0, alpha=None, tangent="consist
 
 
 def tip_error(result):
-    reference = np.load(DATA / "hinged_beam.npz")["tip_position"]
+    reference = references.reference("hinged_beam")["tip_position"]
     return np.linalg.norm(result["tip.position"] - reference) / np.linalg.norm(reference)
 
 
@@ -49,7 +48,7 @@ def test_energy_is_constant_after_the_torque():
 
 
 def test_external_work_against_reference():
-    reference = np.load(DATA / "hinged_beam.npz")
+    reference = references.reference("hinged_beam")
     assert run()["energy.external_work"][-1] == pytest.approx(
         reference["external_work"][-1], rel=1e-3)
 

@@ -2,12 +2,12 @@
 
 import inspect
 from collections.abc import Callable
-from importlib import import_module
 from typing import NamedTuple
 
 from sebody.analysis.schemes import generalized_alpha, hht
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
+from sebody.studies import catalogue
 
 # scene: the quantity whose history is compared
 SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
@@ -37,7 +37,7 @@ def builder(scene: str) -> Callable:
     """
     if scene not in SCENES:
         raise InputError(f"there is no chart of scene {scene!r}: use {', '.join(SCENES)}")
-    return import_module(f"sebody.scenes.{scene.replace('-', '_')}").build
+    return catalogue.builder(scene)
 
 
 def variants(scene: str) -> list[Variant]:

@@ -22,14 +22,19 @@ STATES = 2
 
 
 class CheckRow(NamedTuple):
-    """One line of the table."""
+    """A criterion in one state of a kernel."""
 
     kernel: str
     criterion: str
     state: int
     error: float            # relative to the largest entry
     slope: float | None     # order of a difference that is there by design
-    passed: bool
+    limit: float            # of the error from above, or of the slope from below
+
+    @property
+    def passed(self) -> bool:
+        """Whether the limit is kept."""
+        return self.error <= self.limit if self.slope is None else self.slope > self.limit
 
 
 class Case(NamedTuple):
