@@ -23,6 +23,7 @@ from numba.extending import intrinsic
 
 from sebody.kernels.layout import (  # noqa: F401  (kernels take them from here)
     ACCELERATION,
+    ARGUMENTS,
     ENERGY,
     HEADER,
     LANES,
