@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-
 THEORY = "theory"           # derived, in `theory` or in the case itself
 REFERENCE = "reference"     # of another program, see `sebody.studies.references`
 PROGRAM = "program"         # what the program is to do there
