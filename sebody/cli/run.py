@@ -63,8 +63,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
     from sebody.analysis.accuracy import simulate_within
-    from sebody.analysis.restart import resume, save
-    from sebody.analysis.simulation import Simulation, generalized_alpha
+    from sebody.analysis.restart import resume, save_state
+    from sebody.analysis.schemes import generalized_alpha
+    from sebody.analysis.simulation import Simulation
     from sebody.analysis.tolerance import Tolerance
 
     h = scene.h if options.step is None else options.step
@@ -86,7 +87,7 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
     finally:
         progress.close()
     if options.save:
-        print(f"state                {save(simulation, options.save)}")
+        print(f"state                {save_state(simulation, options.save)}")
     return simulation.result()
 
 

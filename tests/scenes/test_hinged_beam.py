@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from helpers import order
 
 from sebody import generalized_alpha, hht, simulate
 from sebody.scenes.hinged_beam import build
@@ -90,7 +91,7 @@ def test_second_order_in_the_step(torque, t_end, steps, finest):
 
     fine = tip(finest)
     errors = [np.linalg.norm(tip(h) - fine) for h in steps]
-    assert 1.9 <= np.polyfit(np.log(steps), np.log(errors), 1)[0] <= 2.1
+    assert 1.9 <= order(steps, errors) <= 2.1
 
 
 def test_paper_tangent_gives_the_same_motion_with_more_iterations():

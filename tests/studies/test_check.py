@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import order
 
 from sebody import InputError
 from sebody.kernels.layout import ACCELERATION, POTENTIAL, POWERS, VELOCITY
@@ -40,8 +41,7 @@ def test_spin_of_small_increments_differs_to_second_order():
         case = case._replace(reference=superelements._mean_rotation(case))
         forces = [states.evaluate(case._replace(module=m), 0)[0] for m in (small, exact)]
         errors.append(np.abs(forces[0] - forces[1]).max())
-    slope = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
-    assert 1.8 < slope < 2.2
+    assert 1.8 < order(sizes, errors) < 2.2
 
 
 def slightly_wrong(monkeypatch):
