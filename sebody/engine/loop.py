@@ -64,14 +64,15 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
 
     Other threads of Python run meanwhile: two simulations share nothing that is written to.
     """
-    control, clock = state.control, state.clock
+    control = state.control
     mixed = not dense and not scheme.stabilized
     steps = 0
     reason = np.int64(NO_REASON)
     while True:
         if reason != NO_REASON:
+            control[REASON] = reason
             back(state)
-            if not cut_step(state, reason):
+            if reason == INACCURATE or not cut_step(state):     # steps that err are cut already
                 return FAILED
             reason = np.int64(NO_REASON)
         if control[PHASE] == BEGIN:
@@ -115,24 +116,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             control[PHASE] = READY
             continue
         verdict = apply_correction(system, state, scheme, mixed)
-        control[PHASE] = ITERATE
-        if verdict == CONVERGED:
-            if control[ADAPTIVE] == 1 and not accurate(system, state, scheme):
-                back(state)
-                if clock[CHOSEN] < SHORTEST * clock[STEP]:
-                    control[REASON] = INACCURATE
-                    return FAILED
-                continue
-            accept(system, state, record)
-            control[PHASE] = BEGIN
-        elif verdict == NEW_MATRIX:
-            want_matrix(system, state)
-        elif verdict == GIVE_UP:
-            if control[FRESH] == 0 and np.isfinite(clock[LAST_NORM]):
-                # the old matrix may be to blame: the same step again with a new one
-                back(state)
-                continue
-            reason = np.int64(SLOW if np.isfinite(clock[LAST_NORM]) else NOT_FINITE)
+        reason = np.int64(_conclude(system, state, record, scheme, verdict))
 
 
 @compiled(forceinline=True)
@@ -157,6 +141,28 @@ def _evaluate(system, state, scheme, wanted, mixed):
             return status
     to_body_axes(system, state.frames, state.residual, False)
     return OK
+
+
+@compiled(forceinline=True)
+def _conclude(system, state, record, scheme, verdict):
+    """Do what follows from a correction; returns why the step fails, if it does."""
+    control, clock = state.control, state.clock
+    control[PHASE] = ITERATE
+    if verdict == CONVERGED:
+        if control[ADAPTIVE] == 1 and not accurate(system, state, scheme):
+            back(state)
+            return INACCURATE if clock[CHOSEN] < SHORTEST * clock[STEP] else NO_REASON
+        accept(system, state, record)
+        control[PHASE] = BEGIN
+    elif verdict == NEW_MATRIX:
+        want_matrix(system, state)
+    elif verdict == GIVE_UP:
+        if not np.isfinite(clock[LAST_NORM]):
+            return NOT_FINITE
+        if control[FRESH] > 0:
+            return SLOW
+        back(state)         # the old matrix may be to blame: the same step again with a new one
+    return NO_REASON
 
 
 @compiled(forceinline=True)

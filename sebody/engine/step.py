@@ -24,7 +24,6 @@ from sebody.engine.state import (
     LAST_NORM,
     LEVEL,
     PHASE,
-    REASON,
     RECORDED,
     RENEWED,
     SECANT,
@@ -190,10 +189,9 @@ def back(state):
 
 
 @compiled
-def cut_step(state, reason):
+def cut_step(state):
     """Half the step; False when it cannot be cut further."""
     clock, control = state.clock, state.control
-    control[REASON] = reason
     control[CUTS] += 1
     if control[ADAPTIVE] == 1:
         clock[CHOSEN] = 0.5 * clock[CURRENT_STEP]

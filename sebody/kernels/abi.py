@@ -32,7 +32,7 @@ from sebody.kernels.layout import (  # noqa: F401  (kernels take them from here)
     TANGENT,
     VELOCITY,
 )
-from sebody.kernels.pipeline import compiled
+from sebody.kernels.pipeline import SIGNATURE, compiled  # noqa: F401  (generated kernels take SIGNATURE from here)
 
 
 @compiled
@@ -61,11 +61,6 @@ def pointer_to(typingctx, array):
 
 # what every kernel gets after its task and sizes, by name: arrays or pointers
 Arguments = namedtuple("Arguments", [name for name, _, _ in ARGUMENTS])
-
-_floats = types.CPointer(types.float64)
-_ints = types.CPointer(types.int64)
-SIGNATURE = types.int64(*(types.int64,) * 4, *(
-    {"int64": _ints, "float64": _floats}[kind] for _, kind, _ in ARGUMENTS))
 
 
 @intrinsic

@@ -1,8 +1,8 @@
-"""Numba's passes that kernels need, and no others: two thirds of the time to compile them.
+"""How everything is compiled: functions by all of Numba's passes, kernels by those they need.
 
-Kernels are arithmetic on floats through pointers. There is nothing to rewrite or inline, every
-variable has one type, so single static assignments are left to LLVM, and a sum of two floats need
-not be looked up among NumPy's functions two thousand times.
+The latter take two thirds of the time. Kernels are arithmetic on floats through pointers: there is
+nothing to rewrite or inline, every variable has one type, so single static assignments are left to
+LLVM, and a sum of two floats need not be looked up among NumPy's functions two thousand times.
 """
 
 from collections.abc import Callable
@@ -10,8 +10,10 @@ from functools import partial
 
 from numba import njit
 from numba.core import types
+from numba.core.ccallback import CFunc
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.sigutils import normalize_signature
 from numba.core.typed_passes import (
     AnnotateTypes,
     IRLegalization,
@@ -20,6 +22,14 @@ from numba.core.typed_passes import (
     NopythonTypeInference,
 )
 from numba.core.untyped_passes import FixupArgs, IRProcessing, TranslateByteCode
+
+from sebody.kernels.cache import FunctionCache
+from sebody.kernels.layout import ARGUMENTS
+from sebody.kernels.sources import function_hash, kernel_hash
+
+_POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(types.float64)}
+# of every kernel: task, count, stride and width, then pointers
+SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
 
 
 class _Remembering:
@@ -52,10 +62,10 @@ class _TypeInference(NopythonTypeInference):
 
 
 class KernelPasses(CompilerBase):
-    """For ``cfunc(..., pipeline_class=KernelPasses)``."""
+    """From bytecode to types to machine code, and nothing between."""
 
     def define_pipelines(self) -> list[PassManager]:
-        """The one pipeline: from bytecode to types to machine code."""
+        """The one pipeline."""
         manager = PassManager("kernel")
         for one in (TranslateByteCode, FixupArgs, IRProcessing, _TypeInference, IRLegalization,
                     AnnotateTypes, NativeLowering, NoPythonBackend):
@@ -68,4 +78,18 @@ def compiled(function: Callable | None = None, **options) -> Callable:
     """Compile a function of the runtime, and keep what was compiled."""
     if function is None:
         return partial(compiled, **options)
-    return njit(cache=True, error_model="numpy", **options)(function)
+    dispatcher = njit(error_model="numpy", **options)(function)
+    dispatcher._cache = FunctionCache(function, function_hash(function))
+    return dispatcher
+
+
+def kernel_function(function: Callable) -> CFunc:
+    """Compile a kernel, a function of the `SIGNATURE`, and keep what was compiled.
+
+    Its attribute `address` is that of the machine code.
+    """
+    kernel = CFunc(function, normalize_signature(SIGNATURE), {},
+                   {"error_model": "numpy", "fastmath": {"contract"}}, KernelPasses)
+    kernel._cache = FunctionCache(function, kernel_hash(function))
+    kernel.compile()
+    return kernel

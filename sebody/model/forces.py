@@ -72,7 +72,7 @@ class Forces:
         InputError
             A function that cannot be compiled, or no nodes.
         """
-        from sebody.kernels.user_force import compile_force
+        from sebody.kernels.user_functions import compile_force
 
         triplets = tuple(self._triplet(self._known(n), "position") for n in nodes)
         if not triplets:
