@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from sebody import InputError, Simulation, SimulationError, generalized_alpha, hht
+from sebody import InputError, Model, Simulation, SimulationError, generalized_alpha, hht
 from sebody.engine.state import CUTS
 from sebody.scenes.hinged_beam import build
 
@@ -104,3 +104,17 @@ def test_failed_run_keeps_what_it_has():
 def test_cannot_run_backwards():
     with pytest.raises(InputError, match="later time"):
         Simulation(build().model, 0.01).run_to(0.5).run_to(0.2)
+
+
+@pytest.mark.parametrize("h, t_end, steps", [
+    (0.1, 0.3, 3),          # 0.3 / 0.1 is 2.9999999999999996 in floating point,
+    (0.1, 0.7, 7),          # 0.7 / 0.1 is 6.999999999999999
+    (0.1, 0.26, 3), (0.1, 0.24, 2)])
+def test_a_run_ends_at_the_step_nearest_to_the_wanted_time(h, t_end, steps):
+    model = Model(planar=True)
+    model.point_mass("ball", model.node("ball", (0.0, 0.0), keeps="translation"), 1.0)
+    model.initial_velocity("ball", (2.0, 0.0))
+    run = Simulation(model, h).run_to(t_end)
+    assert run.result().steps == steps
+    assert run.time == pytest.approx(steps * h, rel=1e-14)      # a product and its rounding
+    assert run.result()["ball.position"][-1] == pytest.approx([2.0 * steps * h, 0.0], rel=1e-9)
