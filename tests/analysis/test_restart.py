@@ -79,7 +79,7 @@ def small(mass=1.0, stiffness=5.0, times=(0.0, 1.0, 2.0), values=(0.0, 0.3, 0.4)
     ids=lambda change: next(iter(change)))
 def test_a_state_goes_on_with_its_own_model_only(tmp_path, change):
     """Unknowns and names are those of the saved model; one number, or what it acts on, is not."""
-    path = save(Simulation(small(), 0.01).run_to(0.1), tmp_path / "state.npz")
+    path = save_state(Simulation(small(), 0.01).run_to(0.1), tmp_path / "state.npz")
     resume(small(), path)
     with pytest.raises(InputError, match="is of another model: build the one it was saved from"):
         resume(small(**change), path)
@@ -100,7 +100,7 @@ def test_the_file_says_which_constraints_are_redundant(tmp_path):
     first = Simulation(hinged(), 0.01)
     assert not first.start.redundant
     first.system.relaxed[0] = 1
-    path = save(first.run_to(0.5), tmp_path / "half.npz")
+    path = save_state(first.run_to(0.5), tmp_path / "half.npz")
     second = resume(hinged(), path)
     assert second.system.relaxed[0] == 1
     whole, rest = first.run_to(1.0).result(), second.run_to(1.0).result()
