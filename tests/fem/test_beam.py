@@ -226,12 +226,12 @@ def test_bad_input_is_named(build, text):
 def test_mass_of_an_element_is_that_of_its_interpolation():
     """Kinetic energy of the deflection that equilibrium ties to the end DOFs, by integration.
 
-    Deflection and rotation of the section solve ``theta'' = -12 / (phi L^2) (v' - theta)`` with a
-    constant shear force: cubics fitted here to unit end DOFs, integrated exactly as polynomials.
+    Where moment and shear force balance, a section turns by the slope and ``phi L^2 / 12`` of the
+    third derivative: cubics, fitted here to unit end DOFs and integrated exactly as polynomials.
     """
     length = 3.0
     phi = 12 * E * IZ / (KAPPA * G * AREA * length**2)
-    # v = a0 + a1 x + a2 x^2 + a3 x^3 and theta = v' + phi L^2 / 2 a3, from shear = moment'
+
     def deflection(a):
         return np.polynomial.Polynomial(a)
 

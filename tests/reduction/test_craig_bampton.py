@@ -229,7 +229,7 @@ def test_centre_of_a_planar_body_off_the_middle_of_its_nodes():
 
 def test_damping_turns_with_the_body():
     # Damping by 0.02 of the stiffness is that of the turned stiffness, too.
-    flat = craig_bampton(planar_beam([0, 0], [3, 1], SQUARE, 4), [(0, "full"), (4, "full")], 1)
+    flat = craig_bampton(planar_beam([0, 0], [3, 1], SQUARE, 4), [(0, "full"), (4, "full")], 0)
     turn = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
     turned = flat.damped(stiffness=0.02).rotated(turn)
     scale = np.max(np.abs(turned.stiffness))
