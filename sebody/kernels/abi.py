@@ -20,7 +20,6 @@ from numba.extending import intrinsic
 
 from sebody.kernels.layout import (  # noqa: F401  (kernels take them from here)
     ACCELERATION,
-    ARGUMENTS,
     ENERGY,
     HEADER,
     LANES,
@@ -29,7 +28,7 @@ from sebody.kernels.layout import (  # noqa: F401  (kernels take them from here)
     TANGENT,
     VELOCITY,
 )
-from sebody.kernels.pipeline import compiled
+from sebody.kernels.pipeline import SIGNATURE, compiled  # noqa: F401  (generated kernels take SIGNATURE from here)
 
 
 @compiled
@@ -54,12 +53,6 @@ def pointer_to(typingctx, array):
         return context.make_array(sig.args[0])(context, builder, args[0]).data
 
     return types.CPointer(array.dtype)(array), codegen
-
-
-_floats = types.CPointer(types.float64)
-_ints = types.CPointer(types.int64)
-SIGNATURE = types.int64(*(types.int64,) * 4, *(
-    {"int64": _ints, "float64": _floats}[kind] for _, kind, _ in ARGUMENTS))
 
 
 @intrinsic

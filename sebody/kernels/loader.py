@@ -1,17 +1,20 @@
 """Find and load generated kernels by name: the shipped ones, then the user's directory."""
 
 import gc
-import importlib.util
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
 from sebody.errors import InputError
+from sebody.kernels.names import element_name, layout_variant, superelement_name
+
+USER_FORCE = element_name("user_force")      # written by hand, in this room
 
 
 def user_directory() -> Path:
@@ -34,9 +37,18 @@ def without_collector() -> Iterator[None]:
             gc.enable()
 
 
+def find(name: str) -> Path | None:
+    """The file of a kernel, shipped or in the user's directory; None if there is none."""
+    folders = (*find_spec("sebody.generated").submodule_search_locations, user_directory())
+    return next((path for folder in folders if (path := Path(folder) / f"{name}.py").exists()),
+                None)
+
+
 @cache
 def load(name: str) -> ModuleType | None:
-    """The module of a kernel, compiled (or read from Numba's cache) on import; None if absent."""
+    """The module of a kernel, compiled (or read from the cache) on import; None if absent."""
+    if name == USER_FORCE:
+        return import_module("sebody.kernels.user_force")   # the one kernel that is not generated
     with without_collector():
         return _load(name)
 
@@ -50,41 +62,56 @@ def _load(name: str) -> ModuleType | None:
     path = user_directory() / f"{name}.py"
     if not path.exists():
         return None
-    spec = importlib.util.spec_from_file_location(f"sebody_user_kernels.{name}", path)
-    module = importlib.util.module_from_spec(spec)
+    spec = spec_from_file_location(f"sebody_user_kernels.{name}", path)
+    module = module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
     return module
 
 
-def superelement_kernel(layout: str, frame: str, inertia: str, modes: int,
-                        damped: bool = False) -> ModuleType:
-    """The kernel of a layout, frame and inertia option: one for this number of modes, or for any.
+def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
+                             damped: bool = False) -> str:
+    """Name of the kernel of a layout, frame and inertia option: for this number of modes or any.
 
-    Structural damping has kernels of its own.
+    Structural damping has kernels of its own. Nothing is imported or compiled.
 
     Raises
     ------
     InputError
         If it has not been generated; the message gives the command that makes it.
     """
-    d = "d" * damped
-    names = [f"superelement_{layout}{pinned}{d}_{frame}_{inertia}".replace("-", "_")
-             for pinned in (f"m{modes}", "")]
-    module = load(names[0]) or load(names[1])
-    if module is None:
-        raise InputError(f"there is no kernel for layout {layout + d!r}, frame {frame!r}, inertia "
-                         f"{inertia!r}: make it with\n    python -m sebody.derive "
-                         f"{layout}{d}:{frame}:{inertia}")
-    return module
+    for pinned in (modes, None):
+        name = superelement_name(layout_variant(layout, pinned, damped), frame, inertia)
+        if find(name):
+            return name
+    variant = layout_variant(layout, damped=damped)
+    raise InputError(f"there is no kernel for layout {variant!r}, frame {frame!r}, inertia "
+                     f"{inertia!r}: make it with\n    python -m sebody.derive "
+                     f"{variant}:{frame}:{inertia}")
 
 
-def element_kernel(name: str) -> ModuleType:
-    """The kernel of a joint or load."""
-    if name == "user_force":
-        return import_module("sebody.kernels.user_force")   # the one kernel that is not generated
-    module = load(f"element_{name}")
-    if module is None:
-        raise InputError(f"there is no kernel for element {name!r}: reinstall sebody or run "
+@cache
+def element_kernel_name(kind: str) -> str:
+    """Name of the kernel of a kind of joint, load or rigid body.
+
+    Raises
+    ------
+    InputError
+        If it has not been generated.
+    """
+    name = element_name(kind)
+    if name != USER_FORCE and not find(name):
+        raise InputError(f"there is no kernel for element {kind!r}: reinstall sebody or run "
                          "python -m sebody.derive")
-    return module
+    return name
+
+
+def superelement_kernel(layout: str, frame: str, inertia: str, modes: int,
+                        damped: bool = False) -> ModuleType:
+    """The kernel `superelement_kernel_name` names, compiled."""
+    return load(superelement_kernel_name(layout, frame, inertia, modes, damped))
+
+
+def element_kernel(kind: str) -> ModuleType:
+    """The kernel `element_kernel_name` names, compiled."""
+    return load(element_kernel_name(kind))

@@ -8,7 +8,7 @@ not be looked up among NumPy's functions two thousand times.
 from collections.abc import Callable
 from functools import partial
 
-from numba import njit
+from numba import cfunc, njit
 from numba.core import types
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, register_pass
@@ -20,6 +20,12 @@ from numba.core.typed_passes import (
     NopythonTypeInference,
 )
 from numba.core.untyped_passes import FixupArgs, IRProcessing, TranslateByteCode
+
+from sebody.kernels.layout import ARGUMENTS
+
+_POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(types.float64)}
+# of every kernel: task, count, stride and width, then pointers
+SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
 
 
 class _Remembering:
@@ -52,10 +58,10 @@ class _TypeInference(NopythonTypeInference):
 
 
 class KernelPasses(CompilerBase):
-    """For ``cfunc(..., pipeline_class=KernelPasses)``."""
+    """From bytecode to types to machine code, and nothing between."""
 
     def define_pipelines(self) -> list[PassManager]:
-        """The one pipeline: from bytecode to types to machine code."""
+        """The one pipeline."""
         manager = PassManager("kernel")
         for one in (TranslateByteCode, FixupArgs, IRProcessing, _TypeInference, IRLegalization,
                     AnnotateTypes, NativeLowering, NoPythonBackend):
@@ -69,3 +75,12 @@ def compiled(function: Callable | None = None, **options) -> Callable:
     if function is None:
         return partial(compiled, **options)
     return njit(cache=True, error_model="numpy", **options)(function)
+
+
+def kernel_function(function: Callable) -> object:
+    """Compile a kernel, a function of the `SIGNATURE`, and keep what was compiled.
+
+    Its attribute `address` is that of the machine code.
+    """
+    return cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
+                 pipeline_class=KernelPasses)(function)

@@ -1,0 +1,18 @@
+"""Names of kernels: of the module, and with ``.py`` of its file."""
+
+SUPERELEMENT, ELEMENT = PREFIXES = "superelement_", "element_"
+
+
+def superelement_name(layout: str, frame: str, inertia: str) -> str:
+    """The kernel of a superelement's layout, frame and inertia option."""
+    return f"{SUPERELEMENT}{layout}_{frame}_{inertia}".replace("-", "_")
+
+
+def element_name(kind: str) -> str:
+    """The kernel of a kind of joint, load or rigid body."""
+    return ELEMENT + kind
+
+
+def layout_variant(layout: str, modes: int | None = None, damped: bool = False) -> str:
+    """A layout with its number of internal modes pinned (``f2m4``) or with damping (``f2d``)."""
+    return layout + ("" if modes is None else f"m{modes}") + "d" * damped
