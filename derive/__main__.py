@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import sebody.generated
+from sebody.derive.formulas import frames, inertia
 from sebody.derive.formulas.frames import FRAMES
 from sebody.derive.formulas.inertia import OPTIONS
 from sebody.derive.kernels.catalogue import ELEMENTS
@@ -21,16 +22,17 @@ from sebody.derive.kernels.manifest import SUPERELEMENTS
 from sebody.derive.kernels.superelement import superelement
 from sebody.derive.printing.emit import superelement_text
 from sebody.derive.printing.emit_element import element_text
+from sebody.derive.printing.emit_options import options_text
 from sebody.kernels.loader import user_directory
 
 KERNEL_PREFIXES = ("superelement_", "element_")
 
 
 def shipped() -> dict[str, str]:
-    """File name and text of every kernel of the manifest."""
-    files = {}
-    for layout, frame, inertia in SUPERELEMENTS:
-        files |= variant_file(layout, frame, inertia)
+    """File name and text of every kernel of the manifest, and of the options' traits."""
+    files = {"options.py": options_text(frames.TRAITS, inertia.TRAITS)}
+    for layout, frame, option in SUPERELEMENTS:
+        files |= variant_file(layout, frame, option)
     for name in SHIPPED_ELEMENTS:
         files[f"element_{name}.py"] = element_text(ELEMENTS[name]())
     return files

@@ -10,22 +10,40 @@ from math import cos, sin
 
 from numba import cfunc
 
-from sebody.kernels.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    AT_CONSTANTS,
+    AT_ITEM,
+    C_PLACE,
+    C_RATE,
+    ENERGY,
+    HEADER,
+    OK,
+    POWERS,
+    STRAIN,
+    TANGENT,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = True
 N_POSITIONS = 2
 N_ROTATIONS = 0
 ROTATIONS = 4      # first rotation among the local coordinates
-N_CONSTANTS = 6
+CONSTANTS = (
+    Part("k", (2,), "stiffness along each axis"),
+    Part("c", (2,), "damping along each axis"),
+    Part("kt", (1,), "stiffness about each axis"),
+    Part("ct", (1,), "damping about each axis"),
+)
 MULTIPLIERS = 0
 WIDTH = 6
-KINETIC = False        # has kinetic energy
+INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (63, 0), "column": (194, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,7 +54,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         k_x = constant[0]
         k_y = constant[1]
@@ -89,8 +107,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         if task == ENERGY:
             t900 = -xa_x + xb_x
             t901 = -xa_y + xb_y
-            energies[1] += ((0.5)*k_x*(Ra_cos*t900 + Ra_sin*t901)*(Ra_cos*t900 + Ra_sin*t901) +
-                (0.5)*k_y*(Ra_cos*t901 - Ra_sin*t900)*(Ra_cos*t901 - Ra_sin*t900) +
+            energies[STRAIN] += ((0.5)*k_x*(Ra_cos*t900 + Ra_sin*t901)*(Ra_cos*t900 + Ra_sin*t901)
+                + (0.5)*k_y*(Ra_cos*t901 - Ra_sin*t900)*(Ra_cos*t901 - Ra_sin*t900) +
                 (0.5)*kt_z*(-tha + thb)*(-tha + thb))
         if task == ENERGY:
             t900 = 2*Oma_z - 2*Omb_z
@@ -108,12 +126,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t912 = c_y*t911
             t913 = Ra_cos*t912 + Ra_sin*t908
             t914 = Ra_cos*t908 - Ra_sin*c_y*t911
-            energies[POWERS + index[first + 2]] = (-Oma_z*(t900*t901 + (0.5)*t908*(2*t905 -
+            energies[POWERS + index[first + AT_ITEM]] = (-Oma_z*(t900*t901 + (0.5)*t908*(2*t905 -
                 2*t907) + (0.5)*t912*(-2*t909 - 2*t910)) + Omb_z*t900*t901 + t913*va_y - t913*vb_y
                 + t914*va_x - t914*vb_x)
         if task == TANGENT:
-            c_rate = coefficients[1]
-            c_place = coefficients[2]
+            c_rate = coefficients[C_RATE]
+            c_place = coefficients[C_PLACE]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -201,4 +219,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     c_rate*(t29*t70 + t34*t73 + t66*t67))
                 J[30 + column] = c_place*t74 - c_rate*t66*t67
 
-    return 0
+    return OK

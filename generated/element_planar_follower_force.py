@@ -10,22 +10,35 @@ from math import cos, sin
 
 from numba import cfunc
 
-from sebody.kernels.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    AT_CONSTANTS,
+    AT_ITEM,
+    C_PLACE,
+    ENERGY,
+    HEADER,
+    OK,
+    POWERS,
+    TANGENT,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = True
 N_POSITIONS = 1
 N_ROTATIONS = 0
 ROTATIONS = 2      # first rotation among the local coordinates
-N_CONSTANTS = 2
+CONSTANTS = (
+    Part("d", (2,), "force at amplitude one"),
+)
 MULTIPLIERS = 0
 WIDTH = 3
-KINETIC = False        # has kinetic energy
+INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (10, 0), "column": (14, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,7 +49,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         d_x = constant[0]
         d_y = constant[1]
@@ -44,15 +57,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         va_y = v[unknowns[1]]
         Ra_cos = cos(q[unknowns[2]])
         Ra_sin = sin(q[unknowns[2]])
-        amplitude = loads[3*index[first + 2] + 0]
+        amplitude = loads[3*index[first + AT_ITEM] + 0]
         g[0] = -amplitude*(Ra_cos*d_x - Ra_sin*d_y)
         g[1] = -amplitude*(Ra_cos*d_y + Ra_sin*d_x)
         g[2] = 0.0
         if task == ENERGY:
-            energies[POWERS + index[first + 2]] = (amplitude*(va_x*(Ra_cos*d_x - Ra_sin*d_y) +
-                va_y*(Ra_cos*d_y + Ra_sin*d_x)))
+            energies[POWERS + index[first + AT_ITEM]] = (amplitude*(va_x*(Ra_cos*d_x - Ra_sin*d_y)
+                + va_y*(Ra_cos*d_y + Ra_sin*d_x)))
         if task == TANGENT:
-            c_place = coefficients[2]
+            c_place = coefficients[C_PLACE]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             for column in range(3):
@@ -67,4 +80,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 J[3 + column] = -t2*(d_x*t0 - d_y*t1)
                 J[6 + column] = 0.0
 
-    return 0
+    return OK

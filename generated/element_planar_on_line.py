@@ -10,22 +10,35 @@ from math import cos, sin
 
 from numba import cfunc
 
-from sebody.kernels.abi import ACCELERATION, HEADER, SIGNATURE, TANGENT, VELOCITY, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    ACCELERATION,
+    AT_CONSTANTS,
+    C_CONSTRAINT,
+    C_PLACE,
+    HEADER,
+    OK,
+    TANGENT,
+    VELOCITY,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = True
 N_POSITIONS = 2
 N_ROTATIONS = 0
 ROTATIONS = 4      # first rotation among the local coordinates
-N_CONSTANTS = 2
+CONSTANTS = (
+    Part("n1", (2,), "direction normal to the axis, in axes of the first body"),
+)
 MULTIPLIERS = 1
 WIDTH = 6
-KINETIC = False        # has kinetic energy
+INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (21, 0), "column": (40, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,7 +49,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         n1_x = constant[0]
         n1_y = constant[1]
@@ -86,8 +99,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 (-xa_x + xb_x)*(-Aa_z*t900 - Aa_z*t901 + Ra_sin*n1_y*t904 - t902*t904) + (-xa_y +
                 xb_y)*(Aa_z*Ra_cos*n1_x - Aa_z*t903 - t900*t904 - t901*t904))
         if task == TANGENT:
-            c_place = coefficients[2]
-            c_constraint = coefficients[4]
+            c_place = coefficients[C_PLACE]
+            c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             for column in range(5):
@@ -128,4 +141,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J[23] = c_constraint*t701
             J[29] = c_constraint*(t700*(-xa_y + xb_y) + t702*(-xa_x + xb_x))
             J[35] = 0.0
-    return 0
+    return OK

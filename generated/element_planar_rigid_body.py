@@ -10,22 +10,42 @@ from math import cos, sin
 
 from numba import cfunc
 
-from sebody.kernels.abi import ENERGY, HEADER, SIGNATURE, TANGENT, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    AT_CONSTANTS,
+    C_MASS,
+    C_PLACE,
+    C_RATE,
+    ENERGY,
+    FIELD,
+    HEADER,
+    KINETIC,
+    MOMENT,
+    MOMENTUM,
+    OK,
+    POTENTIAL,
+    TANGENT,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = True
 N_POSITIONS = 1
 N_ROTATIONS = 0
 ROTATIONS = 2      # first rotation among the local coordinates
-N_CONSTANTS = 4
+CONSTANTS = (
+    Part("mass", (), "mass"),
+    Part("mc", (2,), "first moment of mass about the node, body axes"),
+    Part("J_zz", (), "inertia about the node, body axes"),
+)
 MULTIPLIERS = 0
 WIDTH = 3
-KINETIC = True        # has kinetic energy
+INERTIAL = True        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (41, 0), "column": (79, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,14 +56,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         mass = constant[0]
         mc_x = constant[1]
         mc_y = constant[2]
         J_zz = constant[3]
-        field_x = coefficients[5]
-        field_y = coefficients[6]
+        field_x = coefficients[FIELD]
+        field_y = coefficients[FIELD + 1]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -75,16 +95,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t907 = t900 - t901
             t908 = mass*va_x - t905
             t909 = mass*va_y + t902
-            energies[0] += ((0.5)*J_zz*Oma_z*Oma_z + (0.5)*mass*(va_x*va_x + va_y*va_y) +
+            energies[KINETIC] += ((0.5)*J_zz*Oma_z*Oma_z + (0.5)*mass*(va_x*va_x + va_y*va_y) +
                 t902*va_y - t905*va_x)
-            energies[8] += -field_x*(mass*xa_x + t907) - field_y*(mass*xa_y + t906)
-            energies[2] += t908
-            energies[3] += t909
-            energies[7] += J_zz*Oma_z - t906*va_x + t907*va_y - t908*xa_y + t909*xa_x
+            energies[POTENTIAL] += -field_x*(mass*xa_x + t907) - field_y*(mass*xa_y + t906)
+            energies[MOMENTUM] += t908
+            energies[MOMENTUM + 1] += t909
+            energies[MOMENT + 2] += J_zz*Oma_z - t906*va_x + t907*va_y - t908*xa_y + t909*xa_x
         if task == TANGENT:
-            c_mass = coefficients[0]
-            c_rate = coefficients[1]
-            c_place = coefficients[2]
+            c_mass = coefficients[C_MASS]
+            c_rate = coefficients[C_RATE]
+            c_place = coefficients[C_PLACE]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -119,4 +139,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 J[6 + column] = (c_mass*(J_zz*utha_z + uxa_x*(-t10 - t12) + uxa_y*(-t14 + t7)) +
                     c_place*(aa_x*t19 + aa_y*t20 - field_x*t19 - field_y*t20))
 
-    return 0
+    return OK

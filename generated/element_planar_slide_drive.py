@@ -10,22 +10,39 @@ from math import cos, sin
 
 from numba import cfunc
 
-from sebody.kernels.abi import ACCELERATION, ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, VELOCITY, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    ACCELERATION,
+    AT_CONSTANTS,
+    AT_ITEM,
+    C_CONSTRAINT,
+    C_PLACE,
+    ENERGY,
+    HEADER,
+    OK,
+    POWERS,
+    TANGENT,
+    VELOCITY,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = True
 N_POSITIONS = 2
 N_ROTATIONS = 0
 ROTATIONS = 4      # first rotation among the local coordinates
-N_CONSTANTS = 3
+CONSTANTS = (
+    Part("e", (2,), "axis, in axes of the first body"),
+    Part("start", (), "way at the start [length]"),
+)
 MULTIPLIERS = 1
 WIDTH = 6
-KINETIC = False        # has kinetic energy
+INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = True        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (23, 0), "column": (40, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,7 +53,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         e_x = constant[0]
         e_y = constant[1]
@@ -58,9 +75,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_z = v[unknowns[4]]
         Aa_z = a[unknowns[4]]
         lam_1 = q[unknowns[5]]
-        amplitude = loads[3*index[first + 2] + 0]
-        amplitude_rate = loads[3*index[first + 2] + 1]
-        amplitude_acceleration = loads[3*index[first + 2] + 2]
+        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
+        amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
         t0 = Ra_cos*e_x - Ra_sin*e_y
         t1 = Ra_cos*e_y + Ra_sin*e_x
         t2 = -t1
@@ -96,12 +113,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t901 = Ra_sin*e_x
             t902 = Ra_cos*e_x
             t903 = Ra_sin*e_y
-            energies[POWERS + index[first + 2]] = (-lam_1*((t900 + t901)*(-va_y + vb_y) + (t902 -
-                t903)*(-va_x + vb_x) + (-xa_x + xb_x)*(-Oma_z*t900 - Oma_z*t901) + (-xa_y +
-                xb_y)*(Oma_z*t902 - Oma_z*t903)))
+            energies[POWERS + index[first + AT_ITEM]] = (-lam_1*((t900 + t901)*(-va_y + vb_y) +
+                (t902 - t903)*(-va_x + vb_x) + (-xa_x + xb_x)*(-Oma_z*t900 - Oma_z*t901) + (-xa_y
+                + xb_y)*(Oma_z*t902 - Oma_z*t903)))
         if task == TANGENT:
-            c_place = coefficients[2]
-            c_constraint = coefficients[4]
+            c_place = coefficients[C_PLACE]
+            c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             for column in range(5):
@@ -142,4 +159,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J[23] = c_constraint*t701
             J[29] = c_constraint*(t700*(-xa_y + xb_y) + t702*(-xa_x + xb_x))
             J[35] = 0.0
-    return 0
+    return OK

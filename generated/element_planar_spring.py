@@ -10,22 +10,40 @@ from math import sqrt
 
 from numba import cfunc
 
-from sebody.kernels.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    AT_CONSTANTS,
+    AT_ITEM,
+    C_PLACE,
+    C_RATE,
+    ENERGY,
+    HEADER,
+    OK,
+    POWERS,
+    STRAIN,
+    TANGENT,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = True
 N_POSITIONS = 2
 N_ROTATIONS = 0
 ROTATIONS = 4      # first rotation among the local coordinates
-N_CONSTANTS = 4
+CONSTANTS = (
+    Part("k", (), "stiffness"),
+    Part("k3", (), "cubic stiffness"),
+    Part("c", (), "damping"),
+    Part("length", (), "length at rest"),
+)
 MULTIPLIERS = 0
 WIDTH = 4
-KINETIC = False        # has kinetic energy
+INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (52, 0), "column": (164, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,7 +54,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         k = constant[0]
         k3 = constant[1]
@@ -73,18 +91,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[3] = t10*t16 - t12*t14 + t16*t9
         if task == ENERGY:
             t900 = -length + sqrt((-xa_x + xb_x)*(-xa_x + xb_x) + (-xa_y + xb_y)*(-xa_y + xb_y))
-            energies[1] += (0.5)*k*t900*t900 + (0.25)*k3*t900*t900*t900*t900
+            energies[STRAIN] += (0.5)*k*t900*t900 + (0.25)*k3*t900*t900*t900*t900
         if task == ENERGY:
             t900 = 2*xa_x - 2*xb_x
             t901 = -xa_x + xb_x
             t902 = -xa_y + xb_y
             t903 = (0.5)*c*(t901*(-va_x + vb_x) + t902*(-va_y + vb_y))/(t901*t901 + t902*t902)
             t904 = 2*xa_y - 2*xb_y
-            energies[POWERS + index[first + 2]] = (-t900*t903*va_x + t900*t903*vb_x -
+            energies[POWERS + index[first + AT_ITEM]] = (-t900*t903*va_x + t900*t903*vb_x -
                 t903*t904*va_y + t903*t904*vb_y)
         if task == TANGENT:
-            c_rate = coefficients[1]
-            c_place = coefficients[2]
+            c_rate = coefficients[C_RATE]
+            c_place = coefficients[C_PLACE]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -156,4 +174,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 J[12 + column] = (c_place*(t21*t51 + t21*t52 + t21*t56 + t21*t57 + t31*t61 +
                     t32*t61 + t37*t46 + t41*t60 + t53*t60) + t25*t60)
 
-    return 0
+    return OK

@@ -10,22 +10,40 @@ from math import sqrt
 
 from numba import cfunc
 
-from sebody.kernels.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    AT_CONSTANTS,
+    AT_ITEM,
+    C_PLACE,
+    C_RATE,
+    ENERGY,
+    HEADER,
+    OK,
+    POWERS,
+    STRAIN,
+    TANGENT,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = False
 N_POSITIONS = 2
 N_ROTATIONS = 0
 ROTATIONS = 6      # first rotation among the local coordinates
-N_CONSTANTS = 4
+CONSTANTS = (
+    Part("k", (), "stiffness"),
+    Part("k3", (), "cubic stiffness"),
+    Part("c", (), "damping"),
+    Part("length", (), "length at rest"),
+)
 MULTIPLIERS = 0
 WIDTH = 6
-KINETIC = False        # has kinetic energy
+INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (74, 0), "column": (232, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,7 +54,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         k = constant[0]
         k3 = constant[1]
@@ -85,7 +103,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         if task == ENERGY:
             t900 = (-length + sqrt((-xa_x + xb_x)*(-xa_x + xb_x) + (-xa_y + xb_y)*(-xa_y + xb_y) +
                 (-xa_z + xb_z)*(-xa_z + xb_z)))
-            energies[1] += (0.5)*k*t900*t900 + (0.25)*k3*t900*t900*t900*t900
+            energies[STRAIN] += (0.5)*k*t900*t900 + (0.25)*k3*t900*t900*t900*t900
         if task == ENERGY:
             t900 = 2*xa_x - 2*xb_x
             t901 = -xa_x + xb_x
@@ -95,11 +113,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 vb_z))/(t901*t901 + t902*t902 + t903*t903))
             t905 = 2*xa_y - 2*xb_y
             t906 = 2*xa_z - 2*xb_z
-            energies[POWERS + index[first + 2]] = (-t900*t904*va_x + t900*t904*vb_x -
+            energies[POWERS + index[first + AT_ITEM]] = (-t900*t904*va_x + t900*t904*vb_x -
                 t904*t905*va_y + t904*t905*vb_y - t904*t906*va_z + t904*t906*vb_z)
         if task == TANGENT:
-            c_rate = coefficients[1]
-            c_place = coefficients[2]
+            c_rate = coefficients[C_RATE]
+            c_place = coefficients[C_PLACE]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -192,4 +210,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 J[30 + column] = (c_place*(t28*t64 + t28*t65 + t28*t69 + t28*t70 + t38*t78 +
                     t39*t78 + t45*t59 + t51*t77 + t66*t77) + t32*t77)
 
-    return 0
+    return OK

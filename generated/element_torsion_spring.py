@@ -10,22 +10,42 @@ from math import atan2
 
 from numba import cfunc
 
-from sebody.kernels.abi import ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    AT_CONSTANTS,
+    AT_ITEM,
+    C_PLACE,
+    C_RATE,
+    ENERGY,
+    HEADER,
+    OK,
+    POWERS,
+    STRAIN,
+    TANGENT,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = False
 N_POSITIONS = 0
 N_ROTATIONS = 2
 ROTATIONS = 0      # first rotation among the local coordinates
-N_CONSTANTS = 10
+CONSTANTS = (
+    Part("k", (), "stiffness"),
+    Part("k3", (), "cubic stiffness"),
+    Part("c", (), "damping"),
+    Part("rest", (), "angle at rest [rad]"),
+    Part("n", (3,), "direction normal to the axis, body a"),
+    Part("m", (3,), "direction normal to both, body b"),
+)
 MULTIPLIERS = 0
 WIDTH = 6
-KINETIC = False        # has kinetic energy
+INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (361, 0), "column": (1060, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,7 +56,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         k = constant[0]
         k3 = constant[1]
@@ -159,7 +179,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t902 = (n_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + n_y*(Ra_xy*Rb_xz + Ra_yy*Rb_yz
                 + Ra_zy*Rb_zz) + n_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz))
             t903 = -rest + atan2(m_x*t900 + m_y*t901 + m_z*t902, n_x*t900 + n_y*t901 + n_z*t902)
-            energies[1] += (0.5)*k*t903*t903 + (0.25)*k3*t903*t903*t903*t903
+            energies[STRAIN] += (0.5)*k*t903*t903 + (0.25)*k3*t903*t903*t903*t903
         if task == ENERGY:
             t900 = -m_y*n_z + m_z*n_y
             t901 = m_x*n_z - m_z*n_x
@@ -174,14 +194,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Omb_y*Rb_xy - Omb_z*Rb_xz) + t905*(Oma_x*Ra_yx + Oma_y*Ra_yy + Oma_z*Ra_yz -
                 Omb_x*Rb_yx - Omb_y*Rb_yy - Omb_z*Rb_yz) + t907*(Oma_x*Ra_zx + Oma_y*Ra_zy +
                 Oma_z*Ra_zz - Omb_x*Rb_zx - Omb_y*Rb_zy - Omb_z*Rb_zz)))
-            energies[POWERS + index[first + 2]] = (-Oma_x*t909*(Ra_xx*t904 + Ra_yx*t906 +
+            energies[POWERS + index[first + AT_ITEM]] = (-Oma_x*t909*(Ra_xx*t904 + Ra_yx*t906 +
                 Ra_zx*t908) - Oma_y*t909*(Ra_xy*t904 + Ra_yy*t906 + Ra_zy*t908) -
                 Oma_z*t909*(Ra_xz*t904 + Ra_yz*t906 + Ra_zz*t908) - Omb_x*t909*(-Rb_xx*t904 -
                 Rb_yx*t906 - Rb_zx*t908) - Omb_y*t909*(-Rb_xy*t904 - Rb_yy*t906 - Rb_zy*t908) -
                 Omb_z*t909*(-Rb_xz*t904 - Rb_yz*t906 - Rb_zz*t908))
         if task == TANGENT:
-            c_rate = coefficients[1]
-            c_place = coefficients[2]
+            c_rate = coefficients[C_RATE]
+            c_place = coefficients[C_PLACE]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -444,4 +464,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     t174*t256 + 4*t259 + 4*t261) + t94*(-Rb_xz*t180 - Rb_yz*t181 - Rb_zz*t182 -
                     t100*t79 - t103*t81 - t77*t97)) + t250*t75)
 
-    return 0
+    return OK

@@ -10,22 +10,39 @@ from math import cos, sin
 
 from numba import cfunc
 
-from sebody.kernels.abi import ACCELERATION, ENERGY, HEADER, POWERS, SIGNATURE, TANGENT, VELOCITY, at
+from sebody.kernels.abi import SIGNATURE, at
+from sebody.kernels.layout import (
+    ACCELERATION,
+    AT_CONSTANTS,
+    AT_ITEM,
+    C_CONSTRAINT,
+    C_PLACE,
+    ENERGY,
+    HEADER,
+    OK,
+    POWERS,
+    TANGENT,
+    VELOCITY,
+    Part,
+)
 from sebody.kernels.pipeline import KernelPasses
 
 PLANAR = False
 N_POSITIONS = 0
 N_ROTATIONS = 2
 ROTATIONS = 0      # first rotation among the local coordinates
-N_CONSTANTS = 6
+CONSTANTS = (
+    Part("n", (3,), "direction normal to the axis, in axes of the first body"),
+    Part("m", (3,), "axis x n"),
+)
 MULTIPLIERS = 1
 WIDTH = 7
-KINETIC = False        # has kinetic energy
+INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = True        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (136, 0), "column": (318, 0)}
-LEAVES = {}
+ROOM = "50f0e6b2a544"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
@@ -36,7 +53,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first])
+        constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         n_x = constant[0]
         n_y = constant[1]
@@ -75,9 +92,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Ab_y = a[unknowns[4]]
         Ab_z = a[unknowns[5]]
         lam_1 = q[unknowns[6]]
-        amplitude = loads[3*index[first + 2] + 0]
-        amplitude_rate = loads[3*index[first + 2] + 1]
-        amplitude_acceleration = loads[3*index[first + 2] + 2]
+        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
+        amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
         t0 = cos(amplitude)
         t1 = sin(amplitude)
         t2 = m_x*t0 - n_x*t1
@@ -200,7 +217,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t902 = m_z*t900 - n_z*t901
             t903 = m_y*t900 - n_y*t901
             t904 = m_x*t900 - n_x*t901
-            energies[POWERS + index[first + 2]] = (-lam_1*((Ra_xx*n_x + Ra_xy*n_y +
+            energies[POWERS + index[first + AT_ITEM]] = (-lam_1*((Ra_xx*n_x + Ra_xy*n_y +
                 Ra_xz*n_z)*(t902*(-Omb_x*Rb_xy + Omb_y*Rb_xx) + t903*(Omb_x*Rb_xz - Omb_z*Rb_xx) +
                 t904*(-Omb_y*Rb_xz + Omb_z*Rb_xy)) + (Ra_yx*n_x + Ra_yy*n_y +
                 Ra_yz*n_z)*(t902*(-Omb_x*Rb_yy + Omb_y*Rb_yx) + t903*(Omb_x*Rb_yz - Omb_z*Rb_yx) +
@@ -214,8 +231,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Rb_zz*t902)*(n_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + n_y*(Oma_x*Ra_zz - Oma_z*Ra_zx) +
                 n_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx))))
         if task == TANGENT:
-            c_place = coefficients[2]
-            c_constraint = coefficients[4]
+            c_place = coefficients[C_PLACE]
+            c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             for column in range(6):
@@ -310,4 +327,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J[41] = (c_constraint*(t708*(-Rb_xx*t703 + Rb_xy*t702) + t709*(-Rb_yx*t703 +
                 Rb_yy*t702) + t710*(-Rb_zx*t703 + Rb_zy*t702)))
             J[48] = 0.0
-    return 0
+    return OK
