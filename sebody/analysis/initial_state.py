@@ -33,7 +33,7 @@ from sebody.engine.state import (
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.model.model import Model
-from sebody.model.nodes import Triplet
+from sebody.model.parts import Triplet
 
 REASONS = {
     HALF_TURN: "a node is turned by nearly half a turn against its body's frame",

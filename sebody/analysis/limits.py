@@ -15,7 +15,7 @@ from sebody.errors import LimitWarning
 
 if TYPE_CHECKING:
     from sebody.analysis.simulation import Simulation
-    from sebody.model.model import Superelement
+    from sebody.model.parts import Superelement
 
 LINEAR = 0.3            # rad, local rotation up to which stiffness is linear, see README
 STATES = 3000           # of bodies that are looked at in a stretch of a run,

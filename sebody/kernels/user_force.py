@@ -17,8 +17,11 @@ from sebody.kernels.layout import ENERGY, HEADER, POWERS, TANGENT
 from sebody.kernels.pipeline import compiled
 
 PLANAR = False
+N_POSITIONS = None      # any number
 N_ROTATIONS = 0
+CONSTANTS = ()
 MULTIPLIERS = 0
+WIDTH = None            # any number
 KINETIC = False
 POWER = True
 DRIVEN = False

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
+from sebody.kernels.user_functions import compile_force
 from sebody.model.histories import History, clock, history
 from sebody.model.inputs import chosen_name, known, triplet, turning, vector
 from sebody.model.mechanism import Mechanism
@@ -83,8 +84,6 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
     InputError
         A function that cannot be compiled, or no nodes.
     """
-    from sebody.kernels.user_force import compile_force     # imports Numba
-
     triplets = tuple(triplet(known(model, n), "position") for n in nodes)
     if not triplets:
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")

@@ -28,7 +28,7 @@ class Mechanism:
     joints: list[Joint] = field(default_factory=list, init=False)
     loads: list[Element] = field(default_factory=list, init=False)  # springs and dampers, too
     grounds: list[Node] = field(default_factory=list, init=False)   # fixed ends of joints
-    own_names: set[str] = field(default_factory=set, init=False)    # that joints and loads were given
+    own_names: set[str] = field(default_factory=set, init=False)    # all but default ones
     gravity_field: NDArray = field(init=False)
 
     def __post_init__(self) -> None:

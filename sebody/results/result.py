@@ -14,7 +14,7 @@ from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.kernels.layout import POTENTIAL
 from sebody.model.model import Model
-from sebody.model.nodes import Triplet
+from sebody.model.parts import Triplet
 from sebody.results.files import check_target
 from sebody.results.postprocessing import Forces, constraint_residuals, energies, forces
 
@@ -148,8 +148,12 @@ class Result:
         return self.forces().elements[:, first:first + width]
 
     def _multipliers(self, name: str) -> NDArray:
-        firsts = [(self.numbering.multipliers[id(j)], j.multipliers) for j in self.model.joints
-                  if j.name == name]
+        equations = [c for c in self.model.constraints if c.name == name]
+        if not equations:
+            raise InputError(f"joint {name!r} takes no equation, so it has no multipliers: what "
+                             "it joins is shared or fixed; the force on a fixed node is its "
+                             "reaction")
+        firsts = [(self.numbering.multipliers[id(c)], c.multipliers) for c in equations]
         rows = [first + k for first, count in firsts for k in range(count)]
         return self.recorded("q")[:, rows]
 
