@@ -1,17 +1,19 @@
-"""Numba's passes that kernels need, and no others: two thirds of the time to compile them.
+"""How everything is compiled: functions by all of Numba's passes, kernels by those they need.
 
-Kernels are arithmetic on floats through pointers. There is nothing to rewrite or inline, every
-variable has one type, so single static assignments are left to LLVM, and a sum of two floats need
-not be looked up among NumPy's functions two thousand times.
+The latter take two thirds of the time. Kernels are arithmetic on floats through pointers: there is
+nothing to rewrite or inline, every variable has one type, so single static assignments are left to
+LLVM, and a sum of two floats need not be looked up among NumPy's functions two thousand times.
 """
 
 from collections.abc import Callable
 from functools import partial
 
-from numba import cfunc, njit
+from numba import njit
 from numba.core import types
+from numba.core.ccallback import CFunc
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.sigutils import normalize_signature
 from numba.core.typed_passes import (
     AnnotateTypes,
     IRLegalization,
@@ -21,7 +23,9 @@ from numba.core.typed_passes import (
 )
 from numba.core.untyped_passes import FixupArgs, IRProcessing, TranslateByteCode
 
+from sebody.kernels.cache import FunctionCache
 from sebody.kernels.layout import ARGUMENTS
+from sebody.kernels.sources import function_hash, kernel_hash
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(types.float64)}
 # of every kernel: task, count, stride and width, then pointers
@@ -74,13 +78,18 @@ def compiled(function: Callable | None = None, **options) -> Callable:
     """Compile a function of the runtime, and keep what was compiled."""
     if function is None:
         return partial(compiled, **options)
-    return njit(cache=True, error_model="numpy", **options)(function)
+    dispatcher = njit(error_model="numpy", **options)(function)
+    dispatcher._cache = FunctionCache(function, function_hash(function))
+    return dispatcher
 
 
-def kernel_function(function: Callable) -> object:
+def kernel_function(function: Callable) -> CFunc:
     """Compile a kernel, a function of the `SIGNATURE`, and keep what was compiled.
 
     Its attribute `address` is that of the machine code.
     """
-    return cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
-                 pipeline_class=KernelPasses)(function)
+    kernel = CFunc(function, normalize_signature(SIGNATURE), {},
+                   {"error_model": "numpy", "fastmath": {"contract"}}, KernelPasses)
+    kernel._cache = FunctionCache(function, kernel_hash(function))
+    kernel.compile()
+    return kernel
