@@ -24,8 +24,7 @@ from sebody.derive.printing.emit import superelement_text
 from sebody.derive.printing.emit_element import element_text
 from sebody.derive.printing.emit_options import options_text
 from sebody.kernels.loader import user_directory
-
-KERNEL_PREFIXES = ("superelement_", "element_")
+from sebody.kernels.names import PREFIXES, element_name
 
 
 def shipped() -> dict[str, str]:
@@ -34,7 +33,7 @@ def shipped() -> dict[str, str]:
     for layout, frame, option in SUPERELEMENTS:
         files |= variant_file(layout, frame, option)
     for name in SHIPPED_ELEMENTS:
-        files[f"element_{name}.py"] = element_text(ELEMENTS[name]())
+        files[f"{element_name(name)}.py"] = element_text(ELEMENTS[name]())
     return files
 
 
@@ -81,7 +80,7 @@ def differences(directory: Path, files: dict[str, str], orphans: bool = True) ->
             out += difflib.unified_diff(path.read_text().splitlines(), text.splitlines(),
                                         f"generated/{name}", f"derived/{name}", lineterm="", n=1)
     for path in sorted(directory.glob("*.py")) if orphans else ():
-        if path.name.startswith(KERNEL_PREFIXES) and path.name not in files:
+        if path.name.startswith(PREFIXES) and path.name not in files:
             out.append(f"orphaned: {path.name} is not in derive/manifest.py: add it or delete it")
     return out
 
