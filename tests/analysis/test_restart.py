@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from sebody import InputError, Simulation, generalized_alpha
-from sebody.analysis.restart import resume, save
-from sebody.analysis.tolerance import Tolerance
+from sebody import InputError, Simulation, Tolerance, generalized_alpha
+from sebody.analysis import resume, save_state
 from sebody.scenes import chain, hinged_beam, spherical_beam_strong
 
 
@@ -19,7 +18,7 @@ from sebody.scenes import chain, hinged_beam, spherical_beam_strong
 def test_bit_for_bit(tmp_path, build, h, t_end, options):
     whole = Simulation(build().model, h, **options).run_to(t_end / 2).run_to(t_end).result()
     first = Simulation(build().model, h, **options).run_to(t_end / 2)
-    path = save(first, tmp_path / "half.npz")
+    path = save_state(first, tmp_path / "half.npz")
     second = resume(build().model, path)
     assert second.time == first.time and second.scheme == first.scheme
     result = second.run_to(t_end).result()
@@ -30,10 +29,10 @@ def test_bit_for_bit(tmp_path, build, h, t_end, options):
 def test_wrong_files(tmp_path):
     run = Simulation(hinged_beam.build().model, 0.01).run_to(0.1)
     with pytest.raises(InputError, match="must end in .npz"):
-        save(run, tmp_path / "state.txt")
+        save_state(run, tmp_path / "state.txt")
     with pytest.raises(InputError, match="does not exist: make it"):
-        save(run, tmp_path / "nowhere" / "state.npz")
-    path = save(run, tmp_path / "state.npz")
+        save_state(run, tmp_path / "nowhere" / "state.npz")
+    path = save_state(run, tmp_path / "state.npz")
     with pytest.raises(InputError, match="is of another model"):
         resume(hinged_beam.build(modes=2).model, path)
     with pytest.raises(InputError, match="is of another model"):
@@ -47,6 +46,12 @@ def test_wrong_files(tmp_path):
         (tmp_path / "broken.npz").write_bytes(content)
         with pytest.raises(InputError, match="is no restart file"):
             resume(hinged_beam.build().model, tmp_path / "broken.npz")
+    with np.load(path) as file:
+        arrays = {name: file[name] for name in file if name != "aux_old"}
+    np.savez(tmp_path / "older.npz", **arrays)
+    with pytest.raises(InputError, match=r"older.npz was written by another version of sebody "
+                                         r"\(it differs in aux_old\): run the model again"):
+        resume(hinged_beam.build().model, tmp_path / "older.npz")
     np.savez(tmp_path / "other.npz", t=np.zeros(3))
     with pytest.raises(InputError, match="is no restart file"):
         resume(hinged_beam.build().model, tmp_path / "other.npz")

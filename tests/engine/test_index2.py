@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers import order
 
 from sebody import InputError, Simulation, generalized_alpha, hht
 from sebody.assembly.build import DENSE_LIMIT
@@ -13,10 +14,6 @@ def top(index, h, t_end=0.5):
     scheme = generalized_alpha(tolerance=1e-12, index=index)
     result = Simulation(scene.model, h, scheme).run_to(t_end).result()
     return result, result[f"{scene.model.joints[0].name}.multipliers"]
-
-
-def order(steps, errors):
-    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
 @pytest.mark.parametrize("index, expected", [(2, (1.8, 2.3)), (3, (0.8, 1.3))])

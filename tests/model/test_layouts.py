@@ -1,6 +1,5 @@
 """Layouts with absent triplets against the full layout, planar against spatial, finer divisions."""
 
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +13,8 @@ from sebody.model import bodies as model_bodies
 from sebody.reduction import craig_bampton
 from sebody.scenes import box, right_angle_frame, shaft
 from sebody.scenes.hinged_beam import SECTION, TORQUE, build
+from sebody.studies import references
 
-DATA = Path(__file__).parents[1] / "data"
 END = np.array([100.0, 100.0, 0.0])
 
 
@@ -65,7 +64,7 @@ def planar_hinged_beam(modes=4):
 
 
 def test_planar_beam_against_the_reference():
-    reference = np.load(DATA / "hinged_beam.npz")["tip_position"][:, :2]
+    reference = references.reference("hinged_beam")["tip_position"][:, :2]
     result = simulate(planar_hinged_beam(), 0.01, 30.0)
     assert result.numbering.free == 1 + 2 + 1 + 4
     assert np.linalg.norm(result["tip.position"] - reference) / np.linalg.norm(
@@ -101,7 +100,7 @@ def divided_beam(parts):
 
 @pytest.mark.parametrize("parts, h, limit", [(2, 0.01, 5e-4), (4, 0.005, 1.2e-4)])
 def test_more_superelements_stiffen_centrifugally(parts, h, limit):
-    reference = np.load(DATA / "hinged_beam.npz")["tip_position"]
+    reference = references.reference("hinged_beam")["tip_position"]
     result = simulate(divided_beam(parts), h, 30.0)
     tip = result["tip.position"][::round(0.01 / h)]
     assert np.linalg.norm(tip - reference) / np.linalg.norm(reference) <= limit

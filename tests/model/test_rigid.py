@@ -2,15 +2,12 @@
 
 import numpy as np
 import pytest
+from helpers import order
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipj, ellipk, ellipkinc
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
 from sebody.scenes import heavy_top, torque_free_body
-
-
-def order(steps, errors):
-    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
 def free_rotation(t, inertia, spin):

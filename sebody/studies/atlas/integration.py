@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from sebody.analysis.simulation import Simulation, hht, simulate
+from sebody.analysis.schemes import hht
+from sebody.analysis.simulation import Simulation, simulate
 from sebody.engine.state import Scheme
 from sebody.errors import SimulationError
 from sebody.model.model import Model

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.analysis.simulation import generalized_alpha, simulate
+from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.simulation import simulate
 from sebody.kernels.loader import user_directory
 from sebody.studies.chart.cases import COARSEST, SCENES, builder
 
