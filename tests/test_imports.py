@@ -15,12 +15,13 @@ FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.g
 ROOMS = {
     "errors": set(),
     "kernels": set(),
+    "generated": {"kernels"},
     "engine": {"kernels"},
     "fem": set(),
     "reduction": {"fem"},
     "io": {"fem"},
-    "model": {"kernels", "fem", "reduction"},
-    "assembly": {"kernels", "engine", "reduction", "model"},
+    "model": {"kernels", "generated", "fem", "reduction"},
+    "assembly": {"kernels", "engine", "model"},
     "results": {"kernels", "engine", "model", "assembly"},
     "analysis": {"kernels", "engine", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
@@ -28,7 +29,6 @@ ROOMS = {
     "studies": {"kernels", "engine", "fem", "reduction", "model", "assembly", "results",
                 "analysis", "scenes"},
     "cli": {"kernels", "results", "analysis", "scenes", "studies"},
-    "generated": {"kernels"},
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}

@@ -107,6 +107,30 @@ def test_a_rigid_body_has_no_modes():
         result[f"{name}.modes"]
 
 
+def hinged(explicit):
+    model = Model(planar=True)
+    model.rigid_body("bob", model.node("pin", (0.0, 0.0)), 2.0, 0.1, centre=(1.0, 0.0))
+    model.revolute("pin", explicit=explicit, name="hinge")
+    model.gravity((0.0, -9.81))
+    return simulate(model, 0.001, 0.01)
+
+
+def test_multipliers_of_a_joint_by_its_name():
+    """They are the force of the support, whose reaction is that where the pin is fixed instead."""
+    multipliers, reaction = hinged(True)["hinge.multipliers"], hinged(False)["pin.reaction"]
+    assert multipliers.shape == (11, 2)
+    # a pendulum let go from the horizontal: m g (1 - m l^2 / (m l^2 + I))
+    assert reaction[0] == pytest.approx([0.0, 2.0 * 9.81 * (1 - 2.0 / 2.1)], abs=1e-9)
+    assert np.abs(multipliers[0]) == pytest.approx(np.abs(reaction[0]), abs=1e-9)
+
+
+def test_a_joint_without_equations_has_no_multipliers():
+    with pytest.raises(InputError, match="joint 'hinge' takes no equation, so it has no "
+                                         "multipliers: what it joins is shared or fixed; the "
+                                         "force on a fixed node is its reaction"):
+        hinged(False)["hinge.multipliers"]
+
+
 def test_a_half_node_has_no_rotation():
     half = planar_beam((0, 0), (100, 0), SECTION, 4)
     body = craig_bampton(half, [(0, "full"), (2, "full"), (4, "full")], 0)
