@@ -60,55 +60,64 @@ def number(model: Mechanism) -> Numbering:
     InputError
         A triplet that belongs to no body and is not fixed.
     """
-    names, at, modes, multipliers = [], {}, {}, {}
     parts = _parts(model)
     last = {id(p): k for k, (_, triplets, _) in enumerate(parts) for p in _parents(triplets)}
     coupled = _coupled(model, last)
-    joints, groups = defaultdict(list), []
-    for joint in model.constraints:
-        for key in {id(p) for p in _parents(joint.triplets)}:
-            joints[key].append(joint)
-
-    def place(triplet: Triplet) -> None:
-        if triplet.solved and id(triplet) not in at:
-            at[id(triplet)] = len(names)
-            names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
-            place_multipliers(joints[id(triplet)])
-
-    def place_multipliers(of: list[Element]) -> None:
-        for joint in of:
-            if all(id(p) in at or not p.solved for p in _parents(joint.triplets)):
-                multipliers[id(joint)] = len(names)
-                names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
-
-    place_multipliers([joint for joint in model.constraints if not any(
-        p.solved for p in _parents(joint.triplets))])
-    for number_, (name, triplets, count) in enumerate(parts):
-        groups.append(len(names))
+    order, modes, groups = _Order(model), {}, []
+    for k, (name, triplets, count) in enumerate(parts):
+        groups.append(len(order.names))
         if name in model.bodies:
-            modes[name] = len(names)
-        names.extend(f"mode {k} of {name}" for k in range(count))
-        own = [p for p in _parents(triplets) if last[id(p)] == number_]
+            modes[name] = len(order.names)
+        order.names.extend(f"mode {mode} of {name}" for mode in range(count))
+        own = [p for p in _parents(triplets) if last[id(p)] == k]
         for triplet in sorted(own, key=lambda p: coupled[id(p)]):
-            place(triplet)
+            if triplet.solved and id(triplet) not in order.at:
+                order.place(triplet)
+                order.place_multipliers(triplet)
     _refuse_loose(model, last)
-    free = len(names)
-    used = _used(model)
+    free, used = len(order.names), _used(model)
     for triplet in used:
-        if id(triplet) not in at and triplet.root is None:
-            at[id(triplet)] = len(names)
-            names.extend(f"{triplet.name}[{k}] (fixed)" for k in range(triplet.start.size))
+        if id(triplet) not in order.at and triplet.root is None:
+            order.place(triplet, " (fixed)")
     hanging = [t for t in used if t.root is not None]
     for triplet in hanging:
-        at[id(triplet)] = len(names)
-        names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
-    rotations = {}
-    if not model.planar:
-        for triplet in used:
-            if triplet.turns:
-                rotations.setdefault(id(triplet), len(rotations))
-    return Numbering(free, len(names), at, rotations, modes, multipliers, names, hanging,
-                     *number_items(model, at), np.array(groups))
+        order.place(triplet)
+    turning = [] if model.planar else [t for t in used if t.turns]
+    rotations = {id(t): k for k, t in enumerate(turning)}
+    return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
+                     order.names, hanging, *number_items(model, order.at), np.array(groups))
+
+
+class _Order:
+    """Coordinates in the order they are numbered in."""
+
+    def __init__(self, model: Mechanism) -> None:
+        self.names: list[str] = []
+        self.at: dict[int, int] = {}                # id(triplet) -> first coordinate
+        self.multipliers: dict[int, int] = {}       # id(constraint) -> first multiplier
+        self._constraints: dict[int, list[Element]] = defaultdict(list)     # on each triplet
+        for constraint in model.constraints:
+            parents = {id(p): p for p in _parents(constraint.triplets)}
+            for key in parents:
+                self._constraints[key].append(constraint)
+            if not any(p.solved for p in parents.values()):
+                self._place(constraint)
+
+    def place(self, triplet: Triplet, remark: str = "") -> None:
+        """Number the coordinates of a triplet."""
+        self.at[id(triplet)] = len(self.names)
+        self.names.extend(f"{triplet.name}[{k}]{remark}" for k in range(triplet.start.size))
+
+    def place_multipliers(self, triplet: Triplet) -> None:
+        """Number the multipliers of the constraints of which this was the last triplet."""
+        for constraint in self._constraints[id(triplet)]:
+            if all(id(p) in self.at or not p.solved for p in _parents(constraint.triplets)):
+                self._place(constraint)
+
+    def _place(self, constraint: Element) -> None:
+        self.multipliers[id(constraint)] = len(self.names)
+        self.names.extend(f"multiplier {j} of {constraint.name}"
+                          for j in range(constraint.multipliers))
 
 
 def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:
