@@ -14,7 +14,8 @@ from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
 from sebody.kernels.layout import RECORD
-from sebody.model.model import Model, Superelement
+from sebody.model.model import Model
+from sebody.model.parts import Superelement
 from sebody.results.recording import record_counts
 
 LINEAR = 0.3            # rad, local rotation up to which stiffness is linear, see README

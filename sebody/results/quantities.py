@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES
-from sebody.model.nodes import Triplet
+from sebody.model.parts import Triplet
 from sebody.results.recording import Recording, record_counts
 
 
@@ -169,8 +169,11 @@ def _body_forces(recording: Recording, name: str) -> NDArray:
 
 
 def _multipliers(recording: Recording, name: str) -> NDArray:
-    firsts = [(recording.numbering.multipliers[id(j)], j.multipliers)
-              for j in recording.model.joints if j.name == name]
+    equations = [c for c in recording.model.constraints if c.name == name]
+    if not equations:
+        raise InputError(f"joint {name!r} takes no equation, so it has no multipliers: what it "
+                         "joins is shared or fixed; the force on a fixed node is its reaction")
+    firsts = [(recording.numbering.multipliers[id(c)], c.multipliers) for c in equations]
     return recording.recorded("q")[:, [first + k for first, count in firsts for k in range(count)]]
 
 

@@ -58,25 +58,23 @@ def test_wrong_files(tmp_path):
 
 
 def small(mass=1.0, stiffness=5.0, times=(0.0, 1.0, 2.0), values=(0.0, 0.3, 0.4),
-          direction=(1.0, 0.0), start=(1.0, 0.0), push=2.0, kind="force"):
+          direction=(1.0, 0.0), start=(1.0, 0.0), push=2.0, delay=0.0, on="ball"):
     """A mass on a spring whose other end is moved: a model of which any part can be another."""
     model = Model(planar=True)
     model.node("end", (0.0, 0.0))
     model.move("end", direction, list(zip(times, values, strict=True)))
     model.fix("end", "rotation")
-    model.rigid_body("ball", model.node("ball", start), mass, 1.0)
+    for name, point in (("ball", start), ("second", (2.0, 0.0))):
+        model.rigid_body(name, model.node(name, point), mass, 1.0)
     model.spring("ball", "end", stiffness, length=1.0)
-    if kind == "force":
-        model.force("ball", (1.0, 0.0), [(0.0, 0.0), (1.0, push)])
-    else:
-        model.torque("ball", 1.0, [(0.0, 0.0), (1.0, push)])
+    model.force(on, (1.0, 0.0), [(delay, 0.0), (delay + 1.0, push)])
     return model
 
 
 @pytest.mark.parametrize("change", [
     {"mass": 1.5}, {"stiffness": 6.0}, {"times": (0.0, 1.0, 2.5)}, {"values": (0.0, 0.3, 0.5)},
-    {"direction": (0.0, 1.0)}, {"start": (1.0, 0.5)}, {"push": 3.0}, {"kind": "torque"}],
-    ids=lambda change: next(iter(change)))
+    {"direction": (0.0, 1.0)}, {"start": (1.0, 0.5)}, {"push": 3.0}, {"delay": 1.0},
+    {"on": "second"}], ids=lambda change: next(iter(change)))
 def test_a_state_goes_on_with_its_own_model_only(tmp_path, change):
     """Unknowns and names are those of the saved model; one number, or what it acts on, is not."""
     path = save_state(Simulation(small(), 0.01).run_to(0.1), tmp_path / "state.npz")
