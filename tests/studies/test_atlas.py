@@ -41,7 +41,7 @@ def test_page_and_table(tmp_path, capsys):
     assert main(["atlas", "collinear", "damping", "--output", str(page)]) == 0
     out = capsys.readouterr().out
     assert "collinear: nearly collinear nodes" in out
-    assert re.search(r"offset 0.3: turn +theory +3.33333e-06 measured 3.33", out)
+    assert re.search(r"offset 0.3: turn +theory +3.33333e-06 +measured 3.33", out)
     assert re.search(r"offset 1e-08: refused +program +1 +measured 1 +ok", out)
     assert "DIFFERS" not in out and page.stat().st_size > 10_000
     assert main(["atlas", "moon"]) == 2
