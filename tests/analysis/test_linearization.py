@@ -6,10 +6,12 @@ References: closed solutions and, for beams cut into linear bodies, the theory o
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation
 from sebody.analysis.linearization import linearize, modes, vibrations
 from sebody.analysis.statics import equilibrium
+from sebody.assembly.numbering import coordinates
 from sebody.fem import Section
 from sebody.scenes import hinged_beam
 from sebody.studies.atlas.theory import beck_load, cantilever, divergence, euler_load, flap
@@ -267,3 +269,27 @@ def test_refusals():
     linked.point_mass("ball", "end", 1.0)
     with pytest.raises(InputError, match="hangs on a rigid link, which the tangents"):
         modes(Simulation(linked, 0.01), 2.0)
+
+
+def test_frequencies_do_not_depend_on_where_space_points():
+    """A turning state as a whole turned by one radian, its spin axis with it: the same motion.
+
+    What the frames of the bodies were before is then no more along the spin or across it.
+    """
+    found, spin = turning(2, 6.0, internal=2, elements=8)
+    expected = modes(found, spin).values
+    Q = Rotation.from_rotvec([0.6, -0.7, 0.4]).as_matrix()
+    state, numbering = found.state, found.numbering
+    for node in found.model.nodes.values():
+        at = coordinates(numbering, node.position)
+        for part in (state.q, state.v, state.a):
+            part[at] = Q @ part[at]
+    for matrices in (state.R, state.frames, state.frames_old):
+        matrices[:] = (Q @ matrices.reshape(-1, 3, 3)).ravel()
+    turned = modes(found, Q @ spin).values
+    # eigenvalues of a matrix of the order of the highest square, with its rounding
+    size = np.abs(expected).max()**2
+    assert np.abs(turned**2 - expected**2).max() < 1e-10 * size
+    low = np.abs(expected) < 1e2
+    assert low.sum() >= 4
+    assert np.abs(turned[low].imag - expected[low].imag).max() < 1e-5
