@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from sebody import InputError, Simulation, SimulationError, generalized_alpha
+from sebody import (
+    InputError,
+    Model,
+    Simulation,
+    SimulationError,
+    generalized_alpha,
+    simulate,
+)
 from sebody.analysis.accuracy import difference, simulate_within
 from sebody.analysis.tolerance import Tolerance
 from sebody.engine import loop
@@ -218,3 +225,15 @@ def test_an_error_that_cannot_be_kept_stops_the_run():
     with pytest.raises(SimulationError, match="error of a step is above the tolerance") as caught:
         Simulation(scene.model, 0.1, tolerance=Tolerance(1e-40)).run_to(1.0)
     assert len(caught.value.result.t) >= 1
+
+
+def test_work_within_steps_follows_the_power():
+    """A constant force on a mass: ``W = F^2 t^2 / 2 m``, exact on any grid and with any steps."""
+    push, mass = 3.0, 2.0
+    model = Model(planar=True)
+    model.point_mass("ball", model.node("ball", (1.0, 0.0), keeps="translation"), mass)
+    model.force("ball", (0.0, push))
+    result = simulate(model, 0.01, 2.0, tolerance=Tolerance(1e-3))
+    assert result.steps < len(result.t) / 3
+    exact = push**2 * result.t**2 / (2 * mass)
+    assert result["force on ball.position.work"] == pytest.approx(exact, rel=1e-9, abs=1e-12)

@@ -56,8 +56,9 @@ def test_potential_is_that_of_the_centre_of_mass():
     result = simulate(free_beam(), 0.01, 0.5)
     mass = SECTION.density * SECTION.area * np.linalg.norm(END)
     middle = (result["base.position"] + result["tip.position"]) / 2
-    # the reduced mass has the rounding of its condensation, EPS times a condition of 1e3
-    assert np.allclose(result["energy.potential"], -mass * middle @ FIELD, rtol=1e-12)
+    # the reduced mass has the rounding of its condensation, EPS times a condition of 5e3
+    assert np.allclose(result["energy.potential"], -mass * middle @ FIELD,
+                       rtol=5e3 * np.finfo(float).eps)
 
 
 def test_energy_balance_of_a_falling_pendulum_falls_with_the_square_of_the_step():
