@@ -294,3 +294,23 @@ def test_frequencies_do_not_depend_on_where_space_points():
     low = np.abs(expected) < 1e2
     assert low.sum() >= 4
     assert np.abs(turned[low].imag - expected[low].imag).max() < 1e-5
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_stiffness_of_a_force_at_the_end_of_a_link(planar):
+    """A force F of space on an arm r, in no equilibrium: its moment ``r x R^T F`` by the turn.
+
+    By a turn theta it changes by ``F (r . theta) - (r . F) theta``; the stiffness is minus that.
+    """
+    d = 2 if planar else 3
+    arm, force = np.array([1.2, -0.5, 0.8])[:d], np.array([3.0, 2.0, -4.0])[:d]
+    model = Model(planar=planar)
+    hub = model.node("hub", np.zeros(d))
+    model.fix(hub, "position")
+    model.rigid_body("body", hub, 1.0, 2.0 if planar else (2.0, 2.5, 3.0))
+    model.attach("end", arm, hub)
+    model.force("end", force)
+    found = linearize(Simulation(model, 0.01))
+    expected = (np.array([[arm @ force]]) if planar else
+                arm @ force * np.eye(3) - np.outer(force, arm))
+    assert found.free @ found.stiffness @ found.free.T == pytest.approx(expected, abs=1e-12)

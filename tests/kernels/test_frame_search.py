@@ -232,3 +232,19 @@ def test_planar_relative_angles_refuses_half_turns(angle, status):
     assert np.cos(2.941) > rotations.NEAR_PI > np.cos(2.942)
     assert locate.planar_relative_angles(1, np.array([angle]), np.eye(3).ravel(), np.zeros(1)
                                          ) == status
+
+
+def test_step_of_the_converged_mean_is_newtons():
+    """``B^-1 x`` with ``B = sum alpha_j T^-T(psi_j)``, T by its closed form.
+
+    Another matrix would lead to the same frame, only in more steps.
+    """
+    random = np.random.default_rng(4)
+    psi, alpha, x = random.normal(size=(3, 3)), random.dirichlet(np.ones(3)), random.normal(size=3)
+    B = np.zeros((3, 3))
+    for a, p in zip(alpha, psi, strict=True):
+        t, S = np.linalg.norm(p), np.cross(np.eye(3), p)        # skew(p)
+        T = np.eye(3) - (1 - np.cos(t)) / t**2 * S + (t - np.sin(t)) / t**3 * S @ S
+        B += a * np.linalg.inv(T).T
+    found = locate._mean_step(3, alpha, psi.ravel(), *x)
+    assert np.abs(found - np.linalg.solve(B, x)).max() <= 1e-13      # B is of order one
