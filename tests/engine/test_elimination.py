@@ -64,6 +64,7 @@ def test_solves_what_scipy_solves(n, links):
     pattern = elimination_pattern.block_pattern(row, column, n)
     x = solved(pattern, np.arange(n), row, column, value, b)
     exact = spsolve(csc_matrix((value, (row, column)), shape=(n, n)), b)
+    # diagonally dominant, a condition below two: EPS times the terms of a row and its fill
     assert np.abs(x[:n] - exact).max() < 1e-12 * np.abs(exact).max()
 
 
@@ -76,7 +77,7 @@ def test_slots_leave_the_solution_as_it_is(groups):
     b = np.random.default_rng(1).normal(size=n)
     x = solved(pattern, slot, row, column, value, b)
     exact = spsolve(csc_matrix((value, (row, column)), shape=(n, n)), b)
-    assert np.abs(x[slot] - exact).max() < 1e-12 * np.abs(exact).max()
+    assert np.abs(x[slot] - exact).max() < 1e-12 * np.abs(exact).max()      # as above
 
 
 def test_bodies_on_whole_blocks_are_less_work(monkeypatch):

@@ -49,7 +49,7 @@ def test_shapes_by_name(run, shapes):
 
 
 def test_time_is_the_output_grid():
-    assert np.allclose(spatial()["t"], np.arange(51) * 0.01, rtol=0, atol=1e-12)
+    assert np.allclose(spatial()["t"], np.arange(51) * 0.01, rtol=0, atol=1e-12)    # products
 
 
 def test_fixed_positions_are_constant():
@@ -74,7 +74,8 @@ def test_angular_velocity_is_the_rate_of_rotation_in_global_axes():
     model.rigid_velocity((0, 0, 0), (3.0, 1.0, 2.0))
     result = simulate(model, 0.002, 0.5)
     R, omega = result["b.rotation"], result["b.angular_velocity"]
-    assert np.allclose(R @ R.transpose(0, 2, 1), np.eye(3), atol=1e-12)
+    # made orthogonal every eighth step: rounding of products, a few EPS
+    assert np.allclose(R @ R.transpose(0, 2, 1), np.eye(3), rtol=0, atol=1e-12)
     assert np.abs(R[-1] - np.eye(3)).max() > 1.0
     spin = ((R[2:] - R[:-2]) / 0.004) @ R[1:-1].transpose(0, 2, 1)
     rate = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
