@@ -53,7 +53,7 @@ def find(name: str) -> Path | None:
     path = user_directory() / f"{name}.py"
     if not path.exists():
         return None
-    facts = dict(re.findall(r'^([A-Z]+) = "(.*)"$', path.read_text(encoding="utf-8"), re.MULTILINE))
+    facts = dict(re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE))
     if facts.get("ROOM") != room_hash("kernels"):
         variant = ":".join(facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA"))
         raise InputError(f"kernel {path} was made by another version of sebody: make it again with"

@@ -11,7 +11,7 @@ from sebody.kernels.sources import room_hash
 KERNEL = '''LAYOUT = "planar-f9"
 FRAME = "mean"
 INERTIA = "a"
-ROOM = "{room}"
+ROOM = "{room}"     # of today
 TOUCHED = True
 '''
 NAME = "superelement_planar_f9_mean_a"
@@ -57,7 +57,7 @@ def test_kernel_of_the_user(mine):
 
 
 @pytest.mark.parametrize("text", [KERNEL.format(room="of 0.0.1"),
-                                  KERNEL.replace('ROOM = "{room}"\n', "")])
+                                  KERNEL.replace("ROOM", "LEAVES")])
 def test_kernel_of_another_version_is_refused(mine, text):
     (mine / f"{NAME}.py").write_text(text)
     for act in (loader.find, loader.load):
