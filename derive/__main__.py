@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import sebody.generated
+from sebody.derive.formulas import frames, inertia
 from sebody.derive.formulas.frames import FRAMES
 from sebody.derive.formulas.inertia import OPTIONS
 from sebody.derive.kernels.catalogue import ELEMENTS
@@ -21,18 +22,18 @@ from sebody.derive.kernels.manifest import SUPERELEMENTS
 from sebody.derive.kernels.superelement import superelement
 from sebody.derive.printing.emit import superelement_text
 from sebody.derive.printing.emit_element import element_text
+from sebody.derive.printing.emit_options import options_text
 from sebody.kernels.loader import user_directory
-
-KERNEL_PREFIXES = ("superelement_", "element_")
+from sebody.kernels.names import PREFIXES, element_name
 
 
 def shipped() -> dict[str, str]:
-    """File name and text of every kernel of the manifest."""
-    files = {}
-    for layout, frame, inertia in SUPERELEMENTS:
-        files |= variant_file(layout, frame, inertia)
+    """File name and text of every kernel of the manifest, and of the options' traits."""
+    files = {"options.py": options_text(frames.TRAITS, inertia.TRAITS)}
+    for layout, frame, option in SUPERELEMENTS:
+        files |= variant_file(layout, frame, option)
     for name in SHIPPED_ELEMENTS:
-        files[f"element_{name}.py"] = element_text(ELEMENTS[name]())
+        files[f"{element_name(name)}.py"] = element_text(ELEMENTS[name]())
     return files
 
 
@@ -79,7 +80,7 @@ def differences(directory: Path, files: dict[str, str], orphans: bool = True) ->
             out += difflib.unified_diff(path.read_text().splitlines(), text.splitlines(),
                                         f"generated/{name}", f"derived/{name}", lineterm="", n=1)
     for path in sorted(directory.glob("*.py")) if orphans else ():
-        if path.name.startswith(KERNEL_PREFIXES) and path.name not in files:
+        if path.name.startswith(PREFIXES) and path.name not in files:
             out.append(f"orphaned: {path.name} is not in derive/manifest.py: add it or delete it")
     return out
 

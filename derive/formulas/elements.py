@@ -38,13 +38,25 @@ class Block(NamedTuple):
         return self.state.kind == "rotation"
 
 
+class Constant(NamedTuple):
+    """A constant of an element: what the model gives, by name."""
+
+    quantity: Quantity
+    meaning: str
+
+    @property
+    def symbols(self) -> sp.Matrix:
+        """Its components."""
+        return self.quantity.symbols
+
+
 class Element(NamedTuple):
     """Description of a joint, body or force: what the printer turns into text."""
 
     name: str
     summary: str
     space: Space
-    constants: tuple[Quantity, ...]     # in the order of the constants row
+    constants: tuple[Constant, ...]     # in the order of the constants row
     blocks: tuple[Block, ...]           # positions first
     multipliers: tuple[sp.Symbol, ...]
     residual: tuple[sp.Expr, ...]       # force on the coordinates, then phi
@@ -54,6 +66,11 @@ class Element(NamedTuple):
     second: tuple[sp.Expr, ...]         # and twice
     sums: dict[str, sp.Expr]            # what it adds to the energies, by name
     power: sp.Expr | None               # of loads, dampers and drives on the system
+
+
+def constant(space: Space, name: str, kind: str, meaning: str) -> Constant:
+    """Declare a constant: a scalar, a vector or an axial vector."""
+    return Constant(space.quantity(name, kind, "element"), meaning)
 
 
 def position(space: Space, name: str) -> Block:
@@ -103,7 +120,7 @@ def _moved(blocks: Sequence[Block], along_what: str) -> Rules:
 
 
 def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
-            constants: Sequence[Quantity] = (), *, constraints: Sequence[sp.Expr] = (),
+            constants: Sequence[Constant] = (), *, constraints: Sequence[sp.Expr] = (),
             kinetic: sp.Expr = sp.S.Zero, strain: sp.Expr = sp.S.Zero,
             potential: sp.Expr = sp.S.Zero, dissipation: sp.Expr = sp.S.Zero,
             load: sp.Expr = sp.S.Zero) -> Element:

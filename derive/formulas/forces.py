@@ -4,8 +4,10 @@ import sympy as sp
 
 from sebody.derive.formulas.elements import (
     AMPLITUDE,
+    Constant,
     Element,
     amplitude,
+    constant,
     element,
     position,
     rotation,
@@ -17,7 +19,7 @@ from sebody.derive.symbolic.steps import cross
 def force(planar: bool, follower: bool) -> Element:
     """Force on a position, along a direction of space or of a body (follower)."""
     space = Space(planar)
-    d, x = space.quantity("d", "vector", "element"), position(space, "a")
+    d, x = constant(space, "d", "vector", "force at amplitude one"), position(space, "a")
     blocks, direction = [x], d.symbols
     if follower:
         turn = rotation(space, "a")
@@ -30,7 +32,7 @@ def force(planar: bool, follower: bool) -> Element:
 def torque(planar: bool, follower: bool) -> Element:
     """Torque on a rotation: ``delta W = m . R dTheta``, or ``m . dTheta`` when it follows."""
     space = Space(planar)
-    d, turn = space.quantity("d", "axial", "element"), rotation(space, "a")
+    d, turn = constant(space, "d", "axial", "torque at amplitude one"), rotation(space, "a")
     direction = turn.direction.symbols
     if not follower:
         direction = turn.state.symbols * direction
@@ -42,16 +44,21 @@ def torque(planar: bool, follower: bool) -> Element:
 def mode_force() -> Element:
     """Force on an internal mode: work ``f dy``."""
     mode = amplitude(Space(False), "a")
-    factor = Space(False).quantity("factor", "scalar", "element")
+    factor = constant(Space(False), "factor", "scalar", "force at amplitude one")
     return element("mode_force", "force on an internal mode", Space(False), [mode], (factor,),
                    load=AMPLITUDE[0] * factor.symbols[0] * mode.direction.symbols[0])
+
+
+def _stiffness(space: Space) -> list[Constant]:
+    """Coefficients of ``k u + k3 u^3 + c u'``."""
+    meanings = {"k": "stiffness", "k3": "cubic stiffness", "c": "damping"}
+    return [constant(space, name, "scalar", meaning) for name, meaning in meanings.items()]
 
 
 def spring(planar: bool) -> Element:
     """Spring and damper between two points: ``F = k u + k3 u^3 + c u'``, u the stretch."""
     space = Space(planar)
-    names = "k", "k3", "c", "length"
-    constants = [space.quantity(n, "scalar", "element") for n in names]
+    constants = [*_stiffness(space), constant(space, "length", "scalar", "length at rest")]
     k, k3, c, length = (q.symbols[0] for q in constants)
     a, b = position(space, "a"), position(space, "b")
     d, w = b.state.symbols - a.state.symbols, b.rate.symbols - a.rate.symbols
@@ -69,14 +76,15 @@ def torsion_spring(planar: bool) -> Element:
     a turn from the rest angle. In a plane any angle.
     """
     space = Space(planar)
-    constants = [space.quantity(n, "scalar", "element") for n in ("k", "k3", "c", "rest")]
+    constants = [*_stiffness(space), constant(space, "rest", "scalar", "angle at rest [rad]")]
     k, k3, c, rest = (q.symbols[0] for q in constants)
     a, b = rotation(space, "a"), rotation(space, "b")
     if planar:
         angle, rate = a.angle - b.angle - rest, a.rate.symbols[2] - b.rate.symbols[2]
         vectors = []
     else:
-        vectors = [space.quantity(n, "vector", "element") for n in ("n", "m")]
+        vectors = [constant(space, "n", "vector", "direction normal to the axis, body a"),
+                   constant(space, "m", "vector", "direction normal to both, body b")]
         n, m = (v.symbols for v in vectors)
         seen = b.state.symbols.T * a.state.symbols * n      # n and m: rest angle off the start
         angle = sp.atan2(m.dot(seen), n.dot(seen))
@@ -96,8 +104,10 @@ def bushing(planar: bool) -> Element:
     antisymmetric part of ``R_a^T R_b`` (in a plane the angle); each axis has its own coefficients.
     """
     space = Space(planar)
-    kinds = ("vector", "k"), ("vector", "c"), ("axial", "kt"), ("axial", "ct")
-    constants = [space.quantity(n, kind, "element") for kind, n in kinds]
+    constants = [constant(space, "k", "vector", "stiffness along each axis"),
+                 constant(space, "c", "vector", "damping along each axis"),
+                 constant(space, "kt", "axial", "stiffness about each axis"),
+                 constant(space, "ct", "axial", "damping about each axis")]
     k, c, kt, ct = (q.symbols for q in constants)
     xa, xb = position(space, "a"), position(space, "b")
     ra, rb = rotation(space, "a"), rotation(space, "b")

@@ -21,13 +21,14 @@ from sebody.derive.symbolic.rotations import (
 from sebody.derive.symbolic.spaces import Quantity
 from sebody.derive.symbolic.steps import Solve, Stage, Step, Text, cross
 from sebody.derive.symbolic.variation import along, check_same, differential, turning
+from sebody.kernels.layout import FrameTraits
 
 
 class Frame(NamedTuple):
     """A choice of floating frame, for one space."""
 
     name: str
-    summary: str
+    traits: FrameTraits
     locate: tuple[Step, ...]
     rate: Callable[[Quantity, Quantity, bool], tuple[Step, ...]]  # (angular rate, of what, first)
     pull: tuple[Step, ...]              # W -> wp
@@ -36,6 +37,18 @@ class Frame(NamedTuple):
     rotation: sp.Matrix                 # force of wp on delta Theta_j
     differentials: tuple[Stage, ...] = ()   # of what `locate` computes, once dth0 is known
     small: bool = False                 # elastic rotations vary by (20) in place of (19)
+
+
+TRAITS = {
+    "converged_mean": FrameTraits("weighted mean of the node rotations, iterated until it is one"),
+    "mean": FrameTraits("the paper's weighted mean of rotation increments since the last step",
+                        planar=False, incremental=True),
+    "mean_small": FrameTraits("the paper's mean of rotation increments since the last step, varied "
+                              "for small increments", planar=False, exact=False,
+                              incremental=True),
+    "positions": FrameTraits("rotation of best fit of the node positions", needs_rotations=False,
+                             fewest_positions=(3, 2)),
+}
 
 
 def origin_stage(q: Quantities, result: Quantity, of: Quantity) -> Stage:
@@ -96,7 +109,7 @@ def converged_mean(q: Quantities) -> Frame:
     check_same("moment pulled back by the converged mean",
                back, -_of(wp.dot(equation(q.dth0, q.dth)), q.dth.symbols))
     return Frame(
-        "converged_mean", "weighted mean of the node rotations, iterated until it is one",
+        "converged_mean", TRAITS["converged_mean"],
         (Text("rotation of the frame: sum alpha_j psi_j = 0", lines,
               (call.split("(")[0],), operations=200),
          *inverse_tangent_values(q, q.psi, ("e0", "e1"))),
@@ -140,7 +153,7 @@ def mean(q: Quantities) -> Frame:
             " + beta0_z * beta0_z)",), ("stumpff_2345",), operations=60),)
     d = q.space.d
     return Frame(
-        "mean", "the paper's weighted mean of rotation increments since the last step",
+        "mean", TRAITS["mean"],
         (Text("rotation of the frame, (15)-(16)", lines, (call.split("(")[0],), operations=250),
          *inverse_tangent_values(q, q.psi, ("e0", "e1")),
          *inverse_tangent_values(q, q.beta, ("b0", "b1")), total, *values),
@@ -171,7 +184,7 @@ def mean_small(q: Quantities) -> Frame:
 
     W = q.W.symbols
     return exact._replace(
-        name="mean_small", summary=exact.summary + ", varied for small increments",
+        name="mean_small", traits=TRAITS["mean_small"],
         rate=angular_rate, pull=(), rotation=alpha * (W - cross(psi, W) / 2), small=True)
 
 
@@ -223,7 +236,7 @@ def positions(q: Quantities) -> Frame:
                 "relative_rotations(N_ROTATIONS, nodes, R, frame, at(y, ROTATIONS))")
     psi_lines = (f"status = {relative}", "if status != 0:", "    return status")
     return Frame(
-        "positions", "rotation of best fit of the node positions",
+        "positions", TRAITS["positions"],
         (Text("rotation of the frame: best fit of the positions", lines,
               (call.split("(")[0],), operations=300),
          Text("elastic rotations, (11)", psi_lines, (relative.split("(")[0],), operations=60),

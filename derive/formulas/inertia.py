@@ -15,13 +15,14 @@ from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import skew
 from sebody.derive.symbolic.steps import Stage, cross
 from sebody.derive.symbolic.variation import along, check_same, differential, turning
+from sebody.kernels.layout import InertiaTraits
 
 
 class Inertia(NamedTuple):
     """What an inertia option contributes to a kernel."""
 
     name: str
-    summary: str
+    traits: InertiaTraits
     velocity: Stage             # w_j of (36) or (52)
     acceleration: tuple[Stage, ...]  # ydd of (46) or (58)
     position: sp.Matrix         # generalized force on R0^T delta x_i
@@ -29,6 +30,10 @@ class Inertia(NamedTuple):
     frame_positions: sp.Matrix  # on delta Theta_0, summed over positions
     frame_rotations: sp.Matrix  # summed over rotations
     spin: sp.Matrix             # conjugate to Omega_j: material angular momentum of the node
+
+
+TRAITS = {"a": InertiaTraits("angular velocities in frame axes (option A)", material=False),
+          "b": InertiaTraits("material angular velocities (option B)", material=True)}
 
 
 def position_part(q: Quantities) -> tuple[Stage, sp.Matrix, sp.Matrix]:
@@ -66,7 +71,7 @@ def option_b(q: Quantities) -> Inertia:
     short = pd + cross(Om, p)
     check_same("moment of option B (57)", short, moment)
     return Inertia(
-        "b", "material angular velocities (option B)",
+        "b", TRAITS["b"],
         Stage("material angular velocities, (52)", "rotation", sets=((q.w, q.Om.symbols),)),
         (accelerate, Stage("their rates, (58)", "rotation", sets=((q.wd, q.A.symbols),))),
         force, short, on_frame, sp.zeros(3, 1), conjugate)
@@ -95,7 +100,7 @@ def option_a(q: Quantities) -> Inertia:
     on_frame_w = cross(w, p)
     check_same("frame term of option A (45)", on_frame_w.subs(meaning), -_of(form, dth0), frames)
     return Inertia(
-        "a", "angular velocities in frame axes (option A)",
+        "a", TRAITS["a"],
         Stage("angular velocities in frame axes, (36)", "rotation", sets=((q.w, Q * Om),)),
         (accelerate, Stage("their rates, (46)", "rotation", sets=((q.wd, w_rate),))),
         force, short, on_frame, on_frame_w, conjugate)

@@ -8,12 +8,26 @@ lasts.
 
 import sympy as sp
 
-from sebody.derive.formulas.elements import AMPLITUDE, Block, Element, element, position, rotation
+from sebody.derive.formulas.elements import (
+    AMPLITUDE,
+    Block,
+    Constant,
+    Element,
+    constant,
+    element,
+    position,
+    rotation,
+)
 from sebody.derive.symbolic.spaces import Space
 
 
-def _vectors(space: Space, *names: str):
-    return [space.quantity(name, "vector", "element") for name in names]
+def _vector(space: Space, name: str, meaning: str) -> Constant:
+    return constant(space, name, "vector", meaning)
+
+
+def _normals(space: Space, count: int) -> list[Constant]:
+    return [_vector(space, f"n{k + 1}", "direction normal to the axis, in axes of the first body")
+            for k in range(count)]
 
 
 def _pair(make, space: Space, grounded: bool) -> list[Block]:
@@ -26,7 +40,8 @@ def parallel(grounded: bool) -> Element:
     With a shared position it is a revolute joint.
     """
     space = Space(False)
-    e, *n = _vectors(space, "e", "n1", "n2")
+    e = _vector(space, "e", "axis, in axes of the second body or the ground")
+    n = _normals(space, 2)
     blocks = _pair(rotation, space, grounded)
     axis = e.symbols if grounded else blocks[1].state.symbols * e.symbols
     return element("parallel" + "_ground" * grounded,
@@ -38,7 +53,8 @@ def parallel(grounded: bool) -> Element:
 def perpendicular() -> Element:
     """A direction of each body stay normal to each other: ``phi = (R_a n) . (R_b e)``."""
     space = Space(False)
-    e, n = _vectors(space, "e", "n")
+    e = _vector(space, "e", "direction in axes of the second body")
+    n = _vector(space, "n", "direction in axes of the first body")
     a, b = _pair(rotation, space, False)
     return element("perpendicular", "two directions stay normal to each other", space, (a, b),
                    (e, n), constraints=[(a.state.symbols * n.symbols).dot(
@@ -49,8 +65,8 @@ def coincident(grounded: bool, planar: bool) -> Element:
     """A position stays with another, or where it is; sharing it takes no equation."""
     space = Space(planar)
     blocks = _pair(position, space, grounded)
-    ground = space.quantity("c", "vector", "element")
-    gap = blocks[0].state.symbols - (ground if grounded else blocks[1].state).symbols
+    ground = _vector(space, "c", "place of the ground [length]")
+    gap = blocks[0].state.symbols - (ground.symbols if grounded else blocks[1].state.symbols)
     return element("planar_" * planar + "coincident" + "_ground" * grounded,
                    "a position stays with " + ("a point" if grounded else "another"), space,
                    blocks, (ground,) if grounded else (),
@@ -60,7 +76,7 @@ def coincident(grounded: bool, planar: bool) -> Element:
 def off_plane(normals: int, planar: bool) -> Element:
     """A point stays on a plane of body a, or a line with two: ``(R_a n_k) . (x_b - x_a) = 0``."""
     space = Space(planar)
-    n = _vectors(space, *(f"n{k + 1}" for k in range(normals)))
+    n = _normals(space, normals)
     xa, xb, turn = position(space, "a"), position(space, "b"), rotation(space, "a")
     gap = xb.state.symbols - xa.state.symbols
     return element("planar_" * planar + ("on_plane" if normals == 1 and not planar else "on_line"),
@@ -80,7 +96,7 @@ def aligned() -> Element:
 def distance(planar: bool) -> Element:
     """Two points keep their distance: ``phi = (d . d - l^2) / (2 l)``, smooth and of length."""
     space = Space(planar)
-    length = space.quantity("length", "scalar", "element")
+    length = constant(space, "length", "scalar", "distance [length]")
     a, b = _pair(position, space, False)
     d, l = b.state.symbols - a.state.symbols, length.symbols[0]     # noqa: E741  (as in the text)
     return element("planar_" * planar + "distance", "two points keep their distance", space,
@@ -99,7 +115,8 @@ def turn_drive(planar: bool) -> Element:
     if planar:
         return element("planar_turn_drive", "the angle between two bodies is given", space,
                        (a, b), constraints=[a.angle - b.angle - angle])
-    n, m = _vectors(space, "n", "m")
+    n = _vector(space, "n", "direction normal to the axis, in axes of the first body")
+    m = _vector(space, "m", "axis x n")
     target = b.state.symbols * (sp.cos(angle) * m.symbols - sp.sin(angle) * n.symbols)
     return element("turn_drive", "the angle between two bodies about an axis is given", space,
                    (a, b), (n, m), constraints=[(a.state.symbols * n.symbols).dot(target)])
@@ -108,8 +125,8 @@ def turn_drive(planar: bool) -> Element:
 def slide_drive(planar: bool) -> Element:
     """The way of b along an axis of a is given: ``(R_a e) . (x_b - x_a) = s(t) + s_0``."""
     space = Space(planar)
-    e, = _vectors(space, "e")
-    start = space.quantity("start", "scalar", "element")
+    e = _vector(space, "e", "axis, in axes of the first body")
+    start = constant(space, "start", "scalar", "way at the start [length]")
     xa, xb, turn = position(space, "a"), position(space, "b"), rotation(space, "a")
     way = (turn.state.symbols * e.symbols).dot(xb.state.symbols - xa.state.symbols)
     return element("planar_" * planar + "slide_drive", "the way along an axis is given", space,

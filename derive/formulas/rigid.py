@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from sebody.derive.formulas.elements import Element, element, position, rotation
+from sebody.derive.formulas.elements import Element, constant, element, position, rotation
 from sebody.derive.symbolic.spaces import Space
 from sebody.derive.symbolic.steps import cross
 
@@ -13,13 +13,13 @@ def rigid_body(planar: bool) -> Element:
     ``T = m v.v/2 + v . R (Omega x m c) + Omega . J Omega/2``, gravity ``V = -g . (m x + R m c)``.
     """
     space = Space(planar)
-    mass, first = (space.quantity("mass", "scalar", "element"),
-                   space.quantity("mc", "vector", "element"))
+    mass = constant(space, "mass", "scalar", "mass")
+    first = constant(space, "mc", "vector", "first moment of mass about the node, body axes")
     names = ["J_zz"] if planar else ["J_xx", "J_yy", "J_zz", "J_xy", "J_yz", "J_xz"]
-    moments = [space.quantity(n, "scalar", "element") for n in names]
+    moments = [constant(space, n, "scalar", "inertia about the node, body axes") for n in names]
     inertia = sp.zeros(3, 3)
     for moment in moments:
-        i, j = ("xyz".index(a) for a in moment.name[2:])
+        i, j = ("xyz".index(a) for a in moment.quantity.name[2:])
         inertia[i, j] = inertia[j, i] = moment.symbols[0]
     x, turn = position(space, "a"), rotation(space, "a")
     v, spin, m = x.rate.symbols, turn.rate.symbols, mass.symbols[0]
@@ -34,7 +34,7 @@ def rigid_body(planar: bool) -> Element:
 def point_mass(planar: bool) -> Element:
     """A mass without rotation on a position."""
     space = Space(planar)
-    mass, x = space.quantity("mass", "scalar", "element"), position(space, "a")
+    mass, x = constant(space, "mass", "scalar", "mass"), position(space, "a")
     v, m = x.rate.symbols, mass.symbols[0]
     field = space.quantity("field", "vector", "element").symbols
     return element("planar_" * planar + "point_mass", "point mass", space, (x,), (mass,),

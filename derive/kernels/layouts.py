@@ -3,7 +3,9 @@
 import re
 from typing import NamedTuple
 
-LETTER = {"full": "f", "translation": "t", "rotation": "r"}
+from sebody.kernels.layout import LETTERS, layout_name
+from sebody.kernels.names import layout_variant
+
 PATTERN = re.compile(r"(planar-)?(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?(d)?")
 
 
@@ -34,7 +36,7 @@ class Layout(NamedTuple):
                               "m with the number of internal modes to pin it, as in f2m4, and d "
                               "for structural damping")
         nodes = []
-        for part, kind in zip(match.groups()[1:4], LETTER, strict=True):
+        for part, kind in zip(match.groups()[1:4], LETTERS, strict=True):
             nodes += [kind] * int(part[1:]) if part else []
         modes = match.group(5)
         layout = cls(tuple(nodes), bool(match.group(1)), None if modes is None else int(modes),
@@ -47,10 +49,7 @@ class Layout(NamedTuple):
     @property
     def name(self) -> str:
         """Canonical name; the order of the nodes does not enter."""
-        counts = [(LETTER[k], self.nodes.count(k)) for k in LETTER]
-        pinned = "" if self.modes is None else f"m{self.modes}"
-        return ("planar-" * self.planar + "".join(f"{c}{n}" for c, n in counts if n) + pinned
-                + "d" * self.damped)
+        return layout_variant(layout_name(self.nodes, self.planar), self.modes, self.damped)
 
     @property
     def positions(self) -> int:

@@ -36,6 +36,7 @@ from sebody.derive.symbolic.steps import (
     cross,
 )
 from sebody.derive.symbolic.variation import check_same, differential
+from sebody.kernels.names import superelement_name
 
 
 class Superelement(NamedTuple):
@@ -53,12 +54,7 @@ class Superelement(NamedTuple):
     @property
     def name(self) -> str:
         """Module name of the kernel."""
-        return kernel_name(self.layout, self.frame.name, self.inertia.name)
-
-
-def kernel_name(layout: Layout, frame: str, inertia: str) -> str:
-    """Module name of a superelement kernel."""
-    return f"superelement_{layout.name}_{frame}_{inertia}".replace("-", "_")
+        return superelement_name(self.layout.name, self.frame.name, self.inertia.name)
 
 
 def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:

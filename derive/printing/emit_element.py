@@ -4,13 +4,19 @@ import re
 
 import sympy as sp
 
-from sebody.derive.formulas.elements import AMPLITUDE, Block, Element
+from sebody.derive.formulas.elements import AMPLITUDE, Block, Constant, Element
 from sebody.derive.printing import templates
-from sebody.derive.printing.emit import VERSION
+from sebody.derive.printing.emit import VERSION, constants_text, names_used
+from sebody.derive.printing.imports import import_lines
 from sebody.derive.printing.printer import code, indented
+from sebody.kernels.layout import Part
+from sebody.kernels.sources import room_hash
 
-SUMS = {"kinetic": 0, "strain": 1, "P_x": 2, "P_y": 3, "P_z": 4, "H_x": 5, "H_y": 6, "H_z": 7,
-        "potential": 8}     # places among the energies, see sebody.kernels.abi
+SUMS = {"kinetic": "KINETIC", "strain": "STRAIN", "potential": "POTENTIAL", "P_x": "MOMENTUM",
+        "P_y": "MOMENTUM + 1", "P_z": "MOMENTUM + 2", "H_x": "MOMENT", "H_y": "MOMENT + 1",
+        "H_z": "MOMENT + 2"}     # places among the energies
+COEFFICIENTS = {"c_mass": "C_MASS", "c_rate": "C_RATE", "c_place": "C_PLACE",
+                "c_constraint": "C_CONSTRAINT"}
 FUNCTIONS = ("atan2", "cos", "sin", "sqrt")
 
 
@@ -28,7 +34,7 @@ def element_text(element: Element) -> str:
              *_task("ENERGY", list(element.sums.values()),
                     [f"energies[{SUMS[name]}] += " for name in element.sums]),
              *_task("ENERGY", [] if element.power is None else [element.power],
-                    ["energies[POWERS + index[first + 2]] = "])]
+                    ["energies[POWERS + index[first + AT_ITEM]] = "])]
     parts = {"loads": indented(_loads(element, coordinates), 2), "residual": indented(residual, 2),
              "tasks": indented(tasks, 2),
              "coefficients": indented(_coefficients(element), 3),
@@ -36,22 +42,27 @@ def element_text(element: Element) -> str:
              "tangent": indented([*_directions(element), *column], 4),
              "multiplier_columns": indented(_multiplier_columns(element, coordinates, width), 3)}
     text = "\n".join(parts.values())
-    names = {"HEADER", "SIGNATURE", "TANGENT", "at"} | {
-        name for name in ("VELOCITY", "ACCELERATION", "ENERGY", "POWERS")
-        if re.search(rf"\b{name}\b", text)}
     functions = [f for f in FUNCTIONS if re.search(rf"\b{f}\(", text)]
-    return templates.ELEMENT.format(
+    text = templates.ELEMENT.format(
         summary=element.summary, coordinates=coordinates, multipliers=len(element.multipliers),
-        version=VERSION, sympy=sp.__version__, names=", ".join(sorted(names)),
+        version=VERSION, sympy=sp.__version__, imports="{imports}", room=room_hash("kernels"),
         functions=f"from math import {', '.join(functions)}\n\n" if functions else "",
         positions=sum(not b.turns for b in element.blocks),
         rotations=_matrices(element), width=width, first_rotation=_first_rotation(element),
-        constants=sum(len(c.kept) for c in element.constants),
-        planar=element.space.planar, kinetic="kinetic" in element.sums,
+        constants=constants_text(tuple(map(_part, element.constants))),
+        planar=element.space.planar, inertial="kinetic" in element.sums,
         power=element.power is not None, driven=bool(element.multipliers) and
         element.power is not None,
         residual_operations=_operations(element.residual),
         column_operations=_operations(element.linear), **parts)
+    return text.replace("{imports}", import_lines(names_used(text.replace("{imports}", ""))))
+
+
+def _part(constant: Constant) -> Part:
+    """A constant as a part of the row: a number, or the components that are stored."""
+    quantity, meaning = constant
+    shape = () if quantity.kind == "scalar" else (len(quantity.kept),)
+    return Part(quantity.name, shape, meaning)
 
 
 def _matrices(element: Element) -> int:
@@ -94,12 +105,14 @@ def _loads(element: Element, coordinates: int) -> list[str]:
     used = _used(element.residual, element.linear, element.velocity, element.second,
                  element.sums.values(), [] if element.power is None else [element.power])
     lines, at = [], 0
-    for quantity in element.constants:
+    for quantity, _ in element.constants:
         lines += [f"{s} = constant[{at + k}]" for k, s in enumerate(quantity.kept) if s in used]
         at += len(quantity.kept)
     field = element.space.known.get("field")
     if field:
-        lines += [f"{s} = coefficients[{5 + k}]" for k, s in enumerate(field.kept) if s in used]
+        places = ("FIELD", "FIELD + 1", "FIELD + 2")
+        lines += [f"{s} = coefficients[{place}]" for place, s in zip(places, field.kept,
+                                                                     strict=False) if s in used]
     at, matrix = 0, 0
     for block in element.blocks:
         lines += _state(block, at, matrix, used)
@@ -109,7 +122,7 @@ def _loads(element: Element, coordinates: int) -> list[str]:
         at += len(block.direction.kept)
         matrix += block.turns
     lines += [f"{s} = q[unknowns[{coordinates + k}]]" for k, s in enumerate(element.multipliers)]
-    return lines + [f"{s} = loads[3*index[first + 2] + {k}]" for k, s in enumerate(AMPLITUDE)
+    return lines + [f"{s} = loads[3*index[first + AT_ITEM] + {k}]" for k, s in enumerate(AMPLITUDE)
                     if s in used]
 
 
@@ -129,10 +142,10 @@ def _units(element: Element) -> set[sp.Symbol]:
 
 
 def _coefficients(element: Element) -> list[str]:
-    names = ("c_mass", "c_rate", "c_place", None, "c_constraint")
     used = {str(s) for s in _used(element.linear, element.on_multipliers)}
     used |= {"c_constraint"} if element.multipliers else set()
-    return [f"{name} = coefficients[{k}]" for k, name in enumerate(names) if name in used]
+    return [f"{name} = coefficients[{place}]" for name, place in COEFFICIENTS.items()
+            if name in used]
 
 
 def _seeds(element: Element, coordinates: int) -> list[str]:

@@ -12,7 +12,7 @@ n             unknowns of the element
 ============  ======================================================================================
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -220,3 +220,48 @@ SUPERELEMENT_CONSTANTS = (
     Part("masses", (1,), "mass"),
 )
 DAMPING_CONSTANTS = (Part("C", ("n", "n"), "reduced damping", columns=True),)
+
+
+def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int
+                        ) -> dict[str, int]:
+    """The counts that sizes of a superelement's rows are products of."""
+    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, "D": 2 if planar else 3,
+            "n": unknowns}
+
+
+class FrameTraits(NamedTuple):
+    """What a floating frame is and what it needs."""
+
+    summary: str
+    needs_rotations: bool = True    # it averages rotations of nodes; else it follows positions
+    fewest_positions: tuple[int, int] = (1, 1)      # in space, in a plane
+    planar: bool = True             # False: in a plane it is the same as another one
+    exact: bool = True              # forces are derivatives of the energy
+    incremental: bool = False       # it averages what nodes turned since the last step
+    constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
+
+
+class InertiaTraits(NamedTuple):
+    """What an inertia option is and what it needs."""
+
+    summary: str
+    material: bool                  # T in material angular velocities; else in those of the frame
+    constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
+
+
+LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # what a boundary node keeps
+
+
+def layout_name(keeps: Iterable[str], planar: bool) -> str:
+    """Name of a layout, such as ``f2t1``; the order of the nodes does not enter.
+
+    Parameters
+    ----------
+    keeps : iterable of 'full', 'translation' or 'rotation'
+        What each boundary node keeps.
+    planar : bool
+        Motion in a plane.
+    """
+    kept = list(keeps)
+    counts = (f"{letter}{kept.count(keep)}" for keep, letter in LETTERS.items() if keep in kept)
+    return "planar-" * planar + "".join(counts)

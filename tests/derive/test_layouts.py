@@ -4,7 +4,8 @@ import pytest
 
 from sebody.derive.__main__ import parse_variant
 from sebody.derive.kernels.layouts import Layout, LayoutError
-from sebody.derive.kernels.superelement import kernel_name, superelement
+from sebody.derive.kernels.superelement import superelement
+from sebody.kernels.names import superelement_name
 
 
 @pytest.mark.parametrize("name, positions, rotations, first_rotation, first_mode", [
@@ -85,6 +86,6 @@ def test_variant_that_cannot_be_read(text, message):
 
 
 def test_kernel_name_is_a_module_name():
-    name = kernel_name(Layout.parse("planar-f2t1"), "converged_mean", "a")
+    name = superelement_name(Layout.parse("planar-f2t1").name, "converged_mean", "a")
     assert name == "superelement_planar_f2t1_converged_mean_a"
     assert name.isidentifier()

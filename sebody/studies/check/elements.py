@@ -14,6 +14,7 @@ from sebody.kernels.layout import (
     RESIDUAL,
     TANGENT,
     VELOCITY,
+    Row,
 )
 from sebody.studies.check.states import (
     LIMIT,
@@ -41,8 +42,9 @@ def element_case(module: ModuleType, seed: int) -> Case:
     R = np.array([(base * Rotation.from_rotvec(0.5 * r)).as_matrix()
                   for r in random.normal(size=(nrot, 3))])
     q = random.normal(size=n)
+    size = Row(module.__name__, module.CONSTANTS).size({})
     return Case(module, n, np.array([0, 0, 0, *range(nrot), *range(n)]),
-                1.0 + 0.5 * random.uniform(-1, 1, size=max(module.N_CONSTANTS, 1)), q, R.ravel(),
+                1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
                 random.normal(size=n), random.normal(size=n), np.zeros(9), np.zeros(9),
                 random.normal(size=3), AMPLITUDES)
 
@@ -147,7 +149,7 @@ def criteria(module: ModuleType) -> dict:
         chosen |= {"force = gradient of lambda.phi": joint_force, "velocity": joint_velocity,
                    "acceleration": joint_acceleration}
         return chosen | ({"power": drive_power} if module.POWER else {})
-    if module.KINETIC:
+    if module.INERTIAL:
         chosen |= {"Hamilton's force": hamilton, "momentum = rigid dT/dv": body_momentum,
                    "tangent, mass": tangent_mass}
     else:
