@@ -53,7 +53,8 @@ def find(name: str) -> Path | None:
     path = user_directory() / f"{name}.py"
     if not path.exists():
         return None
-    facts = dict(re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE))
+    lines = re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE)
+    facts = dict(lines)
     if facts.get("ROOM") != room_hash("kernels"):
         variant = ":".join(facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA"))
         raise InputError(f"kernel {path} was made by another version of sebody: make it again with"
@@ -120,12 +121,6 @@ def element_kernel_name(kind: str) -> str:
         raise InputError(f"there is no kernel for element {kind!r}: reinstall sebody or run "
                          "python -m sebody.derive")
     return name
-
-
-def superelement_kernel(layout: str, frame: str, inertia: str, modes: int,
-                        damped: bool = False) -> ModuleType:
-    """The kernel `superelement_kernel_name` names, compiled."""
-    return load(superelement_kernel_name(layout, frame, inertia, modes, damped))
 
 
 def element_kernel(kind: str) -> ModuleType:

@@ -13,8 +13,11 @@ from sebody.kernels.layout import AT_ITEM, C_PLACE, C_RATE, ENERGY, HEADER, POWE
 from sebody.kernels.pipeline import compiled, kernel_function
 
 PLANAR = False
+N_POSITIONS = None      # any number
 N_ROTATIONS = 0
+CONSTANTS = ()
 MULTIPLIERS = 0
+WIDTH = None            # any number
 KINETIC = False
 POWER = True
 DRIVEN = False

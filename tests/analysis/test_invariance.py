@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from sebody import Model, Simulation, generalized_alpha, simulate
 from sebody.engine import evaluate
 from sebody.fem import Section, frame, straight_beam
-from sebody.kernels.layout import ENERGY
+from sebody.kernels.layout import ENERGY, STRAIN
 from sebody.reduction import craig_bampton
 
 EXACT = generalized_alpha(tolerance=1e-13)
@@ -107,7 +107,7 @@ def strain_energy(run, turned_by):
     state.energy[:] = 0.0
     assert evaluate.run_kernels(ENERGY, 0, 1, system, state) == 0
     state.q[:], state.R[:], state.frames[:] = saved
-    return state.energy[1]
+    return state.energy[STRAIN]
 
 
 def change_under_rotation(kind, directions):

@@ -6,7 +6,7 @@ import pytest
 from sebody import InputError, Model
 from sebody.assembly.build import build, number
 from sebody.fem import Section, frame, planar_beam, straight_beam
-from sebody.model.model import layout_name
+from sebody.kernels.layout import layout_name
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes.hinged_beam import SECTION
 
@@ -225,7 +225,7 @@ def test_bodies_may_be_placed_anywhere():
     turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
     placed_body = model.superelement("beam", beam(), nodes, rotation=turn)
     assert np.allclose(placed_body.body.coordinates, [[0, 0, 0], [0, 60, 0]])
-    assert placed_body.layout == "f2" == layout_name(placed_body.body)
+    assert placed_body.layout == "f2" == layout_name(placed_body.body.keeps, planar=False)
 
 
 @pytest.mark.parametrize("planar", [False, True])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers import order
 from scipy.integrate import solve_ivp
 
 from sebody import Model, Simulation, generalized_alpha, simulate
@@ -10,10 +11,6 @@ from sebody.reduction.craig_bampton import component_modes
 from sebody.scenes import four_bar, heavy_top, slider_crank, spin_up, squeezer, torque_free_body
 
 UNDAMPED = generalized_alpha(1.0, 1e-10)
-
-
-def order(steps, errors):
-    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
 def rocker(loops, t):

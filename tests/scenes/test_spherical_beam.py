@@ -1,15 +1,14 @@
 """The beam on a spherical joint: the paper's loads, and the strong ones that tell options apart."""
 
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from sebody import simulate
 from sebody.scenes import spherical_beam, spherical_beam_strong
+from sebody.studies import references
 
-DATA = Path(__file__).parents[1] / "data"
 FORMS = [("converged_mean", "b"), ("mean", "b"), ("mean_small", "b"), ("node", "b")]
 
 
@@ -36,7 +35,7 @@ def test_no_multiplier():
 
 @pytest.mark.parametrize("frame, inertia", FORMS)
 def test_tip_and_energy_under_the_paper_loads(frame, inertia):
-    result, reference = paper(frame, inertia), np.load(DATA / "spherical_beam.npz")
+    result, reference = paper(frame, inertia), references.reference("spherical_beam")
     for t in (10, 15, 20, 30):
         tip = result["tip.position"][round(t / 0.02)]
         exact = reference["tip_position"][round(t / 0.05)]

@@ -4,8 +4,8 @@ import numpy as np
 
 from sebody.analysis.simulation import Simulation, simulate
 from sebody.engine.evaluate import assemble
-from sebody.engine.state import FORCES
 from sebody.fem import straight_beam
+from sebody.kernels.layout import RESIDUAL
 from sebody.kernels.rotations import exp_map
 from sebody.model.model import Model
 from sebody.reduction import craig_bampton
@@ -81,6 +81,6 @@ def _force_difference(angle: float) -> float:
             at = run.numbering.rotations[id(node.rotation)]
             run.state.R[9 * at:9 * at + 9] = exp_map(*turn)
         run.state.a[:] = 0.0
-        assemble(FORCES, run.system, run.state, run.state.residual)
+        assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
         forces.append(run.state.residual.copy())
     return float(np.linalg.norm(forces[1] - forces[0]) / np.linalg.norm(forces[0]))

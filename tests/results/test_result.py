@@ -8,6 +8,7 @@ import pytest
 from sebody import InputError, Model, SimulationError, simulate
 from sebody.fem import planar_beam, straight_beam
 from sebody.reduction import craig_bampton
+from sebody.scenes import heavy_top
 from sebody.scenes.hinged_beam import SECTION, build
 
 
@@ -97,6 +98,13 @@ def test_energy_is_the_work_done(run):
 def test_unknown_names(name, message):
     with pytest.raises(InputError, match=message):
         spatial()[name]
+
+
+def test_a_rigid_body_has_no_modes():
+    result = simulate(heavy_top.build().model, 1e-3, 0.01)
+    name = next(iter(result.model.rigid_bodies))
+    with pytest.raises(InputError, match=f"body '{name}' is rigid: it has forces, but no modes"):
+        result[f"{name}.modes"]
 
 
 def test_a_half_node_has_no_rotation():
