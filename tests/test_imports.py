@@ -19,7 +19,7 @@ ROOMS = {
     "fem": set(),
     "reduction": {"fem"},
     "io": {"fem"},
-    "model": {"kernels", "fem", "reduction"},
+    "model": {"kernels", "generated", "fem", "reduction"},     # of generated the options alone
     "assembly": {"kernels", "engine", "reduction", "model"},
     "results": {"kernels", "engine", "model", "assembly"},
     "analysis": {"kernels", "engine", "model", "assembly", "results"},
