@@ -55,7 +55,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
     set_loads(run.system, state.loads, t)
     loads = state.loads.copy()
-    rows, share, step = [state.now.copy()], 0.0, 1.0 / steps
+    run.rows = [state.now[None].copy()]
+    share, step = 0.0, 1.0 / steps
     while share < 1.0 - 1e-12:
         kept = state.now.copy()
         target = min(share + step, 1.0)
@@ -63,16 +64,14 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         if _balance(run, tolerance, turning.times(np.sqrt(target))):
             share = target
             state.now[RECORD_T] = share
-            rows.append(state.now.copy())
+            run.rows.append(state.now[None].copy())
             continue
         state.now[:] = kept
         step /= 2
         if step < SMALLEST:
-            run.rows = [np.array(rows)]
             message = (f"no equilibrium was found above {share:.4g} of the load: the structure may "
                        "buckle there, or a mechanism is free to move; use more steps or supports")
             raise SimulationError(message, run.result())
-    run.rows = [np.array(rows)]
     return run.result()
 
 

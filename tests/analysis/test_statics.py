@@ -124,3 +124,21 @@ def test_wrong_steps_and_moving_states():
     run.state.v[0] = 1.0
     with pytest.raises(InputError, match="the state moves: vibrations are about states at rest"):
         vibrations(run)
+
+
+def test_a_share_of_the_load_is_a_share_of_the_centrifugal_force():
+    """A mass on a spring: ``k (r - 1) = m W^2 r``, where W^2 grows with the share as loads do."""
+    stiffness, mass, spin = 40.0, 2.0, 3.0
+    model = Model(planar=True)
+    model.node("hub", (0.0, 0.0), keeps="translation")
+    model.fix("hub", "position")
+    model.point_mass("ball", model.node("ball", (1.0, 0.0), keeps="translation"), mass)
+    model.spring("ball", "hub", stiffness)
+    result = equilibrium(model, 4, spin=spin)
+    share = result.t
+    assert share == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    radius = stiffness / (stiffness - share * mass * spin**2)
+    across = np.zeros(5)
+    assert result["ball.position"] == pytest.approx(np.array([radius, across]).T, abs=1e-9)
+    speed = np.sqrt(share) * spin * radius
+    assert result["ball.velocity"] == pytest.approx(np.array([across, speed]).T, abs=1e-9)

@@ -133,3 +133,21 @@ def test_pinned_number_of_modes_changes_speed_alone(monkeypatch, pinned, modes, 
     body, = free.bodies.values()
     assert load(body.kernel).N_MODES is None
     assert np.abs(fast["tip.position"] - simulate(free, 0.01, 1.0)["tip.position"]).max() < 1e-9
+
+
+def test_bodies_of_one_reduction_have_frames_of_their_own():
+    """Two bodies share matrices but not the node that carries the frame: as copies of them do."""
+    def bent(reduce):
+        model = Model(planar=True)
+        names = [model.node(n, (30.0 * k, 0.0)) for k, n in enumerate(("base", "middle", "tip"))]
+        for k, body in enumerate((reduce(), reduce())):
+            model.superelement(f"part {k}", body, names[k:k + 2], frame="node", frame_node=k)
+        model.fix("base")
+        model.force("tip", (0.0, -2e3))
+        return simulate(model, 1e-3, 0.05)["tip.position"]
+
+    def reduced():
+        return craig_bampton(planar_beam((0, 0), (30.0, 0), SECTION, 4),
+                             [(0, "full"), (4, "full")], 0)
+    one = reduced()
+    assert np.array_equal(bent(lambda: one), bent(reduced))

@@ -217,3 +217,21 @@ def test_rotations_of_a_solid_and_loose_parts_are_refused():
     loose = frame([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [(0, 1), (2, 3)], SQUARE, 2)
     with pytest.raises(InputError, match="a mechanism inside"):
         craig_bampton(loose, {0: "full", 1: "full"}, 0)
+
+
+def test_centre_of_a_planar_body_off_the_middle_of_its_nodes():
+    # Legs of 5 and 3 with the boundary at the outer ends: the centre is that of two rods.
+    elbow = frame([[1, 2], [6, 2], [6, 5]], [(0, 1), (1, 2)], SQUARE, 4)
+    body = craig_bampton(elbow, {0: "full", 2: "full"}, 0)
+    centre = (5 * np.array([3.5, 2.0]) + 3 * np.array([6.0, 3.5])) / 8
+    assert_allclose(body.centre_of_mass, centre, rtol=1e-9)
+
+
+def test_damping_turns_with_the_body():
+    # Damping by 0.02 of the stiffness is that of the turned stiffness, too.
+    flat = craig_bampton(planar_beam([0, 0], [3, 1], SQUARE, 4), [(0, "full"), (4, "full")], 0)
+    turn = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
+    turned = flat.damped(stiffness=0.02).rotated(turn)
+    scale = np.max(np.abs(turned.stiffness))
+    assert np.max(np.abs(turned.stiffness - flat.stiffness)) > 0.1 * scale
+    assert_allclose(turned.damping, 0.02 * turned.stiffness, rtol=0, atol=1e-9 * 0.02 * scale)

@@ -11,7 +11,7 @@ from sebody.kernels.rotations import NEAR_PI, exp_map
 from sebody.model.model import Model
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes.hinged_beam import SECTION
-from sebody.studies.atlas.finding import Finding, Row
+from sebody.studies.atlas.finding import PROGRAM, Finding, Row
 
 LIMIT = np.degrees(np.arccos(NEAR_PI))      # rotation whose logarithm is refused
 
@@ -83,7 +83,7 @@ def collinear() -> Finding:
         refused = 0.0
     except InputError:
         refused = 1.0
-    finding.rows.append(Row("offset 1e-08: refused", 1.0, refused, 0.0))
+    finding.rows.append(Row("offset 1e-08: refused", 1.0, refused, 0.0, PROGRAM))
     return finding
 
 
@@ -133,7 +133,7 @@ def massless_rotations() -> Finding:
         refused = 0.0
     except InputError:
         refused = 1.0
-    finding.rows.append(Row("no inertia: refused", 1.0, refused, 0.0))
+    finding.rows.append(Row("no inertia: refused", 1.0, refused, 0.0, PROGRAM))
     return finding
 
 

@@ -71,22 +71,28 @@ def _call(address, task, stride, width, arguments):
     return call_kernel(address, task, 1, stride, width, arguments)
 
 
+def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Arguments:
+    """What the kernel of a case is called with for one element, results zero."""
+    n, module = case.n, case.module
+    return Arguments(
+        index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
+        references=case.reference, frames=case.frames.copy(),
+        T=np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1)), loads=case.loads,
+        coefficients=np.array([*coefficients, *case.field], dtype=float), forces=np.zeros(n),
+        matrices=np.zeros(n * n),
+        work=np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1)))),
+        energies=np.zeros(POWERS + 1))
+
+
 def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)
              ) -> tuple[NDArray, NDArray, NDArray]:
     """Forces, matrix and energies of a kernel in the state of a case."""
-    n, module = case.n, case.module
-    g, J, energy = np.zeros(n), np.zeros(n * n), np.zeros(POWERS + 1)
-    work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
-    T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
-    frame = case.frames.copy()
-    status = _call(module.kernel.address, task, len(case.index), n, Arguments(
-        index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
-        references=case.reference, frames=frame, T=T, loads=case.loads,
-        coefficients=np.array([*coefficients, *case.field], dtype=float), forces=g, matrices=J,
-        work=work, energies=energy))
+    n, module, given = case.n, case.module, arguments(case, coefficients)
+    status = _call(module.kernel.address, task, len(case.index), n, given)
     if status:
         raise InputError(f"kernel {module.__name__} refuses the check's state (status {status})")
-    return g, _in_global_axes(J.reshape(n, n), frame, module), energy
+    return (given.forces, _in_global_axes(given.matrices.reshape(n, n), given.frames, module),
+            given.energies)
 
 
 def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:

@@ -1,7 +1,5 @@
 """The scheme as the loop runs it: amplification, damping, periods, and constrained directions."""
 
-
-
 import numpy as np
 import pytest
 
@@ -47,6 +45,31 @@ def amplification(scheme, omega_h):
 
 def replace_tolerance(scheme):
     return scheme._replace(tolerance=1e-13)
+
+
+def closed_form(scheme, omega_h):
+    """Matrix of one step of ``x'' + omega^2 x = 0`` in (x, h v, h^2 vdot, h^2 a), row by row.
+
+    Written out from the scheme's own equations, independent of the loop.
+    """
+    am, af, beta, gamma = scheme[:4]
+    w2 = omega_h**2
+    # unknowns x1, v1, vdot1, a1 from x0, v0, vdot0, a0 (h = 1)
+    left = np.array([[1, 0, 0, -beta], [0, 1, 0, -gamma], [w2, 0, 1, 0],
+                     [0, 0, -(1 - af), 1 - am]])
+    right = np.array([[1, 1, 0, 0.5 - beta], [0, 1, 0, 1 - gamma], [0, 0, 0, 0],
+                      [0, 0, af, -am]])
+    return np.linalg.solve(left, right)
+
+
+@pytest.mark.parametrize("scheme, omega_h, expected", [
+    (hht(0.0), 1.0, 1.0), (hht(-0.05), 1.0, 0.996490), (hht(-0.1), 2.0, 0.962366),
+    (hht(-0.3), 10.0, 0.684611), (hht(-1 / 3), 100.0, 0.537174),
+    (generalized_alpha(0.9), 5.0, 0.994792), (generalized_alpha(0.8), 10.0, 0.929792),
+    (generalized_alpha(0.0), 1.0, 0.906563)])
+def test_spectral_radius_against_closed_forms(scheme, omega_h, expected):
+    radius = np.abs(np.linalg.eigvals(closed_form(scheme, omega_h))).max()
+    assert radius == pytest.approx(expected, abs=2e-6)
 
 
 RADII = {   # benchmarks 9.1, at omega h = 0.1, 0.5, 1, 2, 5, 10, 100
