@@ -15,6 +15,7 @@ FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.g
 ROOMS = {
     "errors": set(),
     "kernels": set(),
+    "generated": {"kernels"},
     "engine": {"kernels"},
     "fem": set(),
     "reduction": {"fem"},
@@ -28,7 +29,6 @@ ROOMS = {
     "studies": {"kernels", "engine", "fem", "reduction", "model", "assembly", "results",
                 "analysis", "scenes"},
     "cli": {"kernels", "results", "analysis", "scenes", "studies"},
-    "generated": {"kernels"},
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}
