@@ -20,8 +20,8 @@ ROOMS = {
     "fem": set(),
     "reduction": {"fem"},
     "io": {"fem"},
-    "model": {"kernels", "generated", "fem", "reduction"},
-    "assembly": {"kernels", "engine", "model"},
+    "model": {"kernels", "generated", "fem", "reduction"},     # of generated the options alone
+    "assembly": {"kernels", "engine", "reduction", "model"},
     "results": {"kernels", "engine", "model", "assembly"},
     "analysis": {"kernels", "engine", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
