@@ -14,7 +14,7 @@ from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance
-from sebody.assembly.build import DENSE_LIMIT, build
+from sebody.assembly.build import build
 from sebody.assembly.numbering import turning
 from sebody.engine.loop import advance
 from sebody.engine.state import (
@@ -83,7 +83,7 @@ class Simulation:
         self.model, self.h, self.every = model, float(h), int(output_every)
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
-        self.dense = self.numbering.free <= DENSE_LIMIT
+        self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
         self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
         self.rows: list[NDArray] = []       # recorded states, stretch by stretch
         self.watch = Watch()
