@@ -2,8 +2,7 @@
 
 import math
 
-from sebody import Model
-from sebody.model.histories import with_corners
+from sebody import Model, with_corners
 from sebody.scenes.hinged_beam import SECTION, TORQUE
 from sebody.scenes.scene import Scene
 

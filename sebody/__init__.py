@@ -1,12 +1,14 @@
 """Flexible multibody dynamics with superelements (Cardona, 2000)."""
 
 from sebody.analysis.accuracy import simulate_within
-from sebody.analysis.simulation import Simulation, generalized_alpha, hht, simulate
+from sebody.analysis.schemes import generalized_alpha, hht
+from sebody.analysis.simulation import Simulation, simulate
 from sebody.analysis.tolerance import Tolerance
 from sebody.errors import InputError, LimitWarning, SebodyError, SimulationError
+from sebody.model.histories import with_corners
 from sebody.model.model import Model
 from sebody.results.result import Result
 
 __all__ = ["InputError", "LimitWarning", "Model", "Result", "SebodyError", "Simulation",
            "SimulationError", "Tolerance", "generalized_alpha", "hht", "simulate",
-           "simulate_within"]
+           "simulate_within", "with_corners"]

@@ -1,79 +1,122 @@
-"""The one-way rule: derive/ writes kernels, sebody/ runs on them, and neither needs the other."""
+"""The rooms and their order: what every file may import, and that no modules import in a circle."""
 
 import ast
 import subprocess
 import sys
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
-LEAVES = {"sebody.kernels.rotations", "sebody.kernels.frame_search", "sebody.kernels.dense",
-          "sebody.kernels.abi", "sebody.kernels.pipeline", "sebody.kernels.layout"}
-PICTURES = {"plot", "draw", "paper_figures"}     # that may import matplotlib
-MAIN_ONLY = {"sebody.generated"}
+FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
+           "examples": "sebody.scenes"}
+# every room, lowest first, and which others its files may import; errors are open to all
+ROOMS = {
+    "errors": set(),
+    "kernels": set(),
+    "generated": {"kernels"},
+    "engine": {"kernels"},
+    "fem": set(),
+    "reduction": {"fem"},
+    "io": {"fem"},
+    "model": {"kernels", "generated", "fem", "reduction"},     # of generated the options alone
+    "assembly": {"kernels", "engine", "reduction", "model"},
+    "results": {"kernels", "engine", "model", "assembly"},
+    "analysis": {"kernels", "engine", "model", "assembly", "results"},
+    "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
+    "scenes": {"sebody", "fem", "reduction", "results"},
+    "studies": {"kernels", "engine", "fem", "reduction", "model", "assembly", "results",
+                "analysis", "scenes"},
+    "cli": {"kernels", "results", "analysis", "scenes", "studies"},
+    "derive": {"kernels"},
+}
+RUNTIME = {"numpy", "scipy", "numba"}
+PACKAGES = {"errors": set(), "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
+            "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
+PICTURES = {"plots", "draw", "paper_figures"}       # modules that may import matplotlib
+EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 
 
-def imported(path: Path, package: str) -> set[str]:
-    """Full names of everything a module of `package` imports, also inside functions."""
+def module(path: Path) -> str:
+    """Full name of the module of a file."""
+    folder, *parts = path.relative_to(ROOT).with_suffix("").parts
+    parts = parts[:-1] if parts[-1] == "__init__" else parts
+    return ".".join([FOLDERS[folder], *parts])
+
+
+def room(name: str) -> str:
+    """The room a module of the package is in; that of sebody/__init__.py is `sebody`."""
+    return (name.split(".") + ["sebody"])[1]
+
+
+def imported(source: str) -> set[str]:
+    """Full names of what a module imports, in functions and for type checkers, too."""
     names = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            parts = package.split(".")[:1 - node.level or None] if node.level else []
-            module = ".".join([*parts, *([node.module] if node.module else [])])
-            names |= {f"{module}.{alias.name}" for alias in node.names}
+            assert node.level == 0, f"relative import of {node.module}"
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
     return names
 
 
-def modules(folder: str, package: str) -> list:
-    """Files of a folder and the package each belongs to."""
-    return [pytest.param(path, ".".join([package, *path.relative_to(ROOT / folder).parent.parts]),
-                         id=str(path.relative_to(ROOT)))
-            for path in sorted((ROOT / folder).rglob("*.py"))]
+FILES = [path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.py"))]
+MODULES = {module(path): path for path in FILES}
 
 
-def within(name: str, allowed: set[str]) -> bool:
-    return any(name == a or name.startswith(a + ".") for a in allowed)
+def imported_modules(path: Path) -> set[str]:
+    """Modules of the package that a file imports itself or takes names from."""
+    names = {name for name in imported(path.read_text()) if name.split(".")[0] == "sebody"}
+    return {name if name in MODULES else name.rpartition(".")[0] for name in names}
 
 
-def test_names_are_resolved(tmp_path):
-    path = tmp_path / "module.py"
-    path.write_text("import a.b\nfrom . import c\nfrom .d import e\nfrom ..f import g\n"
-                    "def h():\n    from i import j\n")
-    assert imported(path, "sebody.fem") == {"a.b", "sebody.fem.c", "sebody.fem.d.e", "sebody.f.g",
-                                            "i.j"}
+def test_imports_are_found():
+    source = ("import a.b\nfrom a.c import d\nfrom typing import TYPE_CHECKING\n"
+              "if TYPE_CHECKING:\n    from e import f\ndef g():\n    from h import i\n")
+    assert imported(source) == {"a.b", "a.c.d", "typing.TYPE_CHECKING", "e.f", "h.i"}
 
 
-@pytest.mark.parametrize("path, package", modules("derive", "sebody.derive"))
-def test_derivation_uses_leaf_functions_only(path, package):
-    allowed = {"sebody.derive", "sebody.kernels"} | (MAIN_ONLY if path.stem == "__main__"
-                                                     else set())
-    for name in imported(path, package):
-        top = name.split(".")[0]
-        if top == "sebody":
-            assert within(name, allowed), f"{path} imports {name}"
-        else:
-            assert top in {"sympy", "mpmath"} or top in sys.stdlib_module_names, name
+def test_every_room_is_above_those_it_imports():
+    order = list(ROOMS)
+    assert not [(high, low) for high, lower in ROOMS.items() for low in lower
+                if order.index(low) >= order.index(high)]
+    assert {room(name) for name in MODULES} == set(ROOMS)
 
 
-@pytest.mark.parametrize("path, package", modules("sebody", "sebody")
-                         + modules("examples", "sebody.scenes"))
-def test_runtime_knows_no_derivation(path, package):
-    for name in imported(path, package):
-        assert not within(name, {"sebody.derive", "derive", "generated", "sympy", "mpmath"})
-        assert path.stem in PICTURES or not within(name, {"matplotlib"})
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_imports_go_one_way(path):
+    own = room(module(path))
+    allowed = ROOMS[own] | {own, "errors"}
+    if path == ROOT / "derive/__main__.py":
+        allowed = allowed | {"generated"}           # where it writes
+    for name in imported_modules(path):
+        assert name in MODULES, f"there is no module {name}"
+        assert room(name) in allowed, f"{module(path)} imports {name}"
 
 
-@pytest.mark.parametrize("path, package", modules("generated", "sebody.generated"))
-def test_kernels_use_leaf_functions_only(path, package):
-    for name in imported(path, package):
-        assert within(name, LEAVES | {"numba", "numpy", "math"}), name
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_packages_of_others(path):
+    own = room(module(path))
+    allowed = PACKAGES.get(own, RUNTIME) | {"sebody"}
+    allowed |= {"matplotlib"} if path.stem in PICTURES else set()
+    allowed |= {"exudyn"} if path.stem in EXTRAS else set()
+    tops = {name.split(".")[0] for name in imported(path.read_text())}
+    unknown = tops - allowed
+    assert unknown <= (set() if own == "generated" else set(sys.stdlib_module_names)), unknown
+
+
+def test_no_circle_among_modules():
+    graph = {name: imported_modules(path) for name, path in MODULES.items()}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(f"modules import each other: {' <- '.join(error.args[1])}")
 
 
 def test_sympy_is_not_loaded():
-    code = ("import sys, sebody, sebody.cli.main, sebody.scenes.hinged_beam\n"
+    code = ("import sys, sebody, sebody.cli.entry, sebody.scenes.hinged_beam\n"
             "print(sorted({'sympy', 'matplotlib', 'sebody.derive'} & set(sys.modules)))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -4,18 +4,19 @@ Checked on few of the recorded states, after the compiled loop: it costs the loo
 """
 
 import warnings
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
-from sebody.engine.state import Scheme, recorded_parts
+from sebody.assembly.numbering import Numbering
+from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
-
-if TYPE_CHECKING:
-    from sebody.analysis.simulation import Simulation
-    from sebody.model.model import Superelement
+from sebody.kernels.layout import RECORD
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Superelement
+from sebody.results.recording import record_counts
 
 LINEAR = 0.3            # rad, local rotation up to which stiffness is linear, see README
 STATES = 3000           # of bodies that are looked at in a stretch of a run,
@@ -38,7 +39,7 @@ class Watch:
             self.messages.append(message)
             warnings.warn(message, LimitWarning, stacklevel=4)
 
-    def start(self, bodies: dict[str, "Superelement"], scheme: Scheme, constrained: bool) -> None:
+    def start(self, bodies: dict[str, Superelement], scheme: Scheme, constrained: bool) -> None:
         """What is known before the first step."""
         undamped = scheme.gamma == 0.5 and scheme.alpha_f == scheme.alpha_m
         if constrained and undamped and not scheme.stabilized:
@@ -53,18 +54,22 @@ class Watch:
                          "small deflection; keep a rotation and take another frame, or a node "
                          "off the line")
 
-    def look(self, run: "Simulation", rows: NDArray) -> None:
-        """Compare recorded states with the limits of every body."""
+    def look(self, model: Mechanism, numbering: Numbering, rows: NDArray) -> None:
+        """Compare recorded states with the limits of every body.
+
+        Parameters
+        ----------
+        rows : (n, numbers of `layout.RECORD`)
+        """
         if not len(rows):
             return
         if self._groups is None:
-            self._groups = _grouped(run)
-        most = min(max(FEWEST, STATES // max(len(run.model.bodies), 1)), MOST)
+            self._groups = _grouped(model, numbering)
+        most = min(max(FEWEST, STATES // max(len(model.bodies), 1)), MOST)
         rows = rows[::-(-len(rows) // most)]
-        parts = recorded_parts(run.numbering.total, len(run.numbering.rotations),
-                               len(run.model.bodies), len(run.numbering.histories))
+        parts = RECORD.slices(record_counts(numbering))
         for group in self._groups:
-            turned, spins = _motion(run.model.planar, group, rows, parts)
+            turned, spins = _motion(model.planar, group, rows, parts)
             for k in np.flatnonzero(turned > LINEAR):
                 name = group.bodies[k].name
                 self.say(f"turn {name}", f"local rotation {turned[k]:.2g} rad of body {name!r} "
@@ -74,7 +79,7 @@ class Watch:
                 row = int(np.argmax(speeds[:, k]))
                 self._compare(group.bodies[k], spins[row, k], speeds[row, k])
 
-    def _compare(self, body: "Superelement", spin: NDArray, speed: float) -> None:
+    def _compare(self, body: Superelement, spin: NDArray, speed: float) -> None:
         if f"spin {body.name}" in self._said:
             return
         limit = spin_limit(body, spin / speed)
@@ -87,7 +92,7 @@ class Watch:
 class Group(NamedTuple):
     """Bodies with the same number of moving rotations, m each."""
 
-    bodies: list["Superelement"]
+    bodies: list[Superelement]
     frames: NDArray         # (b,) which frame is theirs
     places: NDArray         # (b, m) first coordinates of the rotations
     rotations: NDArray      # (b, m) which matrices, in space
@@ -95,11 +100,10 @@ class Group(NamedTuple):
     least: NDArray          # (b,) lower bounds of the limits of spin
 
 
-def _grouped(run: "Simulation") -> list[Group]:
+def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
     found: dict[int, list] = {}
     limits: dict[tuple, float] = {}
-    numbering = run.numbering
-    for k, body in enumerate(run.model.bodies.values()):
+    for k, body in enumerate(model.bodies.values()):
         parts = [(numbering.triplets[id(t)], numbering.rotations.get(id(t), 0), weight)
                  for t, weight in zip(body.rotations, body.alpha_r, strict=True)
                  if id(t) in numbering.triplets]
@@ -113,7 +117,7 @@ def _grouped(run: "Simulation") -> list[Group]:
             for bodies, *columns in (zip(*rows, strict=True) for rows in found.values())]
 
 
-def spin_limit(body: "Superelement", axis: NDArray | None) -> float:
+def spin_limit(body: Superelement, axis: NDArray | None) -> float:
     """Spin about an axis of the frame at which one linear body diverges.
 
     With options A and B the kinetic energy of a steady spin W is that of the velocities
@@ -165,7 +169,7 @@ def _fit(reduced) -> NDArray:
     return rows
 
 
-def _spread(body: "Superelement") -> float:
+def _spread(body: Superelement) -> float:
     """Second largest extent of the nodes that keep a position, of the largest."""
     points = body.body.coordinates[list(body.body.position_nodes)]
     extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)

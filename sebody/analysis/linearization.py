@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csc_matrix
 
-from sebody.analysis.initial_state import REASONS, assembled
+from sebody.analysis.evaluation import matrix
 from sebody.analysis.simulation import Simulation
 from sebody.assembly.numbering import coordinates
-from sebody.engine.evaluate import assemble, to_body_axes
-from sebody.engine.matrix import sum_matrices
+from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import RENEWED, WANTED
 from sebody.errors import InputError
 from sebody.results.result import Result
@@ -114,31 +113,27 @@ def _skew(a: NDArray) -> NDArray:
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
-def matrix(run: Simulation | Result, mass: float, rate: float, place: float) -> csc_matrix:
+def derivative(run: Simulation | Result, mass: float, rate: float, place: float) -> csc_matrix:
     """Sum of the exact derivatives by accelerations, velocities and places, in body axes.
 
     Constraints belong to the places: a turning state moves the columns of the others.
     """
     state = run.state
     state.control[WANTED] = RENEWED     # a run that goes on needs its own matrix again
-    state.coefficients[:5] = (mass, rate, place, 1.0, place)
     state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
-    status = assemble(RENEWED, run.system, state, state.residual)
-    if status:
-        raise InputError(f"the state cannot be evaluated: {REASONS[status]}")
-    sum_matrices(run.system, state, state.residual)
-    return assembled(run.system, state)
+    return matrix(run.system, state, "the state", mass=mass, rate=rate, place=place,
+                  constraint=place)
 
 
 def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
     """Tangent stiffness in axes that turn, and the residual."""
-    stiffness = matrix(run, 0.0, 0.0, 1.0)
+    stiffness = derivative(run, 0.0, 0.0, 1.0)
     residual = run.state.residual.copy()
     to_body_axes(run.system, run.state.frames, residual, False)
     if spin.turns:
         velocity, place, _ = spin.operators(run)
-        stiffness = (stiffness + matrix(run, 0.0, 1.0, 0.0) @ velocity
-                     + matrix(run, 1.0, 0.0, 0.0) @ place)
+        stiffness = (stiffness + derivative(run, 0.0, 1.0, 0.0) @ velocity
+                     + derivative(run, 1.0, 0.0, 0.0) @ place)
     return csc_matrix(stiffness), residual[:run.numbering.free]
 
 
@@ -170,7 +165,7 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     """
     turning = Spin.of(run, spin)
     stiffness, _ = rotating(run, turning)
-    mass, damping = matrix(run, 1.0, 0.0, 0.0), matrix(run, 0.0, 1.0, 0.0)
+    mass, damping = derivative(run, 1.0, 0.0, 0.0), derivative(run, 0.0, 1.0, 0.0)
     if turning.turns:
         damping = damping + mass @ turning.operators(run)[2]
     K, C, M = (A.toarray() for A in (stiffness, damping, mass))

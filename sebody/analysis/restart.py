@@ -10,7 +10,7 @@ import numpy as np
 
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
-from sebody.engine.state import PIVOTED, Record, Scheme, State
+from sebody.engine.state import PIVOTED, Scheme, State
 from sebody.errors import InputError
 from sebody.model.model import Model
 from sebody.results.files import check_target
@@ -19,7 +19,7 @@ VERSION = 1
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 
 
-def save(run: Simulation, path: str | Path) -> Path:
+def save_state(run: Simulation, path: str | Path) -> Path:
     """Write the state of a simulation and what it has recorded to an npz file.
 
     Raises
@@ -33,7 +33,7 @@ def save(run: Simulation, path: str | Path) -> Path:
                 "model": _fingerprint(run)}
     arrays = {field.name: getattr(run.state, field.name) for field in fields(State)}
     np.savez(path, settings=json.dumps(settings), relaxed=run.system.relaxed,
-             rows=np.concatenate([record.rows for record in run.records]), **arrays)
+             rows=np.concatenate(run.rows), **arrays)
     return path
 
 
@@ -55,7 +55,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
     for field in fields(State):
         getattr(run.state, field.name)[...] = arrays[field.name]
     run.system.relaxed[:] = arrays["relaxed"]
-    run.records = [Record(arrays["rows"], np.array([run.every]))]
+    run.rows = [arrays["rows"]]
     run.seconds = settings["seconds"]
     if run.state.control[PIVOTED]:
         run.factorize()
@@ -72,10 +72,14 @@ def _read(path: Path) -> tuple[dict, dict]:
         raise InputError(f"restart file {path} does not exist: give one that was saved") from error
     except (BadZipFile, ValueError, KeyError, TypeError, EOFError) as error:
         raise InputError(f"{path} is no restart file: give one written by "
-                         "sebody.analysis.save") from error
+                         "sebody.analysis.save_state") from error
     if version != VERSION:
         raise InputError(f"restart file {path} is of version {version}, this program writes "
                          f"{VERSION}: run the model again")
+    differing = set(arrays) ^ {"settings", "relaxed", "rows", *(f.name for f in fields(State))}
+    if differing:
+        raise InputError(f"restart file {path} was written by another version of sebody (it "
+                         f"differs in {', '.join(sorted(differing))}): run the model again")
     return settings, arrays
 
 

@@ -1,28 +1,27 @@
-"""HHT and generalized-alpha runs: schemes, consistent start, and driving the compiled loop."""
+"""Runs: a consistent start, and driving the compiled loop."""
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import csc_matrix, diags_array
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
-from sebody.analysis.initial_state import REASONS, Start, acceleration_rates, assembled, start
+from sebody.analysis.allocation import allocate
+from sebody.analysis.evaluation import assembled
+from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
+from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance
-from sebody.assembly.build import DENSE_LIMIT, build, work_size
-from sebody.assembly.numbering import Numbering, turning
-from sebody.engine import loop
+from sebody.assembly.build import DENSE_LIMIT, build
+from sebody.assembly.numbering import turning
+from sebody.engine.loop import advance
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
     CHOSEN,
     CHUNK,
-    CLOCKS,
-    CONTRACTION,
-    CONTROLS,
-    CURRENT_STEP,
     DONE,
     FACTOR,
     FAILED,
@@ -30,72 +29,20 @@ from sebody.engine.state import (
     GRID,
     LARGEST_ERROR,
     REASON,
+    REASONS,
     RECORDED,
-    RENEWED,
     SOLVE,
-    STEP,
     TIME,
-    WANTED,
     Record,
     Scheme,
-    State,
-    recorded_parts,
 )
-from sebody.engine.system import System
+from sebody.engine.step import write_record
 from sebody.errors import InputError, SimulationError
-from sebody.kernels.abi import padded
-from sebody.kernels.layout import LANES, POWERS
 from sebody.model.model import Model
+from sebody.results.recording import Start
 from sebody.results.result import Result
 
 FIRST_STEP = 1e-3       # of the output grid, where nothing is accelerated at the start
-
-
-def generalized_alpha(rho: float = 0.9, tolerance: float = 1e-8, tangent: str = "consistent",
-                      index: int = 3) -> Scheme:
-    """Chung and Hulbert's scheme with spectral radius `rho` at infinite frequency.
-
-    Parameters
-    ----------
-    rho : float
-        In [0, 1]; 1 has no numerical damping.
-    tolerance : float
-        Of the Newton correction left, relative to the increment of the step.
-    tangent : {'consistent', 'paper'}
-        Iteration matrix: exact, or (31) with (60)-(63).
-    index : {3, 2}
-        With 3 the constraints hold for positions; with 2, the stabilised form of Gear, Gupta and
-        Leimkuhler, for velocities, too, and multipliers are of second order from the start.
-
-    Raises
-    ------
-    InputError
-        Values out of range.
-    """
-    if not 0.0 <= rho <= 1.0:
-        raise InputError(f"rho is {rho}: use a spectral radius between 0 and 1")
-    alpha_m, alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
-    gamma = 0.5 + alpha_f - alpha_m
-    return _scheme(alpha_m, alpha_f, 0.25 * (gamma + 0.5) ** 2, gamma, tolerance, tangent, index)
-
-
-def hht(alpha: float = -0.05, tolerance: float = 1e-8, tangent: str = "consistent",
-        index: int = 3) -> Scheme:
-    """Hilber, Hughes and Taylor's scheme, ``alpha`` in [-1/3, 0]; see `generalized_alpha`."""
-    if not -1.0 / 3.0 <= alpha <= 0.0:
-        raise InputError(f"alpha is {alpha}: HHT needs a value between -1/3 and 0")
-    return _scheme(0.0, -alpha, 0.25 * (1 - alpha) ** 2, 0.5 - alpha, tolerance, tangent, index)
-
-
-def _scheme(alpha_m, alpha_f, beta, gamma, tolerance, tangent, index) -> Scheme:
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"tolerance is {tolerance}: use a number between 0 and 1, such as 1e-8")
-    if tangent not in ("consistent", "paper"):
-        raise InputError(f"tangent {tangent!r} is unknown: use 'consistent' or 'paper'")
-    if index not in (2, 3):
-        raise InputError(f"index is {index}: use 3, or 2 for the stabilised form")
-    return Scheme(alpha_m, alpha_f, beta, gamma, tolerance, 1.0 if tangent == "consistent" else 0.0,
-                  index == 2)
 
 
 class Simulation:
@@ -137,8 +84,8 @@ class Simulation:
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
         self.dense = self.numbering.free <= DENSE_LIMIT
-        self.state = _initial_state(model, self.system, self.numbering, self.h, self.dense)
-        self.records: list[Record] = []
+        self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
+        self.rows: list[NDArray] = []       # recorded states, stretch by stretch
         self.watch = Watch()
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
         self.seconds = 0.0
@@ -150,12 +97,12 @@ class Simulation:
             self._choose_steps(tolerance.check())
         if self.scheme.stabilized:
             self._offset_accelerations()
-        first = _record(self.state, 1, self.every)
+        first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
-        loop.write_record(self.state, first)
-        self.records.append(first)
+        write_record(self.state, first)
+        self.rows.append(first.rows)
         # nothing to do yet: compiles the loop, or reads it from the cache, before time is measured
-        loop.advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
+        advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
 
     @property
     def time(self) -> float:
@@ -176,13 +123,12 @@ class Simulation:
         if last < self.state.control[GRID]:
             raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
         steps = last // self.every - self.state.control[GRID] // self.every
-        record = _record(self.state, int(steps), self.every)
+        record = Record.of(self.state, int(steps), self.every)
         self.state.control[RECORDED] = 0
         code = CHUNK
         while code not in (DONE, FAILED):
             began = time.perf_counter()
-            code = loop.advance(self.system, self.state, record, self.scheme, last, chunk,
-                                self.dense)
+            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
             if code == FACTOR:
                 self.factorize()
             elif code == SOLVE:
@@ -193,9 +139,8 @@ class Simulation:
             self.seconds += time.perf_counter() - began
             if progress and code in (CHUNK, DONE):
                 progress(self.time / t_end if t_end else 1.0)
-        self.records.append(
-            replace(record, rows=record.rows[:self.state.control[RECORDED]]))
-        self.watch.look(self, self.records[-1].rows)
+        self.rows.append(record.rows[:self.state.control[RECORDED]])
+        self.watch.look(self.model, self.numbering, self.rows[-1])
         if code == FAILED:
             self.failure = self._explain()
             raise SimulationError(self.failure, self.result())
@@ -203,7 +148,9 @@ class Simulation:
 
     def result(self) -> Result:
         """What has been computed so far."""
-        return Result.of(self)
+        return Result(self.model, self.numbering, self.system, self.state,
+                      np.concatenate(self.rows), self.seconds, self.failure, self.start,
+                      tuple(self.watch.messages))
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
         """The scheme, by default one that suits the steps and the constraints."""
@@ -235,7 +182,7 @@ class Simulation:
 
     def factorize(self) -> None:
         """Factors with exchanges of rows, where elimination in order met a small pivot."""
-        scale = diags_array(self.state.scale[:self.numbering.free])
+        scale = diags(self.state.scale[:self.numbering.free])
         matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
         self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
 
@@ -253,55 +200,3 @@ def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              tolerance: Tolerance | None = None) -> Result:
     """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
     return Simulation(model, h, scheme, output_every, tolerance).run_to(t_end, progress).result()
-
-
-def _initial_state(model: Model, system: System, numbering: Numbering, h: float,
-                   dense: bool) -> State:
-    n, total = numbering.free, numbering.total
-    bodies, turns = len(model.bodies), len(numbering.rotations)
-    zeros = np.zeros
-    q, v = zeros(total), zeros(total)
-    for node in (*model.nodes.values(), *model.grounds):
-        for triplet in (node.position, node.rotation):
-            if triplet is not None and id(triplet) in numbering.triplets:
-                first = numbering.triplets[id(triplet)]
-                q[first:first + triplet.start.size] = triplet.start
-                v[first:first + triplet.start.size] = triplet.rate if triplet.solved else 0.0
-    for body in model.bodies.values():
-        first = numbering.modes[body.name]
-        v[first:first + body.body.modes] = body.mode_rates
-    identities = np.tile(np.eye(3).ravel(), max(turns, bodies))
-    R, frames = identities[:9 * turns], identities[:9 * bodies]
-    items = len(numbering.histories)
-    parts = recorded_parts(total, turns, bodies, items)
-    now = zeros(parts["frames_old"].stop)
-    for name, value in {"q": q, "v": v, "R": R, "frames": frames, "frames_old": frames}.items():
-        now[parts[name]] = value
-    clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
-    clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
-    clock[CONTRACTION] = 0.95
-    control[WANTED] = RENEWED
-    coefficients = zeros(8)
-    coefficients[5:5 + model.dimension] = model.gravity_field
-    return State(
-        now, *[now[parts[name]] for name in ("works", "q", "R", "v", "a", "frames", "frames_old")],
-        aux=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
-        v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total), T=R.copy(),
-        loads=zeros(3 * items), loads_old=zeros(3 * items), powers=zeros(items),
-        powers_old=zeros(items), coefficients=coefficients,
-        g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
-        turned=zeros(int(system.width.max()) ** 2), residual=zeros(total), forces=zeros(total),
-        correction=zeros(padded(total) + LANES), solution=zeros(system.slot_unknowns.size),
-        last_correction=zeros(total), last_change=zeros(total),
-        moved=np.ones(len(system.summands), dtype=bool), gaps=zeros(total), shift=zeros(total),
-        strictness=zeros(total), expansion=zeros(9 + int(max(
-            (w * wide + wide * wide for _, w, wide, *_ in system.links.elements), default=0))),
-        matrix=zeros(system.rows.size + 1),
-        scale=np.ones(total + LANES), weight=zeros(total),
-        inverse=zeros((n, padded(n)) if dense else (1, 1)),
-        column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
-        energy=zeros(POWERS + items), clock=clock, control=control)
-
-
-def _record(state: State, steps: int, every: int) -> Record:
-    return Record(np.zeros((steps, state.now.size)), np.array([every]))

@@ -1,7 +1,5 @@
 """Static equilibrium under loads applied in steps, also in a steadily rotating frame."""
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -10,6 +8,7 @@ from sebody.analysis.simulation import Simulation
 from sebody.analysis.sparse import Scaled
 from sebody.engine.evaluate import set_loads, to_body_axes, turn_rotations
 from sebody.errors import InputError, SimulationError
+from sebody.kernels.layout import FIELD, RECORD_T
 from sebody.model.model import Model
 from sebody.results.result import Result
 
@@ -50,30 +49,29 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     if steps != int(steps) or steps < 1:
         raise InputError(f"steps is {steps}: give a whole number >= 1")
     run = Simulation(model, 1.0)
-    state, field = run.state, run.state.coefficients[5:].copy()
+    state, field = run.state, run.state.coefficients[FIELD:].copy()
     turning = Spin.of(run, spin)
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
     state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
     set_loads(run.system, state.loads, t)
     loads = state.loads.copy()
-    rows, share, step = [state.now.copy()], 0.0, 1.0 / steps
+    run.rows = [state.now[None].copy()]
+    share, step = 0.0, 1.0 / steps
     while share < 1.0 - 1e-12:
         kept = state.now.copy()
         target = min(share + step, 1.0)
-        state.loads[:], state.coefficients[5:] = target * loads, target * field
+        state.loads[:], state.coefficients[FIELD:] = target * loads, target * field
         if _balance(run, tolerance, turning.times(np.sqrt(target))):
             share = target
-            state.now[0] = share
-            rows.append(state.now.copy())
+            state.now[RECORD_T] = share
+            run.rows.append(state.now[None].copy())
             continue
         state.now[:] = kept
         step /= 2
         if step < SMALLEST:
-            run.records[0] = replace(run.records[0], rows=np.array(rows))
             message = (f"no equilibrium was found above {share:.4g} of the load: the structure may "
                        "buckle there, or a mechanism is free to move; use more steps or supports")
             raise SimulationError(message, run.result())
-    run.records[0] = replace(run.records[0], rows=np.array(rows))
     return run.result()
 
 

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering
 from sebody.engine.links import Links
-from sebody.model.model import Model
+from sebody.model.mechanism import Mechanism
 
 
-def link_arrays(model: Model, numbering: Numbering, batches: list,
+def link_arrays(model: Mechanism, numbering: Numbering, batches: list,
                 turned: NDArray) -> tuple[Links, NDArray, NDArray]:
     """Links without their matrix entries, and rows and columns of these."""
     d = model.dimension

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.items import number_items
 from sebody.errors import InputError
-from sebody.kernels.loader import element_kernel
 from sebody.model.histories import History
-from sebody.model.model import Model
-from sebody.model.nodes import Element, Triplet
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Triplet
 
 
 class Numbering(NamedTuple):
@@ -22,15 +22,15 @@ class Numbering(NamedTuple):
     triplets: dict[int, int]            # id(triplet) -> first coordinate
     rotations: dict[int, int]           # id(triplet) -> number of its rotation matrix
     modes: dict[str, int]               # superelement -> first modal amplitude
-    multipliers: dict[int, int]         # id(joint) -> first multiplier
+    multipliers: dict[int, int]         # id(constraint) -> first multiplier
     names: list[str]                    # of every coordinate
     hanging: list[Triplet]              # positions at the ends of rigid links
-    items: dict[int, int]               # id(joint, load or spring) -> item
+    items: dict[int, int]               # id(constraint, load, spring, body) -> item
     item_names: list[str]               # of what has a history or does work
     histories: list[History]            # of every item
     prescribed: list[tuple[int, int, int, float]]   # coordinate, item, 1 if it turns R, factor
     groups: NDArray                     # where the unknowns of each body begin
-    forces_at: dict[int, int] = {}      # id(body, joint or load) -> its first force in State.g
+    forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
 
 
 def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
@@ -39,7 +39,7 @@ def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
     return list(range(first, first + triplet.start.size))
 
 
-def turning(model: Model, numbering: Numbering) -> NDArray:
+def turning(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates are those of rotations."""
     found = np.zeros(numbering.total, dtype=bool)
     for node in model.nodes.values():
@@ -48,7 +48,7 @@ def turning(model: Model, numbering: Numbering) -> NDArray:
     return found
 
 
-def number(model: Model) -> Numbering:
+def number(model: Mechanism) -> Numbering:
     """Number the unknowns body by body; what bodies share waits for the last one that has it.
 
     Of a body's own those come last that joints couple to later bodies. Multipliers follow the
@@ -60,61 +60,70 @@ def number(model: Model) -> Numbering:
     InputError
         A triplet that belongs to no body and is not fixed.
     """
-    names, at, modes, multipliers = [], {}, {}, {}
     parts = _parts(model)
     last = {id(p): k for k, (_, triplets, _) in enumerate(parts) for p in _parents(triplets)}
     coupled = _coupled(model, last)
-    joints, groups = defaultdict(list), []
-    for joint in model.joints:
-        for key in {id(p) for p in _parents(joint.triplets)}:
-            joints[key].append(joint)
-
-    def place(triplet: Triplet) -> None:
-        if triplet.solved and id(triplet) not in at:
-            at[id(triplet)] = len(names)
-            names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
-            place_multipliers(joints[id(triplet)])
-
-    def place_multipliers(of: list[Element]) -> None:
-        for joint in of:
-            if all(id(p) in at or not p.solved for p in _parents(joint.triplets)):
-                multipliers[id(joint)] = len(names)
-                names.extend(f"multiplier {j} of {joint.name}" for j in range(joint.multipliers))
-
-    place_multipliers([joint for joint in model.joints if not any(
-        p.solved for p in _parents(joint.triplets))])
-    for number_, (name, triplets, count) in enumerate(parts):
-        groups.append(len(names))
+    order, modes, groups = _Order(model), {}, []
+    for k, (name, triplets, count) in enumerate(parts):
+        groups.append(len(order.names))
         if name in model.bodies:
-            modes[name] = len(names)
-        names.extend(f"mode {k} of {name}" for k in range(count))
-        own = [p for p in _parents(triplets) if last[id(p)] == number_]
+            modes[name] = len(order.names)
+        order.names.extend(f"mode {mode} of {name}" for mode in range(count))
+        own = [p for p in _parents(triplets) if last[id(p)] == k]
         for triplet in sorted(own, key=lambda p: coupled[id(p)]):
-            place(triplet)
+            if triplet.solved and id(triplet) not in order.at:
+                order.place(triplet)
+                order.place_multipliers(triplet)
     _refuse_loose(model, last)
-    free = len(names)
-    used = _used(model)
+    free, used = len(order.names), _used(model)
     for triplet in used:
-        if id(triplet) not in at and triplet.root is None:
-            at[id(triplet)] = len(names)
-            names.extend(f"{triplet.name}[{k}] (fixed)" for k in range(triplet.start.size))
+        if id(triplet) not in order.at and triplet.root is None:
+            order.place(triplet, " (fixed)")
     hanging = [t for t in used if t.root is not None]
     for triplet in hanging:
-        at[id(triplet)] = len(names)
-        names.extend(f"{triplet.name}[{k}]" for k in range(triplet.start.size))
-    rotations = {}
-    if not model.planar:
-        for triplet in used:
-            if triplet.turns:
-                rotations.setdefault(id(triplet), len(rotations))
-    return Numbering(free, len(names), at, rotations, modes, multipliers, names, hanging,
-                     *_items(model, at), np.array(groups))
+        order.place(triplet)
+    turning = [] if model.planar else [t for t in used if t.turns]
+    rotations = {id(t): k for k, t in enumerate(turning)}
+    return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
+                     order.names, hanging, *number_items(model, order.at), np.array(groups))
 
 
-def _coupled(model: Model, last: dict[int, int]) -> dict[int, int]:
+class _Order:
+    """Coordinates in the order they are numbered in."""
+
+    def __init__(self, model: Mechanism) -> None:
+        self.names: list[str] = []
+        self.at: dict[int, int] = {}                # id(triplet) -> first coordinate
+        self.multipliers: dict[int, int] = {}       # id(constraint) -> first multiplier
+        self._constraints: dict[int, list[Element]] = defaultdict(list)     # on each triplet
+        for constraint in model.constraints:
+            parents = {id(p): p for p in _parents(constraint.triplets)}
+            for key in parents:
+                self._constraints[key].append(constraint)
+            if not any(p.solved for p in parents.values()):
+                self._place(constraint)
+
+    def place(self, triplet: Triplet, remark: str = "") -> None:
+        """Number the coordinates of a triplet."""
+        self.at[id(triplet)] = len(self.names)
+        self.names.extend(f"{triplet.name}[{k}]{remark}" for k in range(triplet.start.size))
+
+    def place_multipliers(self, triplet: Triplet) -> None:
+        """Number the multipliers of the constraints of which this was the last triplet."""
+        for constraint in self._constraints[id(triplet)]:
+            if all(id(p) in self.at or not p.solved for p in _parents(constraint.triplets)):
+                self._place(constraint)
+
+    def _place(self, constraint: Element) -> None:
+        self.multipliers[id(constraint)] = len(self.names)
+        self.names.extend(f"multiplier {j} of {constraint.name}"
+                          for j in range(constraint.multipliers))
+
+
+def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:
     """The last body that a triplet is coupled to, by joints, too."""
     found = dict(last)
-    for joint in model.joints:
+    for joint in model.constraints:
         parents = [id(p) for p in _parents(joint.triplets) if id(p) in last]
         for parent in parents:
             found[parent] = max(found[parent], *(last[p] for p in parents))
@@ -126,13 +135,13 @@ def _parents(triplets: Iterable[Triplet]) -> list[Triplet]:
     return [p for t in triplets for p in t.parents()]
 
 
-def _parts(model: Model) -> list[tuple[str, list[Triplet], int]]:
+def _parts(model: Mechanism) -> list[tuple[str, list[Triplet], int]]:
     """Bodies: name, triplets with rotations first, number of modes."""
     parts = [(b.name, [*b.rotations, *b.positions], b.body.modes) for b in model.bodies.values()]
     return parts + [(e.name, list(e.triplets[::-1]), 0) for e in model.rigid_bodies.values()]
 
 
-def _refuse_loose(model: Model, held: dict) -> None:
+def _refuse_loose(model: Mechanism, held: dict) -> None:
     for node in model.nodes.values():
         for triplet in (node.position, node.rotation):
             for parent in triplet.parents() if triplet is not None else ():
@@ -145,32 +154,10 @@ def _refuse_loose(model: Model, held: dict) -> None:
             raise InputError(f"{load.name}: no body is there to bear it: attach one")
 
 
-def _used(model: Model) -> list[Triplet]:
+def _used(model: Mechanism) -> list[Triplet]:
     """Triplets of nodes, of bodies, and those of the ground that joints need."""
-    elements = (*model.rigid_bodies.values(), *model.joints, *model.loads)
+    elements = (*model.rigid_bodies.values(), *model.constraints, *model.loads)
     found = [t for n in model.nodes.values() for t in (n.position, n.rotation) if t is not None]
     found += [t for e in elements for t in e.triplets]
     found += _parents(found)
     return list({id(t): t for t in found}.values())
-
-
-def _items(model: Model, at: dict[int, int]) -> tuple[dict, list, list, list]:
-    items, names, histories, prescribed = {}, [], [], []
-    for element in (*model.joints, *model.loads):
-        if element_kernel(element.kind).POWER:
-            items[id(element)] = len(names)
-            names.append(element.name)
-            histories.append(element.history or History())
-    for body in model.bodies.values():
-        if body.body.damping is not None:
-            items[id(body)] = len(names)
-            names.append(f"damping of {body.name}")
-            histories.append(History())
-    for triplet in model.triplets():
-        turning = int(triplet.turns and not model.planar)
-        for number_, (direction, history) in enumerate(triplet.motions, 1):
-            prescribed += [(at[id(triplet)] + k, len(names), turning, d)
-                           for k, d in enumerate(direction) if d != 0.0]
-            names.append(f"motion{f' {number_}' * (number_ > 1)} of {triplet.name}")
-            histories.append(history)
-    return items, names, histories, prescribed

@@ -5,10 +5,9 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.engine.links import place_hanging, pull_back
-from sebody.engine.state import FORCES, RENEWED, START
 from sebody.engine.tables import cubic_at
-from sebody.kernels.abi import at, call_kernel, pointer_to
-from sebody.kernels.layout import ACCELERATION, ENERGY, POWERS, RESIDUAL, TANGENT, VELOCITY
+from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
+from sebody.kernels.layout import C_RATE, ENERGY, OK, POWERS, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import tangent_operator, turn
 
@@ -26,9 +25,9 @@ def run_kernels(task, first, last, system, state):
     """Evaluate batches; returns the status of the first element that fails."""
     for b in range(first, last):
         status = _run_part(task, b, 0, system.count[b], system, state)
-        if status != 0:
+        if status != OK:
             return status
-    return 0
+    return OK
 
 
 @compiled(forceinline=True)
@@ -38,10 +37,12 @@ def _run_part(task, b, first, count, system, state):
     stride, width = system.stride[b], system.width[b]
     return call_kernel(
         system.address[b], task, count, stride, width,
-        (at(index, system.at_index[b] + first * stride), system.constants, state.q, state.R,
-         state.v, state.a, state.frames_old, state.frames, state.T, state.loads,
-         state.coefficients, at(g, system.at_g[b] + first * width),
-         at(J, system.at_J[b] + first * width * width), state.work, state.energy))
+        Arguments(index=at(index, system.at_index[b] + first * stride),
+                  constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
+                  references=state.frames_old, frames=state.frames, T=state.T, loads=state.loads,
+                  coefficients=state.coefficients, forces=at(g, system.at_g[b] + first * width),
+                  matrices=at(J, system.at_J[b] + first * width * width), work=state.work,
+                  energies=state.energy))
 
 
 @compiled(forceinline=True)
@@ -100,25 +101,21 @@ def set_tangent_operators(system, state):
 
 
 @compiled(forceinline=True)
-def assemble(level, system, state, residual):
+def assemble(of_bodies, of_others, system, state, residual):
     """Sum of the element forces in `residual`; element matrices, see `matrix` for their sum.
 
-    `level` is FORCES for forces alone, TURNED for new matrices of joints and loads, RENEWED for new
-    ones of all; START is for forces and accelerations of the constraints, RATES for their
-    velocities.
+    Kernels of superelements are asked for one task, those of joints, loads and all else for
+    another: VELOCITY and ACCELERATION of the constraints go with the RESIDUAL of the bodies.
     """
     bodies, batches = system.first_joint[0], system.address.size
-    status = run_kernels(TANGENT if level == RENEWED else RESIDUAL, 0, bodies, system, state)
-    if status != 0:
+    status = run_kernels(of_bodies, 0, bodies, system, state)
+    if status != OK:
         return status
-    task = RESIDUAL if level == FORCES else TANGENT
-    if level >= START:
-        task = ACCELERATION if level == START else VELOCITY
-    status = run_kernels(task, bodies, batches, system, state)
-    if status != 0:
+    status = run_kernels(of_others, bodies, batches, system, state)
+    if status != OK:
         return status
     sum_forces(system, state, residual)
-    return 0
+    return OK
 
 
 @compiled(forceinline=True)
@@ -164,11 +161,11 @@ def _run_moved(system, state):
             while end < system.count[b] and state.moved[first + end]:
                 end += 1
             status = _run_part(RESIDUAL, b, begin, end - begin, system, state)
-            if status != 0:
+            if status != OK:
                 return status
             begin = end
         first += system.count[b]
-    return 0
+    return OK
 
 
 @compiled
@@ -195,7 +192,7 @@ def take_rates(system, state):
     for k in range(system.g_unknown.size):
         unknown = system.g_unknown[k]
         if system.is_multiplier[unknown] > 0.0:
-            residual[unknown] += state.g[k] / state.coefficients[1]
+            residual[unknown] += state.g[k] / state.coefficients[C_RATE]
     for i in range(n):
         state.gaps[i] -= residual[i] * system.is_multiplier[i]
     return status

@@ -7,6 +7,7 @@ from sebody.engine.links import add_expanded, add_second_order
 from sebody.engine.state import FLOOR, PIVOTED, RENEWED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
+from sebody.kernels.layout import C_PLACE
 from sebody.kernels.pipeline import compiled
 
 SUMMAND = 5             # numbers of an element in System.summands
@@ -23,8 +24,8 @@ def sum_matrices(system, state, forces):
     for element in range(system.summands.shape[0]):
         _sum_element(system, state, element)
     if system.links.elements.shape[0] > 0:
-        add_second_order(system.links, state.coefficients[2], state.q, state.R, state.T, forces,
-                         state.matrix)
+        add_second_order(system.links, state.coefficients[C_PLACE], state.q, state.R, state.T,
+                         forces, state.matrix)
 
 
 @compiled
@@ -142,14 +143,14 @@ def invert_dense(system, state, n):
 
 
 @compiled
-def renew(system, state, level, dense):
+def renew(system, state, wanted, dense):
     """Sum and factorize; False if a small matrix is singular, PIVOTED and the sum at small pivots.
 
     Scales are those of the last matrix with new ones of all elements.
     """
     relaxed = system.relaxed[0] == 1
     sum_matrices(system, state, state.forces)
-    if level == RENEWED:
+    if wanted == RENEWED:
         equilibrate(system, state)
     if relaxed:
         relax(system, state)

@@ -1,17 +1,31 @@
 """What the compiled loop works on: state, records, scheme, and the names of its numbers."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
 from sebody.engine.arrays import Arrays
+from sebody.kernels.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OK, RECORD
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
 BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)      # where it goes on
-FORCES, TURNED, RENEWED, START, RATES = range(5)        # what is assembled, see assemble
-# why a step failed
-NO_REASON, HALF_TURN, NO_FRAME, NOT_FINITE, SLOW, INACCURATE = range(6)
+# which element matrices are made anew: none, those of joints and loads while the bodies' old ones
+# are turned to their new places, or all
+KEPT, TURNED, RENEWED = range(3)
+CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP = range(4)        # what a correction says of its step
+# why a step failed: the answers of kernels come first, so that such an answer is a reason
+NO_REASON = OK
+NOT_FINITE, SLOW, INACCURATE = range(max(HALF_TURN, NO_FRAME) + 1, max(HALF_TURN, NO_FRAME) + 4)
+REASONS = {
+    HALF_TURN: "a node is turned by nearly half a turn against its body's frame",
+    NO_FRAME: "the search for a body's frame did not end",
+    NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
+    SLOW: "Newton's iteration did not converge",
+    INACCURATE: "the error of a step is above the tolerance",
+}
 FINEST = 4096           # a grid step is cut into at most this many parts
 
 
@@ -19,14 +33,15 @@ FINEST = 4096           # a grid step is cut into at most this many parts
 class State(Arrays):
     """Everything a restart needs, and scratch memory."""
 
-    now: NDArray            # one block of what is recorded: the next seven are parts of it
-    works: NDArray          # done by every item since the start
-    q: NDArray              # positions, modes, angles, multipliers; rotations: step increments
-    R: NDArray              # rotation matrices, nine numbers each
+    now: NDArray            # the row RECORD of the present state; these are parts of it:
+    works: NDArray
+    q: NDArray
+    R: NDArray
     v: NDArray
-    a: NDArray              # true accelerations
-    frames: NDArray         # of superelements, nine numbers each
-    frames_old: NDArray     # of the last accepted step
+    a: NDArray
+    frames: NDArray
+    frames_old: NDArray
+    # the rest is not recorded
     aux: NDArray            # auxiliary accelerations of the integrator
     q_start: NDArray        # at t = 0
     q_old: NDArray          # the last accepted step
@@ -40,7 +55,7 @@ class State(Arrays):
     loads_old: NDArray      # at the last accepted step
     powers: NDArray         # of the items, there
     powers_old: NDArray     # a step before
-    coefficients: NDArray   # (8,) of the matrix, then gravity: see sebody.kernels.abi
+    coefficients: NDArray   # the row COEFFICIENTS
     g: NDArray              # element forces
     J: NDArray              # element matrices, of superelements in the axes of their frame
     turned: NDArray         # one of them, positions in the axes they are solved for in
@@ -60,10 +75,38 @@ class State(Arrays):
     inverse: NDArray        # of small systems, by padded columns, scales included
     column: NDArray         # scratch of the elimination
     work: NDArray
-    energy: NDArray
+    energy: NDArray         # the row ENERGIES
     strictness: NDArray     # inverse of the error that is allowed of an unknown in a step
     clock: NDArray          # see the CLOCK indices
     control: NDArray        # see the CONTROL indices
+
+    @classmethod
+    def of(cls, counts: Mapping[str, int], **others: NDArray) -> "State":
+        """A state whose recorded parts are views of one row of zeros.
+
+        Parameters
+        ----------
+        counts : mapping
+            Numbers of items, coordinates, rotations and bodies, as `RECORD` names them.
+        **others : ndarray
+            Members that are not recorded.
+        """
+        now = np.zeros(RECORD.size(counts))
+        names = {field.name for field in fields(cls)}
+        parts = {name: now[part] for name, part in RECORD.slices(counts).items() if name in names}
+        return cls(now=now, **parts, **others)
+
+    @property
+    def recorded_parts(self) -> dict[str, slice]:
+        """Where the parts of `RECORD` are in `now` and in the rows of a record."""
+        return RECORD.slices({"items": self.works.size, "coordinates": self.q.size,
+                              "rotations": self.R.size // 9, "bodies": self.frames.size // 9})
+
+    def set_coefficients(self, **values: float) -> None:
+        """Set some of the coefficients of the matrix, by their names in `COEFFICIENTS`."""
+        places = COEFFICIENTS.slices({})
+        for name, value in values.items():
+            self.coefficients[places[name]] = value
 
 
 # State.clock; CURRENT_STEP is the one under way, AUX_STEP the one the auxiliary accelerations
@@ -84,18 +127,13 @@ class Record(Arrays):
 
     rows: NDArray           # a copy of State.now each
     every: NDArray          # (1,) grid steps between records
+    at: NDArray             # where each part of RECORD begins, see its PART names
 
-
-def recorded_parts(coordinates: int, rotations: int, bodies: int, items: int
-                   ) -> dict[str, slice]:
-    """Where things are in State.now and so in the rows of a record."""
-    sizes = {"t": 1, "iterations": 1, "works": items, "q": coordinates, "R": 9 * rotations,
-             "v": coordinates, "a": coordinates, "frames": 9 * bodies, "frames_old": 9 * bodies}
-    parts, first = {}, 0
-    for name, size in sizes.items():
-        parts[name] = slice(first, first + size)
-        first += size
-    return parts
+    @classmethod
+    def of(cls, state: State, steps: int, every: int = 1) -> "Record":
+        """Room for so many output steps."""
+        return cls(np.zeros((steps, state.now.size)), np.array([every]),
+                   np.array([part.start for part in state.recorded_parts.values()]))
 
 
 class Scheme(NamedTuple):

@@ -21,6 +21,15 @@ from sebody.engine.state import (
     TIME,
 )
 from sebody.kernels.abi import pointer_to
+from sebody.kernels.layout import (
+    A_PART,
+    Q_PART,
+    R_PART,
+    RECORD_ITERATIONS,
+    RECORD_T,
+    RECORD_WORKS,
+    V_PART,
+)
 from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import inverse_tangent_coefficients, turn
 
@@ -108,23 +117,23 @@ def write_between(system, state, record, last_grid):
             return
         control[GRID] += 1
         if control[GRID] % record.every[0] == 0:
-            _write_row(system, state, record.rows[control[RECORDED]], t,
+            _write_row(system, state, record.rows[control[RECORDED]], record.at, t,
                        1.0 - (clock[TIME] - t) / h, h)
             control[RECORDED] += 1
 
 
 @compiled
-def _write_row(system, state, row, t, s, h):
+def _write_row(system, state, row, at, t, s, h):
     """The state at a share `s` of the last step: cubics through values and rates at its ends."""
     row[:] = state.now
-    row[0], row[1] = t, state.control[ITERATIONS]
-    total, first = state.q.size, 2 + state.works.size
+    row[RECORD_T], row[RECORD_ITERATIONS] = t, state.control[ITERATIONS]
     for k in range(state.works.size):
         early, late = state.powers_old[k], state.powers[k]
-        row[2 + k] -= h * ((1.0 - s) * early + 0.5 * (1.0 - s * s) * (late - early))
-    q, R = row[first:first + total], row[first + total:first + total + state.R.size]
-    v = row[first + total + state.R.size:first + 2 * total + state.R.size]
-    a = row[first + 2 * total + state.R.size:first + 3 * total + state.R.size]
+        row[RECORD_WORKS + k] -= h * ((1.0 - s) * early + 0.5 * (1.0 - s * s) * (late - early))
+    total = state.q.size
+    q, v, a = (row[at[Q_PART]:at[Q_PART] + total], row[at[V_PART]:at[V_PART] + total],
+               row[at[A_PART]:at[A_PART] + total])
+    R = row[at[R_PART]:at[R_PART] + state.R.size]
     for i in range(total):
         q[i] = _cubic(s, state.q_old[i], h * state.v_old[i], state.q[i], h * state.v[i])
         v[i] = _cubic(s, state.v_old[i], h * state.a_old[i], state.v[i], h * state.a[i])

@@ -14,21 +14,15 @@ width            number n of unknowns of an element (coordinates, then multiplie
 ===============  =================================================================================
 """
 
+from collections import namedtuple
+
 from llvmlite import ir
 from numba import types
+from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
-from sebody.kernels.layout import (  # noqa: F401  (kernels take them from here)
-    ACCELERATION,
-    ENERGY,
-    HEADER,
-    LANES,
-    POWERS,
-    RESIDUAL,
-    TANGENT,
-    VELOCITY,
-)
-from sebody.kernels.pipeline import SIGNATURE, compiled  # noqa: F401  (generated kernels take SIGNATURE from here)
+from sebody.kernels.layout import ARGUMENTS, LANES
+from sebody.kernels.pipeline import compiled
 
 
 @compiled
@@ -55,10 +49,19 @@ def pointer_to(typingctx, array):
     return types.CPointer(array.dtype)(array), codegen
 
 
+# what every kernel gets after its task and sizes, by name: arrays or pointers
+Arguments = namedtuple("Arguments", [name for name, _, _ in ARGUMENTS])
+
+
 @intrinsic
-def call_kernel(typingctx, address, task, count, stride, width, arrays):
-    """Call the kernel at an address with a tuple of arrays or pointers."""
-    signature = types.int64(address, task, count, stride, width, arrays)
+def call_kernel(typingctx, address, task, count, stride, width, arguments):
+    """Call the kernel at an address with `Arguments`; nothing else is taken for them."""
+    if getattr(arguments, "instance_class", None) is not Arguments:
+        raise TypingError(f"a kernel is called with Arguments of arrays by name, not {arguments}")
+    for (name, kind, _), given in zip(ARGUMENTS, arguments, strict=True):
+        if str(given.dtype) != kind:
+            raise TypingError(f"a kernel's argument {name} has numbers of type {kind}, not {given}")
+    signature = types.int64(address, task, count, stride, width, arguments)
 
     def codegen(context, builder, sig, args):
         word = ir.IntType(64)

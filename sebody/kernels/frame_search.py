@@ -7,6 +7,7 @@ or NO_FRAME where the search does not end.
 import math
 
 from sebody.kernels.dense import inverse_3
+from sebody.kernels.layout import HALF_TURN, NO_FRAME
 from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import (
     NEAR_PI,
@@ -16,9 +17,6 @@ from sebody.kernels.rotations import (
     turn,
     turned,
 )
-
-HALF_TURN = 1
-NO_FRAME = 2
 
 
 @compiled

@@ -205,6 +205,11 @@ RECORD = Row("what is recorded of a state", (
     Part("frames", ("bodies", 9), "frames of superelements"),
     Part("frames_old", ("bodies", 9), "the same of the last accepted step"),
 ))
+# places that are the same for all models; of the others which part they are, for arrays of places
+RECORD_T, RECORD_ITERATIONS, RECORD_WORKS = (
+    RECORD.first(name) for name in ("t", "iterations", "works"))
+Q_PART, R_PART, V_PART, A_PART = (
+    [part.name for part in RECORD.parts].index(name) for name in ("q", "R", "v", "a"))
 
 # what every superelement reads; its frame and inertia option may declare more
 SUPERELEMENT_CONSTANTS = (

@@ -1,17 +1,19 @@
-"""Numba's passes that kernels need, and no others: two thirds of the time to compile them.
+"""How everything is compiled: functions by all of Numba's passes, kernels by those they need.
 
-Kernels are arithmetic on floats through pointers. There is nothing to rewrite or inline, every
-variable has one type, so single static assignments are left to LLVM, and a sum of two floats need
-not be looked up among NumPy's functions two thousand times.
+The latter take two thirds of the time. Kernels are arithmetic on floats through pointers: there is
+nothing to rewrite or inline, every variable has one type, so single static assignments are left to
+LLVM, and a sum of two floats need not be looked up among NumPy's functions two thousand times.
 """
 
 from collections.abc import Callable
 from functools import partial
 
-from numba import cfunc, njit
+from numba import njit
 from numba.core import types
+from numba.core.ccallback import CFunc
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.sigutils import normalize_signature
 from numba.core.typed_passes import (
     AnnotateTypes,
     IRLegalization,
@@ -21,11 +23,15 @@ from numba.core.typed_passes import (
 )
 from numba.core.untyped_passes import FixupArgs, IRProcessing, TranslateByteCode
 
+from sebody.kernels.cache import FunctionCache
 from sebody.kernels.layout import ARGUMENTS
+from sebody.kernels.sources import KERNELS, function_hash, in_room, kernel_hash
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(types.float64)}
 # of every kernel: task, count, stride and width, then pointers
 SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
+
+CONTRACT = {"contract"}     # a product and a sum in one rounding
 
 
 class _Remembering:
@@ -71,16 +77,27 @@ class KernelPasses(CompilerBase):
 
 
 def compiled(function: Callable | None = None, **options) -> Callable:
-    """Compile a function of the runtime, and keep what was compiled."""
+    """Compile a function of the runtime, and keep what was compiled.
+
+    Functions of ``kernels/`` round like the kernels that call them, others like the time loop. If
+    that were left open Numba would take it from whoever is compiled first, so that numbers would
+    depend on what was run before.
+    """
     if function is None:
         return partial(compiled, **options)
-    return njit(cache=True, error_model="numpy", **options)(function)
+    rounding = CONTRACT if in_room(function, KERNELS) else False
+    dispatcher = njit(**{"error_model": "numpy", "fastmath": rounding} | options)(function)
+    dispatcher._cache = FunctionCache(function, function_hash(function))
+    return dispatcher
 
 
-def kernel_function(function: Callable) -> object:
+def kernel_function(function: Callable) -> CFunc:
     """Compile a kernel, a function of the `SIGNATURE`, and keep what was compiled.
 
     Its attribute `address` is that of the machine code.
     """
-    return cfunc(SIGNATURE, cache=True, error_model="numpy", fastmath={"contract"},
-                 pipeline_class=KernelPasses)(function)
+    kernel = CFunc(function, normalize_signature(SIGNATURE), {},
+                   {"error_model": "numpy", "fastmath": CONTRACT}, KernelPasses)
+    kernel._cache = FunctionCache(function, kernel_hash(function))
+    kernel.compile()
+    return kernel

@@ -1,11 +1,16 @@
 """Fingerprints of code: what compiled results depend on, comments and docstrings apart."""
 
 import ast
+from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
+from sebody.kernels import store
+
 PACKAGE = Path(__file__).parents[1]
+KERNELS, ENGINE = "kernels", "engine"
+_DIGITS = 12
 
 
 @cache
@@ -22,17 +27,56 @@ def room_hash(*rooms: str) -> str:
     FileNotFoundError
         A folder without modules: what is compiled would never be found stale.
     """
-    digest = sha256()
+    paths = []
     for room in rooms:
-        paths = sorted((PACKAGE / room).glob("*.py"))
-        if not paths:
+        found = sorted((PACKAGE / room).rglob("*.py"))
+        if not found:
             raise FileNotFoundError(f"{PACKAGE / room} holds no modules: its hash would be empty")
-        for path in paths:
-            digest.update(f"{room}/{path.name}:{syntax(path.read_text(encoding='utf-8'))}".encode())
-    return digest.hexdigest()[:12]
+        paths += found
+    return _syntax_hash("-".join(rooms), *paths)
 
 
-def syntax(text: str) -> str:
+def in_room(function: Callable, room: str) -> bool:
+    """Whether a function is written in a folder of the package."""
+    return Path(function.__code__.co_filename).is_relative_to(PACKAGE / room)
+
+
+def function_hash(function: Callable) -> str:
+    """Hash of all that a compiled function of the runtime may depend on.
+
+    Those in ``kernels/`` call one another; all others call ``kernels/``, ``engine/`` and their own
+    module.
+    """
+    if in_room(function, KERNELS):
+        return room_hash(KERNELS)
+    if in_room(function, ENGINE):
+        return room_hash(KERNELS, ENGINE)
+    path = Path(function.__code__.co_filename)
+    return f"{room_hash(KERNELS, ENGINE)} {_syntax_hash(path.stem, path)}"
+
+
+def kernel_hash(function: Callable) -> str:
+    """Hash of all that a kernel may depend on: ``kernels/`` and its own file."""
+    path = Path(function.__code__.co_filename)
+    # byte by byte: nobody edits the comments of generated files, and parsing these takes long
+    return f"{room_hash(KERNELS)} {sha256(path.read_bytes()).hexdigest()[:_DIGITS]}"
+
+
+@cache
+def _syntax_hash(name: str, *paths: Path) -> str:
+    """Hash of the syntax of modules, kept for their bytes: parsing takes 0.07 s at every start."""
+    texts = {f"{path.parent.name}/{path.name}": path.read_bytes() for path in paths}
+    parser = Path(__file__).read_bytes()
+    content = sha256(repr((texts, parser)).encode()).hexdigest()
+    for kept in store.read(paths[0], f"{name}.sources", content):
+        return kept.decode()
+    described = repr({place: syntax(text) for place, text in texts.items()})
+    made = sha256(described.encode()).hexdigest()[:_DIGITS]
+    store.write(paths[0], f"{name}.sources", content, made.encode())
+    return made
+
+
+def syntax(text: str | bytes) -> str:
     """The syntax tree of a module as text, the same for every version of Python.
 
     Fields that are empty are left out: new versions add such. Docstrings are left out, too.

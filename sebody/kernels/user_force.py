@@ -4,48 +4,26 @@ The kernel is written by hand, since there is nothing to derive: forces come fro
 matrix from central differences of it.
 """
 
-from collections.abc import Callable
-
 from llvmlite import ir
-from numba import carray, cfunc, njit, types
-from numba.core.errors import NumbaError
+from numba import types
 from numba.extending import intrinsic
 
-from sebody.errors import InputError
-from sebody.kernels.abi import SIGNATURE, at
-from sebody.kernels.layout import ENERGY, HEADER, POWERS, TANGENT
-from sebody.kernels.pipeline import compiled
+from sebody.kernels.abi import at
+from sebody.kernels.layout import AT_ITEM, C_PLACE, C_RATE, ENERGY, HEADER, POWERS, TANGENT
+from sebody.kernels.pipeline import compiled, kernel_function
 
 PLANAR = False
+N_POSITIONS = None      # any number
 N_ROTATIONS = 0
+CONSTANTS = ()
 MULTIPLIERS = 0
+WIDTH = None            # any number
 KINETIC = False
 POWER = True
 DRIVEN = False
 WORK_ROWS = 4
 OPERATIONS = {"residual": (0, 0), "column": (0, 0)}
 STEP = 1e-6     # of differences, relative to the coordinate and at least absolute
-_floats = types.CPointer(types.float64)
-FUNCTION = types.void(types.int64, types.float64, _floats, _floats, _floats)
-
-
-def compile_force(name: str, function: Callable[..., None]) -> object:
-    """A user's ``function(t, x, v, force)`` as a C function of pointers.
-
-    Raises
-    ------
-    InputError
-        Numba cannot compile it.
-    """
-    try:
-        inner = njit(function)
-
-        def call(n, t, x, v, force):
-            inner(t, carray(x, n), carray(v, n), carray(force, n))
-        return cfunc(FUNCTION)(call)
-    except (NumbaError, TypeError) as error:
-        raise InputError(f"user force {name!r} cannot be compiled: write function(t, x, v, force) "
-                         f"with arithmetic, math and numpy only ({error})") from error
 
 
 @intrinsic
@@ -58,39 +36,41 @@ def _call(typingctx, address, n, t, x, v, force):
     return types.void(types.int64, types.int64, types.float64, x, v, force), codegen
 
 
-@compiled
+@compiled(fastmath=False)
 def _evaluate(address, n, t, x, v, force):
+    """Set the forces; returns their power."""
     for i in range(n):
         force[i] = 0.0
     _call(address, n, t, x, v, force)
+    power = 0.0
+    for i in range(n):
+        power += force[i]*v[i]
+    return power
 
 
-@cfunc(SIGNATURE, cache=True, error_model="numpy")
+@kernel_function
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     n = width
     x, rate, force, other = work, at(work, n), at(work, 2*n), at(work, 3*n)
     for element in range(count):
         row = at(index, element*stride)
-        unknowns, item = at(row, HEADER), row[2]
+        unknowns, item = at(row, HEADER), row[AT_ITEM]
         address, t = unknowns[n], loads[3*item]
         for i in range(n):
             x[i], rate[i] = q[unknowns[i]], v[unknowns[i]]
         g = at(forces, element*n)
-        _evaluate(address, n, t, x, rate, force)
+        power = _evaluate(address, n, t, x, rate, force)
         for i in range(n):
             g[i] = -force[i]
         if task == ENERGY:
-            power = 0.0
-            for i in range(n):
-                power += force[i]*rate[i]
             energies[POWERS + item] = power
         if task == TANGENT:
             J = at(matrices, element*n*n)
             for column in range(n):
                 for i in range(n):
                     J[i*n + column] = 0.0
-                for values, c in ((x, coefficients[2]), (rate, coefficients[1])):
+                for values, c in ((x, coefficients[C_PLACE]), (rate, coefficients[C_RATE])):
                     kept = values[column]
                     h = STEP*max(1.0, abs(kept))
                     values[column] = kept + h

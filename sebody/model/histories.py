@@ -8,13 +8,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import cfunc, types
-from numba.core.errors import NumbaError
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.errors import InputError
+from sebody.kernels.user_functions import compile_history
 
-FUNCTION = types.float64(types.float64)
 SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
 
 
@@ -50,7 +48,7 @@ def history(source: "ArrayLike | Callable[[float], float] | History | None") -> 
     if isinstance(source, History):
         return source
     if callable(source):
-        return History(functions=(_compiled(source, "load history"),))
+        return History(functions=(compile_history(source, "load history"),))
     times, values = _table(source, "load history")
     slopes = np.append(np.diff(values) / np.diff(times), 0.0)
     cubics = tuple((v, s, 0.0, 0.0) for v, s in zip(values, slopes, strict=True))
@@ -69,7 +67,8 @@ def with_corners(function: Callable[[float], float], corners: Sequence[float]) -
     times = np.asarray(corners, dtype=float)
     if times.ndim != 1 or not np.isfinite(times).all():
         raise InputError(f"corners are {corners}: give a list of times")
-    return History(functions=(_compiled(function, "load history"),), corners=tuple(times.tolist()))
+    return History(functions=(compile_history(function, "load history"),),
+                   corners=tuple(times.tolist()))
 
 
 def clock() -> History:
@@ -94,7 +93,7 @@ def motion(source: "ArrayLike | tuple[Callable, Callable, Callable] | History") 
     if isinstance(source, History):
         return source
     if isinstance(source, tuple) and len(source) == 3 and all(map(callable, source)):
-        functions = tuple(_compiled(f, "motion of a drive") for f in source)
+        functions = tuple(compile_history(f, "motion of a drive") for f in source)
         _check_rates(functions)
         return History(functions=functions)
     if callable(source):
@@ -109,15 +108,6 @@ def motion(source: "ArrayLike | tuple[Callable, Callable, Callable] | History") 
     spline = CubicSpline(times, values, bc_type="clamped")
     return History(tuple(times), (*(tuple(c) for c in spline.c[::-1].T),
                                   (values[-1], 0.0, 0.0, 0.0)))
-
-
-def _compiled(function: Callable[[float], float], what: str):
-    try:
-        return cfunc(FUNCTION)(function)
-    except (NumbaError, TypeError, AttributeError) as error:
-        raise InputError(f"{what} {getattr(function, '__name__', function)!r} cannot be compiled: "
-                         f"use only arithmetic, math and numpy in it, and one argument, the time "
-                         f"({error})") from error
 
 
 def _check_rates(functions) -> None:

@@ -1,73 +1,119 @@
-"""Triplets, the blocks of unknowns, and the nodes made of them."""
-
-from dataclasses import dataclass, field
+"""Nodes of a model: where they are, what they share, and how they start to move."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
-from sebody.model.histories import History
+from sebody.errors import InputError
+from sebody.model.inputs import known, triplet, turning, vector
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Node, Triplet
 
 
-@dataclass(eq=False)
-class Triplet:
-    """A block of unknowns: a position or a rotation (in a plane two coordinates or an angle).
+def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
+         at: Node | str | None = None) -> Node:
+    """Add a node.
 
-    It is free, fixed, moved in a prescribed way, or, for a position, dependent: at the end of rigid
-    arms that turn with rotations, the first one at a root.
+    Parameters
+    ----------
+    name : str
+    point : (3,), planar (2,)
+        Initial position, global axes [length].
+    keeps : {'full', 'translation', 'rotation'}
+    at : Node or str, optional
+        Share the position triplet of this node: a spherical joint with no multiplier.
+
+    Raises
+    ------
+    InputError
+        Name taken, wrong shape, or `at` is somewhere else.
     """
-
-    name: str
-    start: NDArray                  # initial position; zeros for a rotation
-    rate: NDArray                   # initial velocity, or angular velocity (material = global)
-    fixed: bool = False             # not solved for: at rest or prescribed
-    motions: list[tuple[NDArray, History]] = field(default_factory=list)  # directions, histories
-    root: "Triplet | None" = None   # of a dependent position, with its arms
-    arms: tuple[tuple["Triplet", NDArray], ...] = ()
-    given: bool = False             # its initial velocity was given by the user
-    turns: bool = False             # a rotation
-
-    @property
-    def solved(self) -> bool:
-        """Whether it is an unknown."""
-        return not self.fixed and self.root is None
-
-    def parents(self) -> list["Triplet"]:
-        """The triplets its place depends on: itself, or root and rotations of the arms."""
-        return [self] if self.root is None else [self.root, *(r for r, _ in self.arms)]
+    _check_new(model, name)
+    at = None if at is None else known(model, at)
+    point = vector(model, point, f"point of node {name!r}")
+    if keeps not in ("full", "translation", "rotation"):
+        raise InputError(f"node {name!r} keeps {keeps!r}: use full, translation or rotation")
+    size = max(1.0, np.abs(point).max())
+    if at is not None and np.abs(at.point - point).max() > 1e-9 * size:
+        raise InputError(f"node {name!r} at {point} cannot share the position of "
+                         f"{at.name!r} at {at.point}: give both the same point")
+    position = None if keeps == "rotation" else (
+        at.position if at is not None else
+        Triplet(f"{name}.position", point, np.zeros(model.dimension)))
+    rotation = None if keeps == "translation" else _rotation(model, f"{name}.rotation")
+    model.nodes[name] = Node(name, point, position, rotation)
+    return model.nodes[name]
 
 
-@dataclass(eq=False)
-class Node:
-    """A named point of the model; either triplet may be absent or shared with another node."""
+def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Node:
+    """A node at the end of a massless rigid link from another one: no unknown, no equation.
 
-    name: str
-    point: NDArray
-    position: Triplet | None
-    rotation: Triplet | None
+    Its rotation is that of `to`. Bodies, joints and loads may act on it as on any node, and
+    further links may start from it.
 
-
-@dataclass(eq=False)
-class Element:
-    """A joint, rigid body, load, spring or drive: a generated kernel on some triplets."""
-
-    name: str
-    kind: str                       # of its kernel
-    triplets: tuple[Triplet, ...]   # positions first, then rotations
-    constants: NDArray
-    multipliers: int = 0
-    history: History | None = None
-    mode: tuple[str, int] | None = None     # superelement and internal mode it acts on
-    function: object = None                 # a user's compiled one, kept alive
-
-    @property
-    def direction(self) -> NDArray:
-        """Of a load."""
-        return self.constants
+    Raises
+    ------
+    InputError
+        Name taken, or `to` lacks a triplet.
+    """
+    master = known(model, to)
+    _check_new(model, name)
+    point = vector(model, point, f"point of node {name!r}")
+    position, rotation = (triplet(master, k) for k in ("position", "rotation"))
+    root = position if position.root is None else position.root
+    arms = (*position.arms, (rotation, point - master.point))
+    hanging = Triplet(f"{name}.position", point, np.zeros(model.dimension), root=root, arms=arms)
+    model.nodes[name] = Node(name, point, hanging, rotation)
+    return model.nodes[name]
 
 
-def unit_vectors(axis: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-    """A unit vector along the axis and two normal to it, right-handed."""
-    e = axis / np.linalg.norm(axis)
-    first = np.cross(e, np.eye(3)[np.argmin(np.abs(e))])
-    first /= np.linalg.norm(first)
-    return e, first, np.cross(e, first)
+def ground(model: Mechanism, node: Node) -> Node:
+    """A fixed node at the place of another one."""
+    fixed = Node(f"ground at {node.name}", node.point,
+                 Triplet("ground.position", node.point, np.zeros(model.dimension), fixed=True),
+                 _rotation(model, "ground.rotation", fixed=True))
+    model.grounds.append(fixed)
+    return fixed
+
+
+def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | None = None,
+                     angular: ArrayLike | None = None) -> None:
+    """Initial velocity of a node, global axes.
+
+    What is not given follows from the joints, see `sebody.Simulation`.
+    """
+    node = known(model, node)
+    for kind, value, check in (("position", linear, vector), ("rotation", angular, turning)):
+        if value is None:
+            continue
+        moving = triplet(node, kind)
+        rate = check(model, value, f"initial rate of {moving.name}")
+        if not moving.solved and np.any(rate):
+            raise InputError(f"initial rate of {moving.name} is {value}, but it is fixed, "
+                             "prescribed or hangs on another node: leave it out")
+        moving.rate, moving.given = rate, True
+
+
+def rigid_velocity(model: Mechanism, linear: ArrayLike, angular: ArrayLike,
+                   about: ArrayLike | None = None) -> None:
+    """Start all free triplets in a rigid motion of the whole model."""
+    linear = vector(model, linear, "linear velocity")
+    angular = turning(model, angular, "angular velocity")
+    centre = np.zeros(model.dimension) if about is None else vector(model, about, "about")
+    for node in model.nodes.values():
+        if node.position is not None and node.position.solved:
+            arm = node.point - centre
+            turned = (angular[0] * np.array([-arm[1], arm[0]]) if model.planar
+                      else np.cross(angular, arm))
+            node.position.rate = linear + turned
+        if node.rotation is not None and node.rotation.solved:
+            node.rotation.rate = angular.copy()
+
+
+def _check_new(model: Mechanism, name: str) -> None:
+    if name in model.nodes:
+        raise InputError(f"node {name!r} exists already: give every node its own name")
+
+
+def _rotation(model: Mechanism, name: str, fixed: bool = False) -> Triplet:
+    return Triplet(name, np.zeros(model.rotation_size), np.zeros(model.rotation_size), fixed,
+                   turns=True)

@@ -179,8 +179,11 @@ def _check_boundary(fe_model: FEModel, pairs: list[tuple[int, str]]) -> None:
 def _factorise(stiffness: sparse.csc_array) -> SuperLU:
     """Factor the internal stiffness S_II, refusing one that leaves a motion free."""
     options = {"SymmetricMode": True}
+    # SciPy 1.11 picks rows with long indices, which its SuperLU does not take
+    short = (array.astype(np.intc) for array in (stiffness.indices, stiffness.indptr))
+    matrix = sparse.csc_array((stiffness.data, *short), shape=stiffness.shape)
     try:
-        factor = splu(stiffness, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        factor = splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
         pivots = factor.U.diagonal()[factor.perm_c]
         weakest = np.min(pivots / stiffness.diagonal())
     except RuntimeError:  # SuperLU met a pivot of exactly zero

@@ -2,16 +2,13 @@
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.results.files import check_target
-
-if TYPE_CHECKING:
-    from sebody.results.result import Result
+from sebody.results.result import Result
 
 SUFFIXES = (".png", ".pdf", ".svg")
 INSTANTS = 9            # at which the body is drawn
@@ -38,7 +35,7 @@ def check_picture(path: str | Path) -> None:
     check_target(path, "picture", SUFFIXES)
 
 
-def save_picture(result: "Result", path: str | Path, base: str, tip: str) -> Path:
+def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     """Draw the angular velocity of one node and the path of another.
 
     A base without a rotation has no angular velocity: the velocity of the tip is drawn instead.
@@ -80,7 +77,7 @@ def save_picture(result: "Result", path: str | Path, base: str, tip: str) -> Pat
     return Path(path)
 
 
-def _rates(result: "Result", base: str, tip: str) -> tuple[str, NDArray]:
+def _rates(result: Result, base: str, tip: str) -> tuple[str, NDArray]:
     """What the left picture shows: its title and values."""
     if result.model.nodes[base].rotation is None:
         return f"velocity of the {tip}", result[f"{tip}.velocity"]

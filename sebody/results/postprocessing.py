@@ -1,21 +1,19 @@
 """What a run is judged by: energies, reactions, boundary forces, residuals of the constraints.
 
-All of it is evaluated for the recorded states, after the loop.
+All of it is evaluated for the recorded states, after the loop: `rows` are rows of `layout.RECORD`.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.engine.evaluate import assemble, run_kernels, set_loads
-from sebody.engine.state import FORCES, RATES
+from sebody.engine.state import State
+from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import ENERGY
+from sebody.kernels.layout import ENERGY, RECORD_T, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
-
-if TYPE_CHECKING:
-    from sebody.results.result import Result
 
 
 class Forces(NamedTuple):
@@ -25,20 +23,20 @@ class Forces(NamedTuple):
     sums: NDArray           # (n, coordinates): zero where free, the support's where not
 
 
-def energies(result: "Result") -> NDArray:
-    """Energies and momenta of every recorded state, in the order of `sebody.kernels.abi`.
+def energies(system: System, state: State, rows: NDArray) -> NDArray:
+    """Energies and momenta of every recorded state, rows of `layout.ENERGIES`.
 
     Raises
     ------
     InputError
         A state that cannot be evaluated.
     """
-    found = np.zeros((len(result.t), result.state.energy.size))
-    _over_records(result, "energies", _evaluate_energies, found)
+    found = np.zeros((len(rows), state.energy.size))
+    _over_records("energies", _evaluate_energies, system, state, rows, found)
     return found
 
 
-def forces(result: "Result") -> Forces:
+def forces(system: System, state: State, rows: NDArray) -> Forces:
     """Forces of all elements in every recorded state.
 
     Raises
@@ -46,13 +44,13 @@ def forces(result: "Result") -> Forces:
     InputError
         A state that cannot be evaluated.
     """
-    count, state = len(result.t), result.state
-    found = Forces(np.zeros((count, state.g.size)), np.zeros((count, state.residual.size)))
-    _over_records(result, "forces", _evaluate_forces, *found)
+    found = Forces(np.zeros((len(rows), state.g.size)),
+                   np.zeros((len(rows), state.residual.size)))
+    _over_records("forces", _evaluate_forces, system, state, rows, *found)
     return found
 
 
-def constraint_residuals(result: "Result") -> NDArray:
+def constraint_residuals(system: System, state: State, rows: NDArray) -> NDArray:
     """Largest residual of the constraints and of their rates in every recorded state, (n, 2).
 
     Raises
@@ -60,17 +58,18 @@ def constraint_residuals(result: "Result") -> NDArray:
     InputError
         A state that cannot be evaluated.
     """
-    found = np.zeros((len(result.t), 2))
-    if result.numbering.multipliers:
-        _over_records(result, "constraints", _evaluate_constraints, found)
+    found = np.zeros((len(rows), 2))
+    if system.is_multiplier.any():
+        _over_records("constraints", _evaluate_constraints, system, state, rows, found)
     return found
 
 
-def _over_records(result: "Result", what: str, evaluate, *out: NDArray) -> None:
+def _over_records(what: str, evaluate, system: System, state: State, rows: NDArray,
+                  *out: NDArray) -> None:
     """Evaluate the recorded states; the state the run has reached stays."""
-    now, loads = result.state.now.copy(), result.state.loads.copy()
-    status = evaluate(result.system, result.state, result.rows, *out)
-    result.state.now[:], result.state.loads[:] = now, loads
+    now, loads = state.now.copy(), state.loads.copy()
+    status = evaluate(system, state, rows, *out)
+    state.now[:], state.loads[:] = now, loads
     if status:
         raise InputError(f"the {what} of a recorded state cannot be evaluated")
 
@@ -91,8 +90,8 @@ def _evaluate_energies(system, state, rows, out):
 def _evaluate_forces(system, state, rows, elements, sums):
     for k in range(len(rows)):
         state.now[:] = rows[k]
-        set_loads(system, state.loads, state.now[0])
-        status = assemble(FORCES, system, state, state.residual)
+        set_loads(system, state.loads, state.now[RECORD_T])
+        status = assemble(RESIDUAL, RESIDUAL, system, state, state.residual)
         if status != 0:
             return status
         elements[k], sums[k] = state.g, state.residual
@@ -103,9 +102,9 @@ def _evaluate_forces(system, state, rows, elements, sums):
 def _evaluate_constraints(system, state, rows, out):
     for k in range(len(rows)):
         state.now[:] = rows[k]
-        set_loads(system, state.loads, state.now[0])
-        for j, level in enumerate((FORCES, RATES)):
-            status = assemble(level, system, state, state.residual)
+        set_loads(system, state.loads, state.now[RECORD_T])
+        for j, task in enumerate((RESIDUAL, VELOCITY)):
+            status = assemble(RESIDUAL, task, system, state, state.residual)
             if status != 0:
                 return status
             for i in range(system.diagonal.size):

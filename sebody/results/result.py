@@ -1,36 +1,19 @@
 """Results of a run, by named node: histories, energies, momentum, and the file they go to."""
 
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.analysis.initial_state import Start
-from sebody.assembly.numbering import Numbering
-from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS, State, recorded_parts
-from sebody.engine.system import System
-from sebody.errors import InputError
-from sebody.kernels.layout import POTENTIAL
-from sebody.model.model import Model
-from sebody.model.nodes import Triplet
+from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
 from sebody.results.files import check_target
-from sebody.results.postprocessing import Forces, constraint_residuals, energies, forces
+from sebody.results.quantities import look_up, saved
+from sebody.results.recording import Recording
 
-if TYPE_CHECKING:
-    from sebody.analysis.simulation import Simulation
-
-NODE_QUANTITIES = ("position", "rotation", "velocity", "angular_velocity", "acceleration",
-                   "reaction", "reaction_moment")
-SYSTEM_QUANTITIES = {"energy.kinetic": 0, "energy.strain": 1, "momentum": slice(2, 5),
-                     "angular_momentum": slice(5, 8), "energy.potential": POTENTIAL}
 OUTPUT = "output file", (".npz",)        # what is saved, see `files.check_target`
-CONSTRAINTS = ("constraints.position", "constraints.velocity")
 
 
-@dataclass(eq=False)
-class Result:
+class Result(Recording):
     """Histories on the output grid; ``result["tip.position"]`` by the rule ``<node>.<quantity>``.
 
     Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
@@ -44,38 +27,10 @@ class Result:
     their nodes; of a joint ``<joint>.multipliers``; of a load, damper or drive ``<name>.work``.
     """
 
-    model: Model
-    numbering: Numbering
-    system: System
-    state: State
-    rows: NDArray           # recorded states, see `recorded`
-    seconds: float
-    failure: str = ""
-    start: Start | None = None
-    error: float | None = None      # estimated, in what is allowed: see sebody.analysis.accuracy
-    all_seconds: float = 0.0        # of the runs that led to it, too
-    warnings: tuple[str, ...] = ()  # what the run was warned of, see sebody.analysis.limits
-    _energies: NDArray | None = field(default=None, repr=False)
-    _forces: Forces | None = field(default=None, repr=False)
-    _constraints: NDArray | None = field(default=None, repr=False)
-
-    @classmethod
-    def of(cls, run: "Simulation") -> "Result":
-        """Everything a simulation has recorded so far."""
-        rows = np.concatenate([record.rows for record in run.records])
-        return cls(run.model, run.numbering, run.system, run.state, rows, run.seconds, run.failure,
-                   run.start, warnings=tuple(run.watch.messages))
-
-    def recorded(self, name: str) -> NDArray:
-        """History of one of `recorded_parts`, (n, size)."""
-        parts = recorded_parts(self.numbering.total, len(self.numbering.rotations),
-                                    len(self.model.bodies), len(self.numbering.histories))
-        return self.rows[:, parts[name]]
-
     @property
     def t(self) -> NDArray:
         """Output times [time]."""
-        return self.recorded("t")[:, 0]
+        return self["t"]
 
     @property
     def steps(self) -> int:
@@ -103,99 +58,8 @@ class Result:
         return 1e6 * self.seconds / max(self.steps, 1)
 
     def __getitem__(self, name: str) -> NDArray:
-        """History of a quantity by name; see the class."""
-        if name == "t":
-            return self.t
-        if name == "energy.external_work":
-            return self.recorded("works").sum(axis=1)
-        if name in SYSTEM_QUANTITIES:
-            return self._energy_table()[:, SYSTEM_QUANTITIES[name]]
-        if name in CONSTRAINTS:
-            return self._residuals()[:, CONSTRAINTS.index(name)]
-        owner, _, quantity = name.rpartition(".")
-        bodies = self.model.bodies | self.model.rigid_bodies
-        if owner in self.model.bodies and quantity == "modes":
-            first = self.numbering.modes[owner]
-            return self.recorded("q")[:, first:first + self.model.bodies[owner].body.modes]
-        if owner in bodies and quantity == "forces":
-            return self._of_body(owner)
-        if quantity == "work" and owner in self.numbering.item_names:
-            return self.recorded("works")[:, self.numbering.item_names.index(owner)]
-        if quantity == "multipliers" and any(j.name == owner for j in self.model.joints):
-            return self._multipliers(owner)
-        if owner not in self.model.nodes:
-            raise InputError(
-                f"{name!r} is unknown: nodes are {', '.join(self.model.nodes)}; of bodies "
-                f"({', '.join(bodies)}) there are modes and forces; of joints multipliers; of "
-                f"{', '.join(self.numbering.item_names) or 'loads'} work; of the model t, "
-                f"energy.external_work, {', '.join((*CONSTRAINTS, *SYSTEM_QUANTITIES))}")
-        if quantity not in NODE_QUANTITIES:
-            raise InputError(f"{quantity!r} is unknown: a node has {', '.join(NODE_QUANTITIES)}")
-        return self._of_node(owner, quantity)
-
-    def forces(self) -> Forces:
-        """Forces in every recorded state, see `sebody.results.postprocessing`; evaluated once."""
-        if self._forces is None:
-            self._forces = forces(self)
-        return self._forces
-
-    def _of_body(self, name: str) -> NDArray:
-        """Forces of neighbours and supports on a body's nodes, its inertia balanced."""
-        part = (self.model.bodies | self.model.rigid_bodies)[name]
-        first = self.numbering.forces_at[id(part)]
-        width = (part.body.stiffness.shape[0] if name in self.model.bodies else
-                 sum(t.start.size for t in part.triplets))
-        return self.forces().elements[:, first:first + width]
-
-    def _multipliers(self, name: str) -> NDArray:
-        firsts = [(self.numbering.multipliers[id(j)], j.multipliers) for j in self.model.joints
-                  if j.name == name]
-        rows = [first + k for first, count in firsts for k in range(count)]
-        return self.recorded("q")[:, rows]
-
-    def _of_node(self, name: str, quantity: str) -> NDArray:
-        node = self.model.nodes[name]
-        turning = quantity in ("rotation", "angular_velocity", "reaction_moment")
-        triplet = node.rotation if turning else node.position
-        if triplet is None or id(triplet) not in self.numbering.triplets:
-            raise InputError(f"node {name!r} has no {quantity}: the triplet is not in the model")
-        first = self.numbering.triplets[id(triplet)]
-        part = slice(first, first + triplet.start.size)
-        if quantity.startswith("reaction"):
-            return self._reaction(triplet, part)
-        if not turning:
-            source = {"position": "q", "velocity": "v", "acceleration": "a"}[quantity]
-            return self.recorded(source)[:, part]
-        v = self.recorded("v")
-        if self.model.planar:
-            return (self.recorded("q") if quantity == "rotation" else v)[:, first]
-        R = self._turned(triplet)
-        return R if quantity == "rotation" else np.einsum("nij,nj->ni", R, v[:, part])
-
-    def _turned(self, triplet: Triplet) -> NDArray:
-        """Rotation matrices of a rotation in space, (n, 3, 3)."""
-        k = self.numbering.rotations[id(triplet)]
-        return self.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
-
-    def _reaction(self, triplet: Triplet, part: slice) -> NDArray:
-        """What the support of a fixed or prescribed triplet exerts, in global axes."""
-        if not triplet.fixed:
-            raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
-                             "reaction; a joint's force is in its multipliers")
-        values = self.forces().sums[:, part]
-        if id(triplet) not in self.numbering.rotations:
-            return values
-        return np.einsum("nij,nj->ni", self._turned(triplet), values)
-
-    def _energy_table(self) -> NDArray:
-        if self._energies is None:
-            self._energies = energies(self)
-        return self._energies
-
-    def _residuals(self) -> NDArray:
-        if self._constraints is None:
-            self._constraints = constraint_residuals(self)
-        return self._constraints
+        """History of a quantity by name; see the class, and `quantities.look_up` for errors."""
+        return look_up(self, name)
 
     def energy_balance(self) -> float:
         """Largest drift of kinetic + strain + potential - work, relative to the largest energy."""
@@ -206,20 +70,16 @@ class Result:
 
     def arrays(self) -> dict[str, NDArray]:
         """All named histories, as they are saved."""
-        out = {"t": self.t}
-        for name, node in self.model.nodes.items():
-            for quantity in NODE_QUANTITIES[:4]:
-                turning = quantity in ("rotation", "angular_velocity")
-                triplet = node.rotation if turning else node.position
-                if triplet is not None and id(triplet) in self.numbering.triplets:
-                    out[f"{name}.{quantity}"] = self[f"{name}.{quantity}"]
-        for name in ("energy.kinetic", "energy.strain", "energy.potential",
-                     "energy.external_work", "momentum", "angular_momentum"):
-            out[name] = self[name]
-        return out
+        return {name: self[name] for name in saved(self)}
 
     def save(self, path: str | Path) -> Path:
-        """Write all named histories to an npz file."""
+        """Write all named histories to an npz file.
+
+        Raises
+        ------
+        InputError
+            Another ending, or a folder that does not exist.
+        """
         path = check_target(path, *OUTPUT)
         np.savez_compressed(path, **self.arrays())
         return path

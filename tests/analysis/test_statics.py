@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_bvp
+from helpers import order
+from scipy.integrate import solve_bvp, trapezoid
 
 from sebody import InputError, Model, Simulation, SimulationError
-from sebody.analysis.linearization import vibrations
-from sebody.analysis.statics import equilibrium
+from sebody.analysis import equilibrium, vibrations
 from sebody.scenes.hinged_beam import SECTION
 
 LENGTH = 100.0
@@ -52,13 +52,13 @@ def test_elastica_of_a_cantilever():
                       np.array([s, 1 - s]), tol=1e-10, max_nodes=100000)
     fine = np.linspace(0, 1, 20001)
     angle = exact.sol(fine)[0]
-    tip = LENGTH * np.array([np.trapezoid(np.cos(angle), fine), np.trapezoid(np.sin(angle), fine)])
+    tip = LENGTH * np.array([trapezoid(np.cos(angle), fine), trapezoid(np.sin(angle), fine)])
     errors, counts = [], (4, 8, 16)
     for n in counts:
         model = cantilever(n)
         model.force("tip", (0.0, load))
         errors.append(np.abs(equilibrium(model)["tip.position"][-1] - tip).max())
-    assert 1.8 < -np.polyfit(np.log(counts), np.log(errors), 1)[0] < 2.3
+    assert 1.8 < order(1 / np.array(counts), errors) < 2.3
     assert errors[-1] < 1e-3 * LENGTH
 
 
@@ -124,3 +124,21 @@ def test_wrong_steps_and_moving_states():
     run.state.v[0] = 1.0
     with pytest.raises(InputError, match="the state moves: vibrations are about states at rest"):
         vibrations(run)
+
+
+def test_a_share_of_the_load_is_a_share_of_the_centrifugal_force():
+    """A mass on a spring: ``k (r - 1) = m W^2 r``, where W^2 grows with the share as loads do."""
+    stiffness, mass, spin = 40.0, 2.0, 3.0
+    model = Model(planar=True)
+    model.node("hub", (0.0, 0.0), keeps="translation")
+    model.fix("hub", "position")
+    model.point_mass("ball", model.node("ball", (1.0, 0.0), keeps="translation"), mass)
+    model.spring("ball", "hub", stiffness)
+    result = equilibrium(model, 4, spin=spin)
+    share = result.t
+    assert share == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    radius = stiffness / (stiffness - share * mass * spin**2)
+    across = np.zeros(5)
+    assert result["ball.position"] == pytest.approx(np.array([radius, across]).T, abs=1e-9)
+    speed = np.sqrt(share) * spin * radius
+    assert result["ball.velocity"] == pytest.approx(np.array([across, speed]).T, abs=1e-9)

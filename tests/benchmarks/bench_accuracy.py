@@ -23,29 +23,40 @@ CASES = {   # scene, end, output grid, steps of the reference in it
 }
 
 
-def fixed(build, t_end: float, grid: float, parts: int):
+TOLERANCES = (1e-2, 1e-3, 1e-4)
+
+
+def fixed(build, t_end: float, grid: float, parts: int, repeats: int = RUNS):
     """A run with `parts` steps in every interval of the grid, the fastest of several."""
     runs = [Simulation(build().model, grid / parts, output_every=parts).run_to(t_end).result()
-            for _ in range(RUNS)]
+            for _ in range(repeats)]
     return min(runs, key=lambda run: run.seconds)
+
+
+def compare(build, t_end: float, grid: float, finest: int, tolerances=TOLERANCES,
+            repeats: int = RUNS):
+    """For every tolerance: error over it, steps, seconds of all attempts and of the best
+    fixed step.
+    """
+    exact = fixed(build, t_end, grid, finest, repeats)
+    coarse = [fixed(build, t_end, grid, 2**k, repeats) for k in range(int(np.log2(finest)))]
+    errors = np.array([difference(run, exact, Tolerance(1.0)) for run in coarse])
+    seconds = np.array([run.seconds for run in coarse])
+    order = np.argsort(errors)
+    for allowed in tolerances:
+        runs = [simulate_within(build().model, grid, t_end, Tolerance(allowed))
+                for _ in range(repeats)]
+        error = difference(runs[0], exact, Tolerance(1.0))
+        best = np.exp(np.interp(np.log(error), np.log(errors[order]), np.log(seconds[order])))
+        yield error / allowed, runs[0].steps, min(run.all_seconds for run in runs), best
 
 
 def main() -> None:
     """Print the table."""
     print(f"{'':26} tolerance  error / tolerance  steps    ms  best fixed step, ms  ratio")
-    for name, (build, t_end, grid, finest) in CASES.items():
-        exact = fixed(build, t_end, grid, finest)
-        coarse = [fixed(build, t_end, grid, 2**k) for k in range(int(np.log2(finest)))]
-        errors = np.array([difference(run, exact, Tolerance(1.0)) for run in coarse])
-        seconds = np.array([run.seconds for run in coarse])
-        order = np.argsort(errors)
-        for allowed in (1e-2, 1e-3, 1e-4):
-            runs = [simulate_within(build().model, grid, t_end, Tolerance(allowed))
-                    for _ in range(RUNS)]
-            spent = min(run.all_seconds for run in runs)
-            error = difference(runs[0], exact, Tolerance(1.0))
-            best = np.exp(np.interp(np.log(error), np.log(errors[order]), np.log(seconds[order])))
-            print(f"{name:26} {allowed:9.0e} {error / allowed:18.2f} {runs[0].steps:6} "
+    for name, case in CASES.items():
+        for allowed, (error, steps, spent, best) in zip(TOLERANCES, compare(*case), strict=True):
+            print(f"{name:26} {allowed:9.0e} {error:18.2f} {steps:6} "
                   f"{1e3 * spent:5.1f} {1e3 * best:20.1f} {spent / best:6.2f}", flush=True)
 
 

@@ -6,6 +6,7 @@ The generic kernel is the same text with the counts of triplets read at run time
 """
 
 import importlib.util
+import re
 import statistics
 import sys
 import tempfile
@@ -13,52 +14,49 @@ import time
 from pathlib import Path
 
 import numpy as np
-from numba import njit
 
 from sebody import simulate
-from sebody.kernels.abi import ENERGIES, call_kernel, padded
+from sebody.kernels.abi import call_kernel
 from sebody.kernels.layout import RESIDUAL, TANGENT
 from sebody.kernels.loader import load
+from sebody.kernels.pipeline import compiled
 from sebody.scenes import hinged_beam, planar_hinged_beam
-from sebody.studies.check import superelements
+from sebody.studies.check.states import arguments, difference, evaluate
+from sebody.studies.check.superelements import superelement_case
+from sebody.studies.references import tip_error
 
 LAYOUTS = ("f2_converged_mean_b", "f2t1_converged_mean_b", "t8_positions_b",
            "planar_f2_converged_mean_b")
+COUNTS = ("N_POSITIONS", "N_ROTATIONS", "ROTATIONS", "MODES")
+BODY = "    n = width\n"        # the first line of a kernel's body
 
 
-@njit(cache=True)
-def repeat(times, address, task, stride, width, index, constants, q, R, v, a, reference, frames,
-           T, loads, coefficients, g, J, work, energy):
+@compiled
+def repeat(times, address, task, stride, width, given):
     for _ in range(times):
-        call_kernel(address, task, 1, stride, width, (
-            index, constants, q, R, v, a, reference, frames, T, loads, coefficients, g, J, work,
-            energy))
+        call_kernel(address, task, 1, stride, width, given)
 
 
-def nanoseconds(module, case, task, times=20000):
+def nanoseconds(module, case, task, times):
     """Time of one evaluation, median of seven."""
-    n, counts = case.n, [module.N_POSITIONS, module.N_ROTATIONS, module.ROTATIONS, module.MODES]
-    work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
-    T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
-    samples = []
+    given, samples = arguments(case), []
     for _ in range(7):
         began = time.perf_counter()
-        repeat(times, module.kernel.address, task, len(case.index), n, case.index,
-               case.constants, case.q, case.R, case.v, case.a, case.reference,
-               case.frames.copy(), T, np.array(counts, dtype=float), np.ones(8), np.zeros(n),
-               np.zeros(n * n), work, np.zeros(ENERGIES))
+        repeat(times, module.kernel.address, task, len(case.index), case.n, given)
         samples.append((time.perf_counter() - began) / times * 1e9)
     return statistics.median(samples)
 
 
 def generic(module, folder):
-    """The kernel's text with the counts read at run time."""
-    text = Path(module.__file__).read_text().replace("    n = width\n", (
-        "    n = width\n"
-        "    N_POSITIONS, N_ROTATIONS = int(loads[0]), int(loads[1])\n"
-        "    ROTATIONS, MODES = int(loads[2]), int(loads[3])\n"))
+    """The kernel's text with the counts read at run time, from the numbers of a load."""
+    text = Path(module.__file__).read_text()
+    for found in (text.count(BODY), *(len(re.findall(rf"^{name} = \d+ *(?:#.*)?$", text, re.M))
+                                      for name in COUNTS)):
+        if found != 1:
+            raise ValueError(f"{module.__file__} is not written as expected: change `generic`")
+    reads = "".join(f"    {name} = int(loads[{k}])\n" for k, name in enumerate(COUNTS))
     path = Path(folder) / (module.__name__.rpartition(".")[2] + "_generic.py")
-    path.write_text(text)
+    path.write_text(text.replace(BODY, BODY + reads))
     spec = importlib.util.spec_from_file_location(path.stem, path)
     made = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = made
@@ -66,15 +64,26 @@ def generic(module, folder):
     return made
 
 
-def step_times():
+def compare(name, folder, times=20000):
+    """Residual and matrix of a kernel and of its generic text: nanoseconds, two pairs."""
+    module = load("superelement_" + name)
+    case = superelement_case(module, 0)
+    case = case._replace(loads=np.array([getattr(module, n) for n in COUNTS], dtype=float))
+    other = generic(module, folder)
+    for one, same in zip(evaluate(case, TANGENT), evaluate(case._replace(module=other), TANGENT),
+                         strict=True):
+        if difference(same, one) > 1e-12:
+            raise ValueError(f"the generic text of {name} computes something else")
+    return [nanoseconds(m, case, task, count) for task, count in (
+        (RESIDUAL, times), (TANGENT, times // 10)) for m in (module, other)]
+
+
+def step_times(t_end=30.0, runs=7):
     """Microseconds a step of the hinged beam, spatial and planar, and their tip errors."""
-    reference = np.load(Path(__file__).parents[1] / "data" / "hinged_beam.npz")["tip_position"]
     for name, scene in (("spatial", hinged_beam), ("planar", planar_hinged_beam)):
-        runs = [simulate(scene.build().model, 0.01, 30.0) for _ in range(7)]
-        tip = runs[0]["tip.position"]
-        exact = reference[:, :tip.shape[1]]
-        error = np.linalg.norm(tip - exact) / np.linalg.norm(exact)
-        yield name, statistics.median(r.microseconds_per_step for r in runs), error, runs[0]
+        results = [simulate(scene.build().model, 0.01, t_end) for _ in range(runs)]
+        error = tip_error("hinged_beam", results[0].t, results[0]["tip.position"])
+        yield name, statistics.median(r.microseconds_per_step for r in results), error, results[0]
 
 
 def main():
@@ -83,10 +92,7 @@ def main():
           f"{'matrix ns':>10} {'generic':>9} {'ratio':>6}")
     with tempfile.TemporaryDirectory() as folder:
         for name in LAYOUTS:
-            module = load("superelement_" + name)
-            other, case = generic(module, folder), superelements.superelement_case(module, 0)
-            row = [nanoseconds(m, case, task, times) for task, times in (
-                (RESIDUAL, 20000), (TANGENT, 2000)) for m in (module, other)]
+            row = compare(name, folder)
             print(f"{name:30} {row[0]:12.0f} {row[1]:9.0f} {row[1] / row[0]:6.2f}   "
                   f"{row[2]:10.0f} {row[3]:9.0f} {row[3] / row[2]:6.2f}")
     times = {}

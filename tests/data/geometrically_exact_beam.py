@@ -9,7 +9,7 @@ mass is diagonal.  The quaternion components are interpolated; vec(2 conj(q) q')
 the exact curvature of the normalised field there, and a rigid rotation leaves it unchanged.
 Time: classical Runge-Kutta below its stability limit, external work integrated alongside.
 
-Run ``python geometrically_exact_beam.py`` to rewrite the npz files beside this script.
+Run ``python geometrically_exact_beam.py`` to rewrite the npz files.
 """
 
 from collections import namedtuple
@@ -32,6 +32,7 @@ SECTION_INERTIA = DENSITY * INERTIA * np.array([2.0, 1.0, 1.0])
 POSITION, QUATERNION, VELOCITY, SPIN = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
 HINGE = np.array([0.0, 0.0, 1.0])  # free rotations of the base, body axes: z only
 SPHERICAL = np.ones(3)
+FOLDER = Path(__file__).parents[2] / "sebody" / "studies" / "references"
 
 
 # Equal elements on a straight beam: arc length and summed quadrature weights of the nodes, then
@@ -337,7 +338,7 @@ def main():
             omega = history["base_angular_velocity"]
             history["base_angular_velocity"] = omega.astype(np.float32)
             stored.update({key + suffix: value for key, value in history.items()})
-        np.savez_compressed(Path(__file__).with_name(name + ".npz"), **stored)
+        np.savez_compressed(FOLDER / f"{name}.npz", **stored)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from sebody import InputError, Model, generalized_alpha, simulate
+from sebody import InputError, Model, Simulation, generalized_alpha, simulate
+from sebody.analysis.linearization import modes
 from sebody.fem import planar_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -74,7 +75,7 @@ def test_force_on_a_mode():
     exact = 50.0 / omega**2 * (1 - np.cos(omega * result.t))
     amplitude = result["beam.modes"]
     assert np.abs(amplitude[:, 1] - exact).max() < 1e-4 * exact.max()
-    assert np.abs(amplitude[:, 0]).max() < 1e-12
+    assert np.abs(amplitude[:, 0]).max() < 1e-12    # orthogonal modes: rounding of a reduced mass
     assert result["force on mode 1 of beam.work"][-1] == pytest.approx(50.0 * exact[-1], rel=1e-3)
 
 
@@ -94,3 +95,23 @@ def test_wrong_forces(action, message):
     with pytest.raises(InputError, match=message):
         action(model)
     assert not model.loads
+
+
+def test_tangent_of_a_user_function():
+    """Derivatives by place and rate, from the eigenvalues ``m s^2 + c s + k = 0``.
+
+    The function is linear: central differences have no error of their own, only rounding over
+    the step of 1e-6, about 1e-10.
+    """
+    mass, damping, stiffness = 2.0, (0.8, 3.0), (50.0, 18.0)
+    model = Model(planar=True)
+    model.point_mass("ball", model.node("ball", (0.0, 0.0), keeps="translation"), mass)
+
+    def pull(t, x, v, force):
+        force[0] = -50.0 * x[0] - 0.8 * v[0]
+        force[1] = -18.0 * x[1] - 3.0 * v[1]
+    model.user_force("pull", ["ball"], pull)
+    found = modes(Simulation(model, 0.01))
+    half = np.array(damping) / (2 * mass)
+    exact = -half + 1j * np.sqrt(np.array(stiffness) / mass - half**2)
+    assert found.values == pytest.approx(exact[np.argsort(exact.imag)], rel=1e-8)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import order
 from scipy.integrate import solve_ivp
 
 from sebody import InputError, Model, generalized_alpha, simulate
@@ -34,6 +35,7 @@ def test_free_fall_does_not_deform(planar):
     result = simulate(free_beam(planar), 0.01, 1.0)
     fall = 0.5 * FIELD[:d] * result.t[:, None]**2
     assert np.abs(result["tip.position"] - END[:d] - fall).max() < 1e-9
+    # deflections within the tolerance, 1e-8 of the increments, count with their square
     assert result["energy.strain"].max() < 1e-12 * result["energy.kinetic"].max()
     assert np.allclose(result["momentum"][:, :d],
                        SECTION.density * SECTION.area * np.linalg.norm(END[:d])
@@ -55,16 +57,17 @@ def test_potential_is_that_of_the_centre_of_mass():
     result = simulate(free_beam(), 0.01, 0.5)
     mass = SECTION.density * SECTION.area * np.linalg.norm(END)
     middle = (result["base.position"] + result["tip.position"]) / 2
-    assert np.allclose(result["energy.potential"], -mass * middle @ FIELD, rtol=1e-12)
+    # the reduced mass has the rounding of its condensation, EPS times a condition of 5e3
+    assert np.allclose(result["energy.potential"], -mass * middle @ FIELD,
+                       rtol=5e3 * np.finfo(float).eps)
 
 
 def test_energy_balance_of_a_falling_pendulum_falls_with_the_square_of_the_step():
     def balance(h):
         scene = chain.build(links=1)
         return simulate(scene.model, h, 0.5, generalized_alpha(1.0, 1e-10)).energy_balance()
-    steps = np.array([0.004, 0.002, 0.001])
-    slope = np.polyfit(np.log(steps), np.log([balance(h) for h in steps]), 1)[0]
-    assert slope > 1.8
+    steps = (0.004, 0.002, 0.001)
+    assert order(steps, [balance(h) for h in steps]) > 1.8
 
 
 def test_a_stiff_link_swings_like_a_rigid_body_at_second_order(monkeypatch):
@@ -80,8 +83,9 @@ def test_a_stiff_link_swings_like_a_rigid_body_at_second_order(monkeypatch):
                           [0.0, 0.0], t_eval=result.t, rtol=1e-10, atol=1e-12).y[0]
         tip = result["tip.position"]
         return np.abs(np.unwrap(np.arctan2(tip[:, 1], tip[:, 0])) - exact).max()
-    errors = [error(h) for h in (0.002, 0.001, 0.0005)]
-    assert 1.9 < np.log2(errors[0] / errors[2]) / 2 < 2.1
+    steps = (0.002, 0.001, 0.0005)
+    errors = [error(h) for h in steps]
+    assert 1.9 < order(steps, errors) < 2.1
     assert errors[2] < 2e-5
 
 

@@ -2,15 +2,12 @@
 
 import numpy as np
 import pytest
+from helpers import order
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipj, ellipk, ellipkinc
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
 from sebody.scenes import heavy_top, torque_free_body
-
-
-def order(steps, errors):
-    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
 def free_rotation(t, inertia, spin):
@@ -158,7 +155,8 @@ def test_rod_with_multipliers_is_the_same_pendulum():
     model.distance("hinge", bob)
     result = simulate(model, 1e-3, 2.0)
     assert np.abs(result["bob.position"] - exact_pendulum(result.t)).max() < 5e-5
-    assert result["constraints.position"].max() < 1e-11
+    # the last correction is within the tolerance, 1e-8 of the increment h v of a step
+    assert result["constraints.position"].max() < 1e-8 * 1e-3 * np.abs(result["bob.velocity"]).max()
 
 
 def spatial_arm():

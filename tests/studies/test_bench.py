@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from sebody import InputError, simulate
-from sebody.cli.main import main
+from sebody.cli.entry import main
 from sebody.scenes import hinged_beam
 from sebody.studies import bench
 from sebody.studies.bench import own, peer

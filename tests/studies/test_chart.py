@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sebody.cli.main import main
+from sebody.cli.entry import main
 from sebody.studies import chart
 from sebody.studies.bench import peer
 from sebody.studies.chart import cases

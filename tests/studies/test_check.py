@@ -6,20 +6,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import order
 
 from sebody import InputError
 from sebody.kernels.layout import ACCELERATION, POTENTIAL, POWERS, VELOCITY
 from sebody.kernels.loader import load
 from sebody.studies import check
+from sebody.studies.catalogue import kernel_files
 from sebody.studies.check import elements, states, superelements
 
 
-@pytest.mark.parametrize("name", check.kernel_names())
+@pytest.mark.parametrize("name", kernel_files())
 def test_kernel_is_consistent(name):
     rows = check.check_kernels([name])
     assert len(rows) >= 4
     failed = [row for row in rows if not row.passed]
-    assert not failed, check.format_table(failed)
+    assert not failed, check.table(failed)
     judged = [row for row in rows if row.slope is None and row.criterion != superelements.SIZE]
     assert judged and all(row.error <= 1e-7 for row in judged)
     assert {row.state for row in rows} == {0, 1}
@@ -39,8 +41,7 @@ def test_spin_of_small_increments_differs_to_second_order():
         case = case._replace(reference=superelements.mean_rotation(case))
         forces = [states.evaluate(case._replace(module=m), 0)[0] for m in (small, exact)]
         errors.append(np.abs(forces[0] - forces[1]).max())
-    slope = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
-    assert 1.8 < slope < 2.2
+    assert 1.8 < order(sizes, errors) < 2.2
 
 
 def slightly_wrong(monkeypatch):
@@ -140,10 +141,11 @@ def test_matrix_is_linear_in_its_coefficients(name):
     parts = [states.evaluate(case, 1, c)[1] for c in ((1, 0, 0, 1, 1), (0, 1, 0, 1, 1),
                                                      (0, 0, 1, 1, 1))]
     J = states.evaluate(case, 1, (2.0, -0.3, 1.7, 1, 1))[1]
+    # three sums of 15 products, relative to the largest
     assert states.difference(J, 2.0 * parts[0] - 0.3 * parts[1] + 1.7 * parts[2]) <= 1e-14
 
 
-@pytest.mark.parametrize("name", [n for n in check.kernel_names() if n.startswith("superelement_")])
+@pytest.mark.parametrize("name", [n for n in kernel_files() if n.startswith("superelement_")])
 def test_paper_tangent_lacks_a_term_that_falls_with_the_deformation(name):
     """The paper's (31) is symmetric; the consistent matrix has a term of the size of y more."""
     module, sizes = load(name), (0.3, 0.03)
@@ -155,6 +157,7 @@ def test_paper_tangent_lacks_a_term_that_falls_with_the_deformation(name):
         terms.append(superelements.geometric_term(case))
         K = states.evaluate(case, 1, (0, 0, 1, 0, 1))[1]
         symmetric = not module.FRAME.endswith("_small")
+        # two orders of the same sums, of up to 24 x 24 products
         assert not symmetric or states.difference(K, K.T) <= 1e-13
     assert 1e-3 < terms[0] < 1 and terms[1] < terms[0] / 3
 
@@ -183,6 +186,7 @@ def test_planar_kernel_equals_the_spatial_one_on_planar_states():
     for coefficients in ((1.0, 0.3, 2.0, 1, 1), (0, 0, 1, 0, 1)):
         forces, matrices = zip(*[states.evaluate(c, 1, coefficients)[:2] for c in (flat, case)],
                                strict=True)
+        # stiff axial forces of small stretches: EPS times some thousand
         assert states.difference(forces[0], forces[1][keep]) <= 1e-12
         assert states.difference(matrices[0], matrices[1][np.ix_(keep, keep)]) <= 1e-12
 
@@ -190,3 +194,37 @@ def test_planar_kernel_equals_the_spatial_one_on_planar_states():
 def test_unknown_kernel():
     with pytest.raises(InputError, match="kernel 'nothing' is unknown: there are element_"):
         check.check_kernels(["nothing"])
+
+
+def row(criterion="force", error=1e-9, slope=None, limit=1e-7, kernel="element_a"):
+    return states.CheckRow(kernel, criterion, 0, error, slope, limit)
+
+
+@pytest.mark.parametrize("made, passed", [
+    (row(), True), (row(error=2e-7), False), (row(error=float("nan")), False),
+    (row(error=0.1, limit=float("inf")), True),
+    (row(error=0.1, slope=1.9, limit=1.8), True), (row(error=0.1, slope=1.7, limit=1.8), False)])
+def test_limits_of_errors_and_of_orders(made, passed):
+    assert made.passed is passed
+
+
+def test_summary_shows_the_worst_of_each_criterion_and_what_fails():
+    wrong = row(error=3e-7, kernel="element_b")
+    rows = [row(), wrong, row("order", 0.1, 2.2, 1.8), row("order", 0.01, 1.9, 1.8, "element_c"),
+            row("size", 0.5, None, float("inf"))]
+    head, force, order, size, empty, titles, failed = check.summary(rows).splitlines()
+    assert head.split() == ["criterion", "count", "worst", "limit", "kernel"]
+    assert force.split() == ["force", "2", "3.0e-07", "1e-07", "element_b"]
+    assert order.split() == ["order", "2", "order", "1.90", ">", "1.8", "element_c"]
+    assert size.split() == ["size", "1", "5.0e-01", "none", "element_a"]
+    assert not empty and titles.startswith("kernel")
+    assert failed.split() == ["element_b", "force", "0", "3.0e-07", "1e-07", "FAILED"]
+    assert check.verdict(rows) == "1 of 4 criteria fail"
+    rows.remove(wrong)
+    assert "FAILED" not in check.summary(rows) and "kernel  " not in check.summary(rows)
+    assert check.verdict(rows) == "3 criteria of 2 kernels hold"
+
+
+def test_an_error_that_is_no_number_is_the_worst():
+    rows = [row(error=1.0), row(error=float("nan"), kernel="element_b"), row(error=2.0)]
+    assert "nan" in check.summary(rows).splitlines()[1]

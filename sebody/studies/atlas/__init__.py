@@ -1,6 +1,7 @@
 """``sebody atlas``: where methods fail, what theory says of it, what is measured, what is done.
 
-Every row of the table is a number that theory predicts and a run has to show.
+Every row of the table is a number that a run has to show: theory or another program predicts it,
+or it says what this program is to do there.
 """
 
 import warnings
@@ -61,6 +62,7 @@ def report(finding: Finding) -> str:
     """Theory, what the program does, and a line for every number."""
     lines = [finding.title, f"  theory   {finding.theory}", f"  program  {finding.program}"]
     wide = max(len(row.what) for row in finding.rows)
-    lines += [f"    {row.what:{wide}}  theory {row.theory:<12.6g} measured {row.measured:<12.6g} "
-              f"{'ok' if row.passed else 'DIFFERS'}" for row in finding.rows]
+    lines += [f"    {row.what:{wide}}  {row.source:9} {row.expected:<12.6g} "
+              f"measured {row.measured:<12.6g} {'ok' if row.passed else 'DIFFERS'}"
+              for row in finding.rows]
     return "\n".join(lines)

@@ -6,26 +6,31 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
+THEORY = "theory"           # derived, in `theory` or in the case itself
+REFERENCE = "reference"     # of another program, see `sebody.studies.references`
+PROGRAM = "program"         # what the program is to do there
+
 
 class Row(NamedTuple):
-    """One number that theory predicts and a run shows; infinity where something never happens."""
+    """One number that is known beforehand and that a run shows; infinity for what never happens."""
 
     what: str
-    theory: float
+    expected: float
     measured: float
-    within: float           # allowed difference, relative unless theory is zero
+    within: float           # allowed difference, relative unless zero is expected
+    source: str = THEORY    # of the expected number
 
     @property
     def passed(self) -> bool:
         """Whether they agree."""
-        if math.isinf(self.theory):
-            return self.measured == self.theory
-        return abs(self.measured - self.theory) <= self.within * (abs(self.theory) or 1.0)
+        if math.isinf(self.expected):
+            return self.measured == self.expected
+        return abs(self.measured - self.expected) <= self.within * (abs(self.expected) or 1.0)
 
 
 @dataclass
 class Finding:
-    """A case: each row is one prediction."""
+    """A case: each row is one number known beforehand."""
 
     title: str
     theory: str             # what it says

@@ -4,14 +4,14 @@ import numpy as np
 
 from sebody.analysis.simulation import Simulation, simulate
 from sebody.engine.evaluate import assemble
-from sebody.engine.state import FORCES
 from sebody.errors import InputError
 from sebody.fem import straight_beam
+from sebody.kernels.layout import RESIDUAL
 from sebody.kernels.rotations import NEAR_PI, exp_map
 from sebody.model.model import Model
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes.hinged_beam import SECTION
-from sebody.studies.atlas.finding import Finding, Row
+from sebody.studies.atlas.finding import PROGRAM, Finding, Row
 
 LIMIT = np.degrees(np.arccos(NEAR_PI))      # rotation whose logarithm is refused
 
@@ -30,7 +30,7 @@ def _status(model: Model, angle: float) -> int:
     run = Simulation(model, 0.01)
     k = run.numbering.rotations[id(model.nodes["b"].rotation)]
     run.state.R[9 * k:9 * k + 9] = exp_map(0.0, 0.0, np.radians(angle))
-    return assemble(FORCES, run.system, run.state, run.state.residual)
+    return assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
 
 
 def half_turn() -> Finding:
@@ -72,7 +72,7 @@ def collinear() -> Finding:
         run = Simulation(model, 0.01)
         at = run.numbering.triplets[id(model.nodes["c"].position)]
         run.state.q[at + 2] += 1e-6
-        assemble(FORCES, run.system, run.state, run.state.residual)
+        assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
         frame = run.state.frames[:9].reshape(3, 3)
         turns.append(np.arctan2(frame[2, 1], frame[2, 2]))
         finding.rows.append(Row(f"offset {offset:g}: turn", np.arctan(1e-6 / offset), turns[-1],
@@ -83,7 +83,7 @@ def collinear() -> Finding:
         refused = 0.0
     except InputError:
         refused = 1.0
-    finding.rows.append(Row("offset 1e-08: refused", 1.0, refused, 0.0))
+    finding.rows.append(Row("offset 1e-08: refused", 1.0, refused, 0.0, PROGRAM))
     return finding
 
 
@@ -133,7 +133,7 @@ def massless_rotations() -> Finding:
         refused = 0.0
     except InputError:
         refused = 1.0
-    finding.rows.append(Row("no inertia: refused", 1.0, refused, 0.0))
+    finding.rows.append(Row("no inertia: refused", 1.0, refused, 0.0, PROGRAM))
     return finding
 
 

@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from sebody.analysis.simulation import Simulation, hht, simulate
+from sebody.analysis.schemes import hht
+from sebody.analysis.simulation import Simulation, simulate
 from sebody.engine.state import Scheme
 from sebody.errors import SimulationError
 from sebody.model.model import Model
 from sebody.scenes import planar_hinged_beam, spherical_beam_strong
-from sebody.studies.atlas.finding import Finding, Row
+from sebody.studies.atlas.finding import PROGRAM, Finding, Row
 
 STEPS = 60
 
@@ -76,8 +77,9 @@ def newton() -> Finding:
             result = error.result
         iterations.append(result.iterations_per_step)
         cuts.append(result.cuts)
-    finding.rows.append(Row("cut steps at h = 0.0025", 0.0, cuts[1], 0.0))
-    finding.rows.append(Row("cut steps at h = 0.04: some", 1.0, float(cuts[-1] > 0), 0.0))
+    finding.rows.append(Row("cut steps at h = 0.0025", 0.0, cuts[1], 0.0, PROGRAM))
+    finding.rows.append(Row("cut steps at h = 0.04: some", 1.0, float(cuts[-1] > 0), 0.0,
+                            PROGRAM))
     finding.curves["iterations a step"] = steps, iterations
     finding.curves["cut steps / 100"] = steps, np.array(cuts) / 100
     return finding

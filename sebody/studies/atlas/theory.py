@@ -7,11 +7,13 @@ inertia or load that works on this is all the geometric stiffness there is. Herm
 the bodies, every term of second order kept; nothing is shared with the kernels.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 from scipy.linalg import eigh, eigvals
 from scipy.optimize import brentq
 
@@ -113,6 +115,29 @@ def divergence(beam: Beam, option_b: bool = False) -> float:
     inertia = -beam.plane_b if option_b else beam.mass - beam.spin
     largest = eigh(inertia, beam.stiffness, eigvals_only=True)[-1]
     return float(1 / np.sqrt(largest)) if largest > 0 else np.inf
+
+
+def deflection_of_spin_up(beam: Beam, rate: Callable[[float], float],
+                          second: Callable[[float], float], t_end: float,
+                          shapes: int = 4) -> NDArray:
+    """Deflection of the tip while the root turns from rest with a given rate and its derivative.
+
+    Linear in the deflection w: ``M w'' + (K + W^2 (spin - M)) w = -W' M x`` with x the distance
+    from the root, in the lowest vibrations of the beam at rest.
+    """
+    squares, modes = eigh(beam.stiffness, beam.mass, subset_by_index=(0, shapes - 1))
+    distance = np.ones(len(beam.mass))          # slopes
+    distance[::2] = np.arange(1, len(distance) // 2 + 1) / (len(distance) // 2)
+    stiffening = modes.T @ (beam.spin - beam.mass) @ modes
+    inertia = modes.T @ beam.mass @ distance
+
+    def rates(t, state):
+        q, velocity = state[:shapes], state[shapes:]
+        return np.r_[velocity, -squares * q - rate(t)**2 * (stiffening @ q) - second(t) * inertia]
+    times = np.linspace(0.0, t_end, 1001)
+    solution = solve_ivp(rates, (0.0, t_end), np.zeros(2 * shapes), t_eval=times, rtol=1e-6,
+                         atol=1e-8)
+    return modes[-2] @ solution.y[:shapes]
 
 
 def euler_load(beam: Beam) -> float:

@@ -2,15 +2,15 @@
 
 import statistics
 from collections.abc import Callable
-from importlib import import_module
 from typing import NamedTuple
 
 from sebody.analysis.simulation import Simulation
 from sebody.engine.system import System
-from sebody.kernels.loader import element_kernel
+from sebody.kernels.loader import element_kernel, load
 from sebody.results.result import Result
 from sebody.studies.bench.measurement import Measurement
-from sebody.studies.bench.references import tip_error
+from sebody.studies.catalogue import builder
+from sebody.studies.references import tip_error
 
 CHAINS = (1, 4, 16, 64, 256, 1024)
 LOOPS = (2, 20)
@@ -44,7 +44,7 @@ def cases(scene: str) -> list[Case]:
 
 def measure(case: Case) -> Measurement:
     """Run a case several times; time and error are of the same runs."""
-    build = import_module(f"sebody.scenes.{case.scene.replace('-', '_')}").build
+    build = builder(case.scene)
     results = [_run(build, case) for _ in range(case.runs)]
     last = results[-1]
     error = (tip_error(case.reference, last.t, last["tip.position"]) if case.reference else None)
@@ -66,10 +66,10 @@ def flops_per_step(result: Result) -> float:
     the machine's rate that is reached is a lower bound.
     """
     system, bodies = result.system, list(result.model.bodies.values())
-    forces = sum(_kernel_flops(b.kernel, b.body.stiffness.shape[0]) for b in bodies)
+    forces = sum(_kernel_flops(load(b.kernel), b.body.stiffness.shape[0]) for b in bodies)
     forces += sum(element_kernel(item.kind).OPERATIONS["residual"][0]
                   for item in (*result.model.rigid_bodies.values(),
-                               *result.model.joints, *result.model.loads))
+                               *result.model.constraints, *result.model.loads))
     return result.iterations_per_step * (forces + _solve_flops(system))
 
 

@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from sebody.errors import InputError
 from sebody.studies.bench.measurement import Measurement
 from sebody.studies.bench.own import LOOPS
-from sebody.studies.bench.references import tip_error
+from sebody.studies.references import tip_error
 
 NAME = "Exudyn"
 LINKS = (1, 4, 16, 64, 256)

@@ -2,7 +2,7 @@
 
 import csv
 import statistics
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, fields
 from pathlib import Path
 
 import numpy as np
@@ -11,25 +11,12 @@ from sebody.analysis.simulation import simulate
 from sebody.errors import SimulationError
 from sebody.results.files import check_target
 from sebody.studies.bench import peer
-from sebody.studies.chart.cases import COARSEST, SCENES, Variant, builder, variants
+from sebody.studies.chart.cases import COARSEST, SCENES, Point, Variant, builder, variants
 from sebody.studies.chart.draw import draw
 from sebody.studies.chart.references import Reference, reference
 
 RUNS = 3
 LEVELS = (1e-2, 1e-3, 3e-4)     # of error, at which front and peer are compared
-
-
-@dataclass(frozen=True)
-class Point:
-    """A variant with its error and its cost, both of the same runs."""
-
-    family: str
-    label: str
-    error: float                # relative L2, never below that of the reference
-    cost: float                 # computing seconds a simulated second
-    unknowns: int
-    h: float
-    iterations: float
 
 
 def measure(scene: str) -> tuple[list[Point], Reference]:

@@ -2,11 +2,13 @@
 
 import inspect
 from collections.abc import Callable
-from importlib import import_module
+from dataclasses import dataclass
 from typing import NamedTuple
 
-from sebody.analysis.simulation import Scheme, generalized_alpha, hht
+from sebody.analysis.schemes import generalized_alpha, hht
+from sebody.engine.state import Scheme
 from sebody.errors import InputError
+from sebody.studies import catalogue
 
 # scene: the quantity whose history is compared
 SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
@@ -14,6 +16,19 @@ SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
           "slider-crank": "pin.rotation", "spin-up": "tip.position"}
 STEPS = {0.25: "4 h", 0.5: "2 h", 1.0: "h", 2.0: "h/2", 4.0: "h/4"}     # finer: name
 COARSEST = 4        # histories are compared on a grid of so many of the scene's own steps
+
+
+@dataclass(frozen=True)
+class Point:
+    """What a chart shows: a variant with its error and its cost, both of the same runs."""
+
+    family: str
+    label: str
+    error: float                # relative L2, never below that of the reference
+    cost: float                 # computing seconds a simulated second
+    unknowns: int
+    h: float
+    iterations: float
 
 
 class Variant(NamedTuple):
@@ -36,7 +51,7 @@ def builder(scene: str) -> Callable:
     """
     if scene not in SCENES:
         raise InputError(f"there is no chart of scene {scene!r}: use {', '.join(SCENES)}")
-    return import_module(f"sebody.scenes.{scene.replace('-', '_')}").build
+    return catalogue.builder(scene)
 
 
 def variants(scene: str) -> list[Variant]:

@@ -1,17 +1,15 @@
 """The picture of a chart."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from sebody.studies.chart import Point
+from sebody.studies.chart.cases import Point
 
 COLORS = {"frames": "#c8452d", "modes": "#2a7f62", "bodies": "#3c6fb6", "steps": "#b58a1b",
           "nonlinear beams": "#1f2a44", "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
 MOST_NAMES = 7      # of the front that are written beside their points
 
 
-def draw(scene: str, points: list["Point"], line: list["Point"], limit: float,
+def draw(scene: str, points: list[Point], line: list[Point], limit: float,
          path: str | Path) -> None:
     """Error against computing time, one colour a family, the front as a line with its names."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.analysis.simulation import generalized_alpha, simulate
+from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.simulation import simulate
 from sebody.kernels.loader import user_directory
 from sebody.studies.chart.cases import COARSEST, SCENES, builder
 
@@ -56,8 +57,8 @@ def _key(scene: str) -> str:
     """Changes with what the scene is."""
     built = builder(scene)()
     text = [built.h, built.t_end, ELEMENTS, FINER, COARSEST]
-    text += [(load.name, load.constants.tolist(), load.history.times, load.history.cubics)
-             for load in built.model.loads]
+    text += [(load.name, [(k, np.asarray(v).tolist()) for k, v in load.constants.items()],
+              load.history.times, load.history.cubics) for load in built.model.loads]
     text += [b.body.stiffness.tobytes() + b.body.mass.tobytes()
              for b in built.model.bodies.values()]
     return hashlib.sha256(repr(text).encode()).hexdigest()[:12]

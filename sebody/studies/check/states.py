@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
-from sebody.kernels.abi import call_kernel, padded
+from sebody.kernels.abi import Arguments, call_kernel, padded
 from sebody.kernels.layout import (
     ENERGY,
     INDEX,
@@ -31,14 +31,19 @@ STATES = 2
 
 
 class CheckRow(NamedTuple):
-    """One line of the table."""
+    """A criterion in one state of a kernel."""
 
     kernel: str
     criterion: str
     state: int
     error: float            # relative to the largest entry
     slope: float | None     # order of a difference that is there by design
-    passed: bool
+    limit: float            # of the error from above, or of the slope from below
+
+    @property
+    def passed(self) -> bool:
+        """Whether the limit is kept."""
+        return self.error <= self.limit if self.slope is None else self.slope > self.limit
 
 
 class Case(NamedTuple):
@@ -108,28 +113,32 @@ def changed(case: Case, **values: ArrayLike) -> Case:
 
 
 @compiled
-def _call(address, task, stride, width, index, constants, q, R, v, a, reference, frames, T, loads,
-          coefficients, g, J, work, energy):
-    return call_kernel(address, task, 1, stride, width, (
-        index, constants, q, R, v, a, reference, frames, T, loads, coefficients, g, J, work,
-        energy))
+def _call(address, task, stride, width, arguments):
+    return call_kernel(address, task, 1, stride, width, arguments)
+
+
+def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Arguments:
+    """What the kernel of a case is called with for one element, results zero."""
+    n, module = case.n, case.module
+    return Arguments(
+        index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
+        references=case.reference, frames=case.frames.copy(),
+        T=np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1)), loads=case.loads,
+        coefficients=np.array([*coefficients, *case.field], dtype=float), forces=np.zeros(n),
+        matrices=np.zeros(n * n),
+        work=np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1)))),
+        energies=np.zeros(POWERS + 1))
 
 
 def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)
              ) -> tuple[NDArray, NDArray, NDArray]:
     """Forces, matrix and energies of a kernel in the state of a case."""
-    n, module = case.n, case.module
-    g, J, energy = np.zeros(n), np.zeros(n * n), np.zeros(POWERS + 1)
-    work = np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1))))
-    T = np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1))
-    frame = case.frames.copy()
-    status = _call(module.kernel.address, task, len(case.index), n, case.index, case.constants,
-                   case.q, case.R, case.v, case.a, case.reference, frame, T,
-                   case.loads, np.array([*coefficients, *case.field], dtype=float), g, J, work,
-                   energy)
+    n, module, given = case.n, case.module, arguments(case, coefficients)
+    status = _call(module.kernel.address, task, len(case.index), n, given)
     if status:
         raise InputError(f"kernel {module.__name__} refuses the check's state (status {status})")
-    return g, _in_global_axes(J.reshape(n, n), frame, module), energy
+    return (given.forces, _in_global_axes(given.matrices.reshape(n, n), given.frames, module),
+            given.energies)
 
 
 def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:

@@ -1,38 +1,13 @@
-"""Time integration: coefficients, resuming, cut steps, and what a failing run leaves."""
+"""Time integration: the recurrences of the scheme, resuming, cut steps, failing runs."""
 
 from dataclasses import fields
 
 import numpy as np
 import pytest
 
-from sebody import InputError, Simulation, SimulationError, generalized_alpha, hht
+from sebody import InputError, Model, Simulation, SimulationError, generalized_alpha
 from sebody.engine.state import CUTS
 from sebody.scenes.hinged_beam import build
-
-
-def amplification(scheme, omega_h):
-    """Matrix of one step of ``x'' + omega^2 x = 0`` in (x, h v, h^2 vdot, h^2 a), row by row.
-
-    Written out from the scheme's own equations, independent of the loop.
-    """
-    am, af, beta, gamma = scheme[:4]
-    w2 = omega_h**2
-    # unknowns x1, v1, vdot1, a1 from x0, v0, vdot0, a0 (h = 1)
-    left = np.array([[1, 0, 0, -beta], [0, 1, 0, -gamma], [w2, 0, 1, 0],
-                     [0, 0, -(1 - af), 1 - am]])
-    right = np.array([[1, 1, 0, 0.5 - beta], [0, 1, 0, 1 - gamma], [0, 0, 0, 0],
-                      [0, 0, af, -am]])
-    return np.linalg.solve(left, right)
-
-
-@pytest.mark.parametrize("scheme, omega_h, expected", [
-    (hht(0.0), 1.0, 1.0), (hht(-0.05), 1.0, 0.996490), (hht(-0.1), 2.0, 0.962366),
-    (hht(-0.3), 10.0, 0.684611), (hht(-1 / 3), 100.0, 0.537174),
-    (generalized_alpha(0.9), 5.0, 0.994792), (generalized_alpha(0.8), 10.0, 0.929792),
-    (generalized_alpha(0.0), 1.0, 0.906563)])
-def test_spectral_radius_against_closed_forms(scheme, omega_h, expected):
-    radius = np.abs(np.linalg.eigvals(amplification(scheme, omega_h))).max()
-    assert radius == pytest.approx(expected, abs=2e-6)
 
 
 def test_loop_follows_the_scheme():
@@ -43,9 +18,13 @@ def test_loop_follows_the_scheme():
     s, h = run.state, 0.01
     assert np.allclose((1 - am) * s.aux + am * s.aux_old, (1 - af) * s.a + af * s.a_old,
                        rtol=1e-9, atol=1e-9)
-    assert np.allclose(s.v, s.v_old + h * ((1 - gamma) * s.aux_old + gamma * s.aux), atol=1e-12)
+    # rates and increments are corrected in step with accelerations: rounding of a few corrections
+    rounding = 1e2 * np.finfo(float).eps
+    assert np.allclose(s.v, s.v_old + h * ((1 - gamma) * s.aux_old + gamma * s.aux), rtol=0,
+                       atol=rounding * h * np.abs(s.aux).max())
     assert np.allclose(s.dq[:3], h * s.v_old[:3] + h * h * (
-        (0.5 - beta) * s.aux_old[:3] + beta * s.aux[:3]), atol=1e-12)
+        (0.5 - beta) * s.aux_old[:3] + beta * s.aux[:3]), rtol=0,
+        atol=rounding * h * h * np.abs(s.aux).max())
 
 
 def test_run_in_pieces_equals_one_run():
@@ -85,7 +64,7 @@ def test_cut_steps_rejoin_the_grid():
     run = struck(1e6).run_to(0.3)
     result = run.result()
     assert result.cuts > 0
-    assert np.allclose(result.t, np.arange(31) * 0.01, atol=1e-12)
+    assert np.allclose(result.t, np.arange(31) * 0.01, rtol=0, atol=1e-12)      # products of h
     fine = struck(1e6, 0.000625).run_to(0.3).result()["tip.position"][::16]
     assert np.abs(result["tip.position"][:10] - fine[:10]).max() < 1e-3
 
@@ -104,3 +83,17 @@ def test_failed_run_keeps_what_it_has():
 def test_cannot_run_backwards():
     with pytest.raises(InputError, match="later time"):
         Simulation(build().model, 0.01).run_to(0.5).run_to(0.2)
+
+
+@pytest.mark.parametrize("h, t_end, steps", [
+    (0.1, 0.3, 3),          # 0.3 / 0.1 is 2.9999999999999996 in floating point,
+    (0.1, 0.7, 7),          # 0.7 / 0.1 is 6.999999999999999
+    (0.1, 0.26, 3), (0.1, 0.24, 2)])
+def test_a_run_ends_at_the_step_nearest_to_the_wanted_time(h, t_end, steps):
+    model = Model(planar=True)
+    model.point_mass("ball", model.node("ball", (0.0, 0.0), keeps="translation"), 1.0)
+    model.initial_velocity("ball", (2.0, 0.0))
+    run = Simulation(model, h).run_to(t_end)
+    assert run.result().steps == steps
+    assert run.time == pytest.approx(steps * h, rel=1e-14)      # a product and its rounding
+    assert run.result()["ball.position"][-1] == pytest.approx([2.0 * steps * h, 0.0], rel=1e-9)

@@ -1,0 +1,40 @@
+"""setuptools' build backend, whose editable wheels are found from anywhere.
+
+setuptools puts the finder of an editable install behind Python's own, which takes any folder named
+``sebody`` in the folder of a script, such as a clone, for a namespace package. Here it comes first.
+"""
+
+import base64
+import hashlib
+import zipfile
+from pathlib import Path, PurePosixPath
+
+from setuptools import build_meta
+from setuptools.build_meta import *  # noqa: F403  # all hooks but the one below
+
+IN_FRONT = ("import sys; sys.meta_path.sort("
+            "key=lambda finder: getattr(finder, '__module__', '') != {module!r})\n")
+
+
+def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
+    """The editable wheel of setuptools, with a line more in its ``.pth`` file (PEP 660)."""
+    name = build_meta.build_editable(wheel_directory, config_settings, metadata_directory)
+    path = Path(wheel_directory, name)
+    with zipfile.ZipFile(path) as wheel:
+        files = {entry: wheel.read(entry) for entry in wheel.namelist()}
+    finder, = (entry for entry in files if entry.endswith("_finder.py"))
+    start, = (entry for entry in files if entry.endswith(".pth"))
+    record, = (entry for entry in files if entry.endswith(".dist-info/RECORD"))
+    module = PurePosixPath(finder).stem
+    files[start] = files[start].rstrip() + b"\n" + IN_FRONT.format(module=module).encode()
+    files[record] = "".join(_recorded(entry, content) for entry, content in files.items()
+                            if entry != record).encode() + f"{record},,\n".encode()
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as wheel:
+        for entry, content in files.items():
+            wheel.writestr(entry, content)
+    return name
+
+
+def _recorded(entry: str, content: bytes) -> str:
+    digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+    return f"{entry},sha256={digest},{len(content)}\n"

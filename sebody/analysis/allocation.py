@@ -1,0 +1,88 @@
+"""The arrays of a state before its first step: where a model begins, and scratch memory."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.assembly.build import work_size
+from sebody.assembly.numbering import Numbering, coordinates
+from sebody.engine.state import (
+    AUX_STEP,
+    CLOCKS,
+    CONTRACTION,
+    CONTROLS,
+    CURRENT_STEP,
+    RENEWED,
+    STEP,
+    WANTED,
+    State,
+)
+from sebody.engine.system import System
+from sebody.kernels.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
+from sebody.model.mechanism import Mechanism
+from sebody.results.recording import record_counts
+
+SLOW_CONTRACTION = 0.95     # what Newton's iteration is taken to contract by before it was seen
+
+
+def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
+             dense: bool) -> State:
+    """The state of a model at t = 0, without accelerations and multipliers.
+
+    Parameters
+    ----------
+    h : float
+        Step of the output grid [time].
+    dense : bool
+        Whether the loop keeps an inverse of the iteration matrix.
+    """
+    counts = record_counts(numbering)
+    n, total, items = numbering.free, numbering.total, counts["items"]
+    q, v = _start(model, numbering)
+    R = np.tile(np.eye(3).ravel(), counts["rotations"])
+    zeros = np.zeros
+    clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
+    clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
+    clock[CONTRACTION] = SLOW_CONTRACTION
+    control[WANTED] = RENEWED
+    coefficients = zeros(COEFFICIENTS.size(counts))
+    coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
+    state = State.of(
+        counts,
+        aux=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
+        v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total), T=R.copy(),
+        loads=zeros(3 * items), loads_old=zeros(3 * items), powers=zeros(items),
+        powers_old=zeros(items), coefficients=coefficients,
+        g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
+        turned=zeros(int(system.width.max()) ** 2), residual=zeros(total), forces=zeros(total),
+        correction=zeros(whole_vectors(total) + LANES), solution=zeros(system.slot_unknowns.size),
+        last_correction=zeros(total), last_change=zeros(total),
+        moved=np.ones(len(system.summands), dtype=bool), gaps=zeros(total), shift=zeros(total),
+        strictness=zeros(total), expansion=zeros(_expansion_size(system)),
+        matrix=zeros(system.rows.size + 1), scale=np.ones(total + LANES), weight=zeros(total),
+        inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
+        column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
+        energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
+    state.q[:], state.v[:], state.R[:] = q, v, R
+    state.frames[:] = state.frames_old[:] = np.tile(np.eye(3).ravel(), counts["bodies"])
+    return state
+
+
+def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
+    """Initial places and velocities of all coordinates."""
+    q, v = np.zeros((2, numbering.total))
+    for node in (*model.nodes.values(), *model.grounds):
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                at = coordinates(numbering, triplet)
+                q[at] = triplet.start
+                v[at] = triplet.rate if triplet.solved else 0.0
+    for body in model.bodies.values():
+        first = numbering.modes[body.name]
+        v[first:first + body.body.modes] = body.mode_rates
+    return q, v
+
+
+def _expansion_size(system: System) -> int:
+    """Scratch of links: a rotation, and the largest matrix of an element before and after."""
+    return 9 + int(max((w * wide + wide * wide for _, w, wide, *_ in system.links.elements),
+                       default=0))

@@ -1,0 +1,55 @@
+"""Forces and matrices of one state, outside the loop."""
+
+import numpy as np
+from scipy.sparse import csc_matrix
+
+from sebody.engine.evaluate import assemble
+from sebody.engine.matrix import sum_matrices
+from sebody.engine.state import REASONS, State
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.kernels.layout import TANGENT
+
+
+def evaluate(system: System, state: State, of_bodies: int, of_others: int, what: str) -> None:
+    """Ask kernels of superelements and the others for their tasks; forces go to `state.residual`.
+
+    Raises
+    ------
+    InputError
+        The state cannot be evaluated; `what` names it in the message.
+    """
+    status = assemble(of_bodies, of_others, system, state, state.residual)
+    if status:
+        raise InputError(f"{what} cannot be evaluated: {REASONS[status]}")
+
+
+def matrix(system: System, state: State, what: str, *, mass: float, rate: float, place: float,
+           constraint: float) -> csc_matrix:
+    """Weighted sum of the exact derivatives of the forces, in body axes.
+
+    Parameters
+    ----------
+    what : str
+        Name of the state in the message of an error.
+    mass, rate, place, constraint : float
+        Weights of the derivatives by accelerations, velocities, positions and rotations, and of
+        constraints and multipliers.
+
+    Raises
+    ------
+    InputError
+        The state cannot be evaluated.
+    """
+    state.set_coefficients(c_mass=mass, c_rate=rate, c_place=place, c_geo=1.0,
+                           c_constraint=constraint)
+    evaluate(system, state, TANGENT, TANGENT, what)
+    sum_matrices(system, state, state.residual)
+    return assembled(system, state)
+
+
+def assembled(system: System, state: State) -> csc_matrix:
+    """The assembled matrix, without padding."""
+    n, entries = system.diagonal.size, state.matrix[:-1]
+    kept = np.flatnonzero((entries != 0.0) & (system.rows < n))
+    return csc_matrix((entries[kept], (system.rows[kept], system.columns[kept])), shape=(n, n))

@@ -1,0 +1,151 @@
+"""Bodies and elements in batches that share a kernel: their index rows and constants."""
+
+from collections.abc import Iterable
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.assembly.contracts import (
+    check_element,
+    check_superelement,
+    constants_row,
+    counts_of,
+    index_row,
+)
+from sebody.assembly.numbering import Numbering, coordinates
+from sebody.kernels.loader import element_kernel, load
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Superelement
+
+
+class Batch(NamedTuple):
+    """Elements that share a kernel and a number of unknowns."""
+
+    kernel: ModuleType
+    width: int
+    frames: list[int]               # number of the frame of each element, -1 for global axes
+    rows: list[list[int]]           # index rows
+    unknowns: list[list[int]]       # unknowns of each element
+    owners: list[int]               # id of what each element stands for
+
+
+class Batches(NamedTuple):
+    """All of a model: superelements, then what does no work, then what does."""
+
+    all: list[Batch]
+    first_joint: int        # first batch that is none of superelements
+    first_power: int        # first batch of what does work
+    constants: NDArray
+
+
+class _Constants:
+    """Rows of constants, one after the other."""
+
+    def __init__(self) -> None:
+        self.rows: list[NDArray] = []
+        self.size = 0
+
+    def add(self, row: NDArray) -> int:
+        """Where the row begins."""
+        self.rows.append(row)
+        self.size += len(row)
+        return self.size - len(row)
+
+
+def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
+    """Batches of a model, every element verified against its kernel.
+
+    Raises
+    ------
+    InputError
+        An element that does not fit its kernel.
+    """
+    constants = _Constants()
+    bodies = _body_batches(model, numbering, constants)
+    elements = [*model.rigid_bodies.values(), *model.constraints, *model.loads]
+    idle = [e for e in elements if not element_kernel(e.kind).POWER]
+    working = [e for e in elements if element_kernel(e.kind).POWER]
+    joints = _element_batches(numbering, constants, idle)
+    loads = _element_batches(numbering, constants, working)
+    return Batches(bodies + joints + loads, len(bodies), len(bodies) + len(joints),
+                   np.concatenate(constants.rows))
+
+
+def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants) -> list[Batch]:
+    batches: dict[tuple, Batch] = {}
+    row_of: dict[tuple, int] = {}
+    for frame, body in enumerate(model.bodies.values()):
+        kernel = load(body.kernel)
+        check_superelement(body, kernel)
+        key = id(body.body), body.kernel, tuple(body.alpha), tuple(body.alpha_r)
+        if key not in row_of:
+            row_of[key] = constants.add(constants_row(body.name, kernel, counts_of(body),
+                                                      superelement_constants(body)))
+        unknowns = [c for t in (*body.positions, *body.rotations)
+                    for c in coordinates(numbering, t)]
+        first = numbering.modes[body.name]
+        unknowns += range(first, first + body.body.modes)
+        row = index_row(body.name, kernel, unknowns, constants=row_of[key], frame=frame,
+                        item=numbering.items.get(id(body), 0),
+                        nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations])
+        _append(batches, kernel, frame, row.tolist(), unknowns, id(body))
+    return list(batches.values())
+
+
+def _element_batches(numbering: Numbering, constants: _Constants,
+                     elements: Iterable[Element]) -> list[Batch]:
+    batches: dict[tuple, Batch] = {}
+    for element in elements:
+        kernel, unknowns = element_kernel(element.kind), element_unknowns(numbering, element)
+        check_element(element, kernel, len(unknowns), numbering)
+        row = index_row(element.name, kernel, unknowns, frame=0,
+                        constants=constants.add(constants_row(element.name, kernel, {},
+                                                              element.constants)),
+                        item=numbering.items.get(id(element), 0),
+                        nodes=[numbering.rotations[id(t)] for t in element.triplets
+                               if id(t) in numbering.rotations])
+        function = [] if element.function is None else [element.function.address]
+        _append(batches, kernel, -1, [*row.tolist(), *function], unknowns, id(element))
+    return list(batches.values())
+
+
+def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: list[int],
+            unknowns: list[int], owner: int) -> None:
+    batch = batches.setdefault((kernel.__name__, len(unknowns)),
+                               Batch(kernel, len(unknowns), [], [], [], []))
+    batch.frames.append(frame)
+    batch.rows.append(row)
+    batch.unknowns.append(unknowns)
+    batch.owners.append(owner)
+
+
+def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
+    """Coordinates of an element, then its multipliers."""
+    unknowns = [c for t in element.triplets for c in coordinates(numbering, t)]
+    if element.mode is not None:
+        unknowns.append(numbering.modes[element.mode[0]] + element.mode[1])
+    if element.multipliers:
+        first = numbering.multipliers[id(element)]
+        unknowns += range(first, first + element.multipliers)
+    return unknowns
+
+
+def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
+    """What the kernel of a superelement reads, by name."""
+    reduced = body.body
+    points = reduced.coordinates[list(reduced.position_nodes)]
+    origin = body.alpha @ points
+    of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
+    damping = {} if reduced.damping is None else {"C": reduced.damping}
+    return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
+            "alpha_rs": body.alpha_r, "X": points - origin, "S": reduced.stiffness,
+            "M": reduced.mass, "mass_columns": of_translations, "mass_rows": of_translations.T,
+            "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
+            "masses": [reduced.total_mass], **damping}
+
+
+def starts(sizes: Iterable[int]) -> NDArray:
+    """First place of every piece of a row, and the end of the last."""
+    return np.concatenate([[0], np.cumsum(list(sizes))]).astype(np.int64)

@@ -1,0 +1,121 @@
+"""Every body and element of a model against the kernel it is given to, before anything runs.
+
+Kernels read and write through pointers, without bounds: a row that is too short, or a number of
+unknowns that is not the kernel's, would go unnoticed.
+"""
+
+from collections.abc import Iterable, Mapping
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.assembly.numbering import Numbering
+from sebody.errors import InputError
+from sebody.kernels.layout import INDEX, ContractError, Counts, Row, superelement_counts
+from sebody.model.parts import Element, Superelement
+
+REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebody"
+
+
+def check_element(element: Element, kernel: ModuleType, unknowns: int,
+                  numbering: Numbering) -> None:
+    """Counts, history and work of an element.
+
+    Raises
+    ------
+    InputError
+        What it has is not what its kernel reads; the message names both.
+    """
+    turning = sum(t.turns for t in element.triplets)
+    matrices = sum(id(t) in numbering.rotations for t in element.triplets)
+    others = len(element.triplets) - turning + (element.mode is not None)
+    wrong = _different((("unknowns", unknowns, kernel.WIDTH),
+                        ("multipliers", element.multipliers, kernel.MULTIPLIERS),
+                        ("positions", others, kernel.N_POSITIONS),
+                        ("rotation matrices", matrices, kernel.N_ROTATIONS)))
+    if kernel.DRIVEN and element.history is None:
+        wrong.append("it has no history and the kernel reads one")
+    if element.history is not None and not kernel.POWER:
+        wrong.append("it has a history and the kernel reads none")
+    if kernel.POWER != (id(element) in numbering.items):
+        wrong.append("it is no item and the kernel writes the power of one" if kernel.POWER else
+                     "it is an item and the kernel writes no power")
+    if wrong:
+        raise _misfit(element.name, kernel, wrong)
+
+
+def check_superelement(body: Superelement, kernel: ModuleType) -> None:
+    """Counts and damping of a superelement.
+
+    Raises
+    ------
+    InputError
+        What it has is not what its kernel reads; the message names both.
+    """
+    reduced = body.body
+    wrong = _different((("positions", len(reduced.position_nodes), kernel.N_POSITIONS),
+                        ("rotations", len(reduced.rotation_nodes), kernel.N_ROTATIONS),
+                        ("coordinates before its modes", _width(body) - reduced.modes,
+                         kernel.MODES),
+                        ("modes", reduced.modes, kernel.N_MODES)))
+    if kernel.PLANAR != reduced.planar:
+        wrong.append(f"it is {'planar' if reduced.planar else 'spatial'} and the kernel is not")
+    if kernel.DAMPED != (reduced.damping is not None):
+        wrong.append(f"it has {'no' if kernel.DAMPED else 'a'} damping matrix and the kernel reads "
+                     f"{'one' if kernel.DAMPED else 'none'}")
+    if wrong:
+        raise _misfit(body.name, kernel, wrong)
+
+
+def constants_row(name: str, kernel: ModuleType, counts: Counts,
+                  values: Mapping[str, ArrayLike]) -> NDArray:
+    """The constants of a body or element in the order of its kernel.
+
+    Raises
+    ------
+    InputError
+        Names or shapes are not those of the kernel.
+    """
+    try:
+        return Row("constants", kernel.CONSTANTS).pack(counts, values)
+    except ContractError as error:
+        raise _misfit(name, kernel, [str(error)]) from error
+
+
+def index_row(name: str, kernel: ModuleType, unknowns: list[int],
+              **values: int | list[int]) -> NDArray:
+    """The row of integers that a kernel finds an element by.
+
+    Raises
+    ------
+    InputError
+        Its numbers are not as many as the kernel reads.
+    """
+    counts = {"N_ROTATIONS": kernel.N_ROTATIONS, "n": len(unknowns)}
+    try:
+        return INDEX.pack(counts, values | {"unknowns": unknowns}).astype(np.int64)
+    except ContractError as error:
+        raise _misfit(name, kernel, [str(error)]) from error
+
+
+def counts_of(body: Superelement) -> Counts:
+    """The counts that sizes of a superelement's rows are products of."""
+    reduced = body.body
+    return superelement_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
+                               reduced.planar, _width(body))
+
+
+def _width(body: Superelement) -> int:
+    return len(body.body.stiffness)
+
+
+def _different(facts: Iterable[tuple[str, int, int | None]]) -> list[str]:
+    """What differs; a kernel that takes any number has None."""
+    return [f"it has {own} {what} and the kernel {read}" for what, own, read in facts
+            if read is not None and own != read]
+
+
+def _misfit(name: str, kernel: ModuleType, wrong: list[str]) -> InputError:
+    return InputError(f"{name!r} does not fit its kernel {kernel.__name__}: {'; '.join(wrong)}: "
+                      f"{REMEDY}")

@@ -1,0 +1,52 @@
+"""Where entries of the element matrices go in the matrix of the system."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.assembly import elimination_pattern
+from sebody.assembly.batches import Batch
+from sebody.assembly.numbering import Numbering
+from sebody.kernels.layout import LANES
+
+
+def element_places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
+    """Row and column of every entry of the element matrices."""
+    rows, columns = [], []
+    for batch in batches:
+        unknowns = np.array(batch.unknowns, dtype=np.int64)
+        shape = (len(unknowns), batch.width, batch.width)
+        rows.append(np.broadcast_to(unknowns[:, :, None], shape).ravel())
+        columns.append(np.broadcast_to(unknowns[:, None, :], shape).ravel())
+    return np.concatenate(rows), np.concatenate(columns)
+
+
+def dense_layout(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, dict[str, NDArray]]:
+    """Matrix entry of each element entry, and the members of `System` that describe the matrix.
+
+    Entries of fixed coordinates go behind the end.
+    """
+    columns, rows = np.divmod(np.arange(n * n, dtype=np.int32), n)
+    none = np.zeros(0, dtype=np.int64)
+    return np.where((row < n) & (column < n), column * n + row, n * n), {
+        "rows": rows, "columns": columns, "diagonal": np.arange(n) * (n + 1), "padding": none,
+        "block_starts": none, "block_rows": none, "block_diagonal": none, "slot_unknowns": none}
+
+
+def sparse_layout(row: NDArray, column: NDArray,
+                  numbering: Numbering) -> tuple[NDArray, dict[str, NDArray]]:
+    """The same in the blocks of an elimination."""
+    n = numbering.free
+    free = (row < n) & (column < n)
+    slot, pattern = elimination_pattern.best_slots(row[free], column[free], numbering.groups, n)
+    slots = LANES * len(pattern.diagonal)
+    unknowns = np.full(slots, n)
+    unknowns[slot] = np.arange(n)
+    rows, columns = elimination_pattern.places(pattern)
+    entries = np.full(len(row), len(rows))
+    entries[free] = elimination_pattern.entries(pattern, slot[row[free]], slot[column[free]])
+    diagonal = elimination_pattern.entries(pattern, np.arange(slots), np.arange(slots))
+    return entries, {
+        "rows": unknowns[rows].astype(np.int32), "columns": unknowns[columns].astype(np.int32),
+        "diagonal": diagonal[slot], "padding": diagonal[unknowns == n],
+        "block_starts": pattern.starts, "block_rows": pattern.rows,
+        "block_diagonal": pattern.diagonal, "slot_unknowns": unknowns}

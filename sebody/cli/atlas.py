@@ -1,0 +1,31 @@
+"""``sebody atlas``: where methods fail."""
+
+import argparse
+from pathlib import Path
+
+from sebody.cli.inputs import check_picture
+
+
+def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
+    """The parser of the command."""
+    parser = commands.add_parser("atlas", help="where methods fail: theory and measurement")
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="all of them by default")
+    parser.add_argument("--output", type=Path, metavar="FILE.png",
+                        help="draw the page of pictures")
+    return parser
+
+
+def run(options: argparse.Namespace) -> int:
+    """Explore the cases, print and draw; 1 if a number is not what was expected."""
+    from sebody.studies import atlas
+
+    check_picture(options.output)
+    atlas.check_names(options.cases)
+    findings = []
+    for name in options.cases or atlas.CASES:
+        findings.append(atlas.explore(name))
+        print(f"{name}: {atlas.report(findings[-1])}\n", flush=True)
+    if options.output:
+        atlas.draw(findings, options.output)
+        print(f"picture: {options.output}")
+    return 0 if all(row.passed for f in findings for row in f.rows) else 1

@@ -1,0 +1,22 @@
+"""``sebody bench``: cost and error of scenes."""
+
+import argparse
+
+
+def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
+    """The parser of the command."""
+    parser = commands.add_parser(
+        "bench", help="cost and error of scenes, beside Exudyn where it is installed")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="all that have one by default")
+    parser.add_argument("--json", action="store_true", help="print JSON in place of a table")
+    return parser
+
+
+def run(options: argparse.Namespace) -> int:
+    """Measure and print."""
+    from sebody.studies import bench
+
+    rate = bench.machine_rate()
+    found = bench.measure(options.scenes)
+    print(bench.to_json(found, rate) if options.json else bench.report(found, rate))
+    return 0

@@ -1,0 +1,21 @@
+"""``sebody check``: consistency of the generated kernels."""
+
+import argparse
+
+
+def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
+    """The parser of the command."""
+    parser = commands.add_parser("check", help="test the consistency of kernels")
+    parser.add_argument("kernels", nargs="*", metavar="KERNEL",
+                        help="show all criteria of these; a summary of all kernels by default")
+    return parser
+
+
+def run(options: argparse.Namespace) -> int:
+    """Check the kernels; 1 if a criterion fails."""
+    from sebody.studies import check
+
+    rows = check.check_kernels(options.kernels or None)
+    print(check.table(rows) if options.kernels else check.summary(rows))
+    print(check.verdict(rows))
+    return 0 if all(row.passed for row in rows) else 1

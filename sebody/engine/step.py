@@ -1,0 +1,202 @@
+"""One step of the loop: prediction and acceptance, output, and the way back.
+
+The unknowns of a step are the increments dq (rotations: R exp(dTheta)) and the multipliers.
+"""
+
+from sebody.engine.evaluate import move_prescribed, set_loads, set_powers, turn_rotations
+from sebody.engine.newton import watch_age
+from sebody.engine.state import (
+    ADAPTIVE,
+    AUX_STEP,
+    BEGIN,
+    BEND,
+    CHOSEN,
+    CONTRACTION,
+    CURRENT_STEP,
+    CUTS,
+    EAGER,
+    FINEST,
+    FRESH,
+    GRID,
+    HELD,
+    ITERATION,
+    ITERATIONS,
+    LAST_NORM,
+    LEVEL,
+    PHASE,
+    RECORDED,
+    RENEWED,
+    SECANT,
+    STEP,
+    STEPS,
+    TIME,
+    UNIT,
+    WANTED,
+)
+from sebody.engine.step_control import SHORTEST, go_on
+from sebody.kernels.abi import at, pointer_to
+from sebody.kernels.layout import (
+    C_CONSTRAINT,
+    C_GEO,
+    C_MASS,
+    C_PLACE,
+    C_RATE,
+    RECORD_ITERATIONS,
+    RECORD_T,
+)
+from sebody.kernels.pipeline import compiled
+
+ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
+MEMORY = 0.99           # for the size of the accelerations, a step
+
+
+@compiled(forceinline=True)
+def begin_step(system, state, scheme):
+    """Remember the accepted state, predict the next one."""
+    h = state.clock[CURRENT_STEP]
+    for i in range(state.R.size):
+        state.R_old[i] = state.R[i]
+    for i in range(state.frames.size):
+        state.frames_old[i] = state.frames[i]
+    to_a = 1.0 / (1.0 - scheme.alpha_f)
+    # auxiliary accelerations are those of a time (alpha_m - alpha_f) h later
+    offset = h / state.clock[AUX_STEP]
+    state.clock[AUX_STEP] = h
+    for i in range(state.dq.size):      # the auxiliary acceleration is taken to stay
+        q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
+        if offset != 1.0:
+            aux = a + offset * (aux - a)
+            state.aux[i] = aux
+        state.q_old[i], state.v_old[i], state.a_old[i], state.aux_old[i] = q, v, a, aux
+        state.dq[i] = h * v + 0.5 * h * h * aux
+        state.q[i] = q + state.dq[i]
+        state.v[i] = v + h * aux
+        state.a[i] = to_a * (aux - scheme.alpha_f * a)
+    set_loads(system, state.loads, state.clock[TIME] + h)
+    set_coefficients(state, scheme, h)
+    move_prescribed(system, state)
+    turn_rotations(system, state)
+    state.control[ITERATION], state.control[SECANT] = 0, 0
+    state.clock[LAST_NORM] = 0.0
+
+
+@compiled(forceinline=True)
+def set_coefficients(state, scheme, h):
+    """Derivatives of acceleration and velocity by the increment."""
+    c = state.coefficients
+    c[C_MASS] = (1 - scheme.alpha_m) / ((1 - scheme.alpha_f) * scheme.beta * h * h)
+    c[C_RATE] = scheme.gamma / (scheme.beta * h)
+    c[C_PLACE] = 1.0
+    c[C_GEO] = scheme.geometric
+    c[C_CONSTRAINT] = 1.0
+
+
+@compiled(forceinline=True)
+def accept(system, state, record):
+    """End a converged step: rotations stay orthogonal, work of the loads, output."""
+    clock, control = state.clock, state.control
+    h = clock[CURRENT_STEP]
+    if control[STEPS] % ORTHOGONAL == 0:
+        for r in range(system.rotation_at.size):
+            _orthogonalize(at(pointer_to(state.R), 9 * r))
+    add_work(system, state, h)
+    watch_age(state)
+    if control[FRESH] == 0:
+        control[EAGER] = 0
+    clock[BEND] *= MEMORY
+    control[STEPS] += 1
+    if control[ADAPTIVE] == 1:
+        go_on(system, state)
+    else:
+        go_on_grid(state, record)
+
+
+@compiled(forceinline=True)
+def go_on_grid(state, record):
+    """Time and length of the next step where steps are parts of a grid, output on it."""
+    clock, control = state.clock, state.control
+    control[UNIT] += FINEST >> control[LEVEL]
+    if control[UNIT] >= FINEST:             # back on the output grid
+        control[UNIT] = 0
+        control[GRID] += 1
+        clock[TIME] = control[GRID] * clock[STEP]
+        if control[GRID] % record.every[0] == 0:
+            write_record(state, record)
+    else:
+        clock[TIME] = (control[GRID] + control[UNIT] / FINEST) * clock[STEP]
+    while control[LEVEL] > 0 and control[UNIT] % (FINEST >> (control[LEVEL] - 1)) == 0:
+        control[LEVEL] -= 1                 # try the longer step again
+    clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
+
+
+@compiled(forceinline=True)
+def add_work(system, state, h):
+    """Work of the items over a step, by the trapezoidal rule."""
+    for k in range(state.powers.size):
+        state.powers_old[k] = state.powers[k]
+        state.works[k] += 0.5 * h * state.powers[k]
+    set_powers(system, state)
+    for k in range(state.powers.size):
+        state.works[k] += 0.5 * h * state.powers[k]
+    for k in range(state.loads.size):
+        state.loads_old[k] = state.loads[k]
+
+
+@compiled(forceinline=True)
+def _orthogonalize(R):
+    """One Newton step ``R (3 I - R^T R) / 2`` towards the nearest rotation."""
+    for i in range(3):
+        a, b, c = R[3 * i], R[3 * i + 1], R[3 * i + 2]
+        s = 1.5 - 0.5 * (a * a + b * b + c * c)
+        R[3 * i], R[3 * i + 1], R[3 * i + 2] = s * a, s * b, s * c
+    for i in range(2):
+        for j in range(i + 1, 3):
+            dot = 0.0
+            for k in range(3):
+                dot += R[3 * i + k] * R[3 * j + k]
+            for k in range(3):
+                x = R[3 * i + k]
+                R[3 * i + k] -= 0.5 * dot * R[3 * j + k]
+                R[3 * j + k] -= 0.5 * dot * x
+
+
+@compiled(forceinline=True)
+def write_record(state, record):
+    """Store the accepted state."""
+    k = state.control[RECORDED]
+    state.now[RECORD_T] = state.clock[TIME]
+    state.now[RECORD_ITERATIONS] = state.control[ITERATIONS]
+    for i in range(state.now.size):     # one block: nine separate ones cost as much as a step
+        record.rows[k, i] = state.now[i]
+    state.control[RECORDED] = k + 1
+
+
+@compiled
+def back(state):
+    """Back to the accepted state."""
+    for i in range(state.q.size):       # loops: assigned slices compile slowly
+        state.q[i] = state.q_old[i]
+        state.v[i] = state.v_old[i]
+        state.a[i] = state.a_old[i]
+        state.aux[i] = state.aux_old[i]
+    for i in range(state.R.size):
+        state.R[i] = state.R_old[i]
+    for i in range(state.frames.size):
+        state.frames[i] = state.frames_old[i]
+    state.control[PHASE] = BEGIN
+    state.control[WANTED] = RENEWED
+    state.clock[CONTRACTION] = 0.95     # nothing is known of the next attempt
+
+
+@compiled
+def cut_step(state):
+    """Half the step; False when it cannot be cut further."""
+    clock, control = state.clock, state.control
+    control[CUTS] += 1
+    if control[ADAPTIVE] == 1:
+        clock[CHOSEN] = 0.5 * clock[CURRENT_STEP]
+        control[HELD] = 0
+        return clock[CHOSEN] > SHORTEST * clock[STEP]
+    control[LEVEL] += 1
+    clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
+    return (1 << control[LEVEL]) <= FINEST

@@ -1,0 +1,161 @@
+"""Bodies of a model: superelements, rigid bodies and point masses."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.errors import InputError
+from sebody.kernels.layout import layout_name
+from sebody.kernels.loader import superelement_kernel_name
+from sebody.model.frames import FRAMES, check_frame, check_options, frame_weights
+from sebody.model.inputs import known, refuse_taken, triplet, vector
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Node, Superelement
+from sebody.reduction import ReducedBody
+
+
+def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable[Node | str],
+                 frame: str = "converged_mean", inertia: str = "b",
+                 rotation: ArrayLike | None = None, frame_node: int = 0) -> Superelement:
+    """Place a reduced body on nodes.
+
+    Parameters
+    ----------
+    body : ReducedBody
+        Reduced matrices in any axes.
+    nodes : iterable of Node or str
+        One node for each boundary node of the body, in its order.
+    frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
+    inertia : {'a', 'b'}
+    rotation : (3, 3), planar (2, 2), optional
+        Turns FE axes into global axes; identity by default.
+    frame_node : int
+        For ``frame='node'``: which boundary node carries the frame.
+
+    Raises
+    ------
+    InputError
+        Nodes that do not fit the body, unknown options, or no kernel for the layout (the
+        message says how to make it).
+    """
+    nodes = tuple(known(model, n) for n in nodes)
+    _check_name(model, name, "superelement")
+    if body.planar != model.planar:
+        raise InputError(f"superelement {name!r} is {'planar' if body.planar else 'spatial'} "
+                         f"and the model is {'planar' if model.planar else 'spatial'}: use one "
+                         "kind in a model")
+    check_options(frame, inertia)
+    placed = body if rotation is None else body.rotated(np.asarray(rotation, dtype=float))
+    _check_place(name, placed, nodes)
+    check_frame(name, placed, frame)
+    alpha, alpha_r = frame_weights(name, placed, frame, frame_node)
+    layout = layout_name(placed.keeps, placed.planar)
+    kernel = superelement_kernel_name(layout, FRAMES[frame].kernel, inertia, placed.modes,
+                                      placed.damping is not None)
+    model.bodies[name] = Superelement(name, placed, nodes, frame, inertia, layout, alpha, alpha_r,
+                                      kernel, np.zeros(placed.modes))
+    model.own_names.add(name)
+    return model.bodies[name]
+
+
+def rigid_body(model: Mechanism, name: str, node: Node | str, mass: float, inertia: ArrayLike,
+               centre: ArrayLike | None = None) -> Element:
+    """A rigid body that moves with a node.
+
+    Parameters
+    ----------
+    mass : float
+    inertia : (3, 3) or (3,), planar float
+        About the centre of mass, global axes at the start (three numbers: principal moments).
+    centre : (3,), planar (2,), optional
+        Centre of mass at the start, global axes; the node by default.
+
+    Raises
+    ------
+    InputError
+        A mass or inertia no body has, or a name that is taken.
+    """
+    node = known(model, node)
+    _check_rigid(model, name, mass)
+    centre = node.point if centre is None else vector(model, centre, f"centre of {name!r}")
+    arm = centre - node.point
+    J = _inertia(model, name, inertia)
+    if model.planar:
+        moments = {"J_zz": J + mass * arm @ arm}
+    else:
+        J = J + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        moments = {f"J_{'xyz'[i]}{'xyz'[j]}": J[i, j]
+                   for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
+    triplets = triplet(node, "position"), triplet(node, "rotation")
+    return _add(model, Element(name, model.kind_of("rigid_body"), triplets,
+                               {"mass": mass, "mc": mass * arm, **moments}))
+
+
+def point_mass(model: Mechanism, name: str, node: Node | str, mass: float) -> Element:
+    """A mass on a node, without inertia of rotation.
+
+    Raises
+    ------
+    InputError
+        A mass that is not positive, or a name that is taken.
+    """
+    _check_rigid(model, name, mass)
+    return _add(model, Element(name, model.kind_of("point_mass"),
+                               (triplet(known(model, node), "position"),), {"mass": mass}))
+
+
+def _add(model: Mechanism, body: Element) -> Element:
+    model.rigid_bodies[body.name] = body
+    model.own_names.add(body.name)
+    return body
+
+
+def _check_name(model: Mechanism, name: str, what: str) -> None:
+    if name in model.bodies or name in model.rigid_bodies:
+        raise InputError(f"{what} {name!r} exists already: give it its own name")
+    refuse_taken(model, name, f"{what} {name!r}")
+
+
+def _check_rigid(model: Mechanism, name: str, mass: float) -> None:
+    _check_name(model, name, "body")
+    if not (np.isfinite(mass) and mass > 0):
+        raise InputError(f"mass of {name!r} is {mass}: give a positive number")
+
+
+def _inertia(model: Mechanism, name: str, inertia: ArrayLike) -> NDArray:
+    """Inertia about the centre of mass; moments must be those of a body."""
+    J = np.asarray(inertia, dtype=float)
+    if model.planar:
+        if J.shape != () or not (np.isfinite(J) and J >= 0):
+            raise InputError(f"inertia of {name!r} is {inertia}: give one number >= 0")
+        return J
+    J = np.diag(J) if J.shape == (3,) else J
+    if J.shape != (3, 3) or not np.isfinite(J).all():
+        raise InputError(f"inertia of {name!r} has shape {J.shape}: give 3 x 3 finite numbers, "
+                         "or three principal moments")
+    if np.abs(J - J.T).max() > 1e-9 * np.abs(J).max():
+        raise InputError(f"inertia of {name!r} is not symmetric: check its entries")
+    principal = np.linalg.eigvalsh(J)
+    if principal[0] < -1e-9 * principal[2] or (
+            principal[0] + principal[1] < (1 - 1e-9) * principal[2]):
+        raise InputError(f"inertia of {name!r} has the principal moments {principal}: no body "
+                         "has one that is negative or larger than the sum of the others")
+    return J
+
+
+def _check_place(name: str, body: ReducedBody, nodes: tuple[Node, ...]) -> None:
+    if len(nodes) != len(body.keeps):
+        raise InputError(f"superelement {name!r} has {len(body.keeps)} boundary nodes and "
+                         f"{len(nodes)} were given: give one node for each")
+    for node, keep in zip(nodes, body.keeps, strict=True):
+        for kind, other in (("position", "rotation"), ("rotation", "translation")):
+            if keep != other:
+                triplet(node, kind)
+    points = np.array([n.point for n in nodes])
+    offset = points - body.coordinates
+    error = np.abs(offset - offset.mean(axis=0)).max()
+    if error > 1e-6 * max(np.ptp(points, axis=0).max(), 1e-300):
+        raise InputError(f"superelement {name!r}: the nodes do not lie where the body's "
+                         f"boundary nodes are (off by {error:.3g} after the best shift): pass "
+                         "rotation=, the matrix that turns FE axes into global axes")

@@ -1,0 +1,108 @@
+"""Drives: prescribed motions of nodes, and of joints by an equation."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sebody.errors import InputError
+from sebody.model import histories
+from sebody.model.histories import History
+from sebody.model.inputs import axes, chosen_name, direction, known, triplet, turning, vector
+from sebody.model.mechanism import Mechanism
+from sebody.model.pairs import pair
+from sebody.model.parts import Element, Joint, Motion, Node
+from sebody.model.sharing import hold
+
+
+def drive_angle(model: Mechanism, node: Node | str, motion: object,
+                axis: ArrayLike = (0.0, 0.0, 1.0), to: Node | str | None = None,
+                name: str | None = None) -> Joint:
+    """Prescribe the angle of `node` against `to` (the ground) about the axis they share.
+
+    The joint itself is built apart. Without `to` and with nothing else that turns `node`,
+    `move` takes no equation.
+
+    Parameters
+    ----------
+    motion : table or tuple of three functions
+        See `sebody.model.histories.motion`; zero at the start [rad].
+    """
+    a, b = pair(model, node, to, "drive", ("rotation",))
+    history = _starting_at_zero(histories.motion(motion), a)
+    constants = {} if model.planar else dict(
+        zip(("n", "m"), axes(model, axis, "drive", a)[1:], strict=True))
+    name = chosen_name(model, name, f"angle at {a.name}")
+    return _drive(model, Element(name, model.kind_of("turn_drive"), (a.rotation, b.rotation),
+                                 constants, 1, history))
+
+
+def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayLike,
+                to: Node | str | None = None, name: str | None = None) -> Joint:
+    """Prescribe the way of `to` (a point of the ground) along an axis fixed in `node`.
+
+    Parameters
+    ----------
+    motion : table or tuple of three functions
+        Of the way from the start [length]; see `sebody.model.histories.motion`.
+    """
+    a, b = pair(model, node, to, "drive")
+    e = direction(model, axis, "drive", a)
+    history = _starting_at_zero(histories.motion(motion), a)
+    name = chosen_name(model, name, f"slide at {a.name}")
+    return _drive(model, Element(name, model.kind_of("slide_drive"),
+                                 (a.position, b.position, a.rotation),
+                                 {"e": e, "start": e @ (b.point - a.point)}, 1, history))
+
+
+def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: object,
+         what: str = "position", name: str | None = None) -> Motion:
+    """Prescribe the motion of a node: no unknown, no equation.
+
+    Parameters
+    ----------
+    direction : (3,), planar (2,); of a planar rotation a number
+        The motion times this is added to the place (may be called again, for positions), or is
+        the angle about this axis.
+    motion : table or tuple of three functions
+        See `sebody.model.histories.motion`; zero at the start.
+    what : {'position', 'rotation'}
+
+    Raises
+    ------
+    InputError
+        A rotation moved about two axes, or a position that hangs on another node.
+    """
+    node = known(model, node)
+    if what not in ("position", "rotation"):
+        raise InputError(f"cannot move {what!r}: use position or rotation")
+    moved = triplet(node, what)
+    if what == "position":
+        along = vector(model, direction, f"motion of {moved.name}")
+    else:
+        along = turning(model, direction, f"motion of {moved.name}")
+        if moved.motions:
+            raise InputError(f"{moved.name} is moved about an axis already: rotations about "
+                             "two axes do not add up, put a joint between them")
+    if not np.linalg.norm(along) > 0:
+        raise InputError(f"motion of {moved.name} has the direction {direction}: give one "
+                         "that is not zero")
+    history = _starting_at_zero(histories.motion(motion), node)
+    count = len(moved.motions) + 1
+    name = chosen_name(model, name, f"motion{f' {count}' * (count > 1)} of {moved.name}")
+    hold(moved)
+    moved.motions.append(Motion(name, along, history))
+    return moved.motions[-1]
+
+
+def _drive(model: Mechanism, equation: Element) -> Joint:
+    joint = Joint(equation.name, (equation,))
+    model.joints.append(joint)
+    return joint
+
+
+def _starting_at_zero(history: History, node: Node) -> History:
+    value = (history.functions[0].ctypes(0.0) if history.functions else
+             np.interp(0.0, history.times, [c[0] for c in history.cubics]))
+    if abs(value) > 1e-9:
+        raise InputError(f"the motion at {node.name!r} is {value:.6g} at t = 0: motions count "
+                         "from the start, take that off")
+    return history

@@ -1,0 +1,62 @@
+"""Frames and inertia options a superelement may have, and the weights of its nodes in the frame."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.generated import options
+from sebody.kernels.layout import FrameTraits
+from sebody.reduction import ReducedBody, body_weights
+
+
+class Frame(NamedTuple):
+    """A frame as a user chooses it."""
+
+    kernel: str                 # the frame of the generated kernel
+    traits: FrameTraits
+    on_one_node: bool = False   # all weight is on one node
+
+
+INERTIAS = tuple(options.INERTIA_OPTIONS)
+FRAMES = {name: Frame(name, traits) for name, traits in options.FRAMES.items()}
+FRAMES["node"] = FRAMES["converged_mean"]._replace(on_one_node=True)    # the mean of one rotation
+
+
+def check_options(frame: str, inertia: str) -> None:
+    """Refuse options that do not exist."""
+    if frame not in FRAMES:
+        raise InputError(f"frame {frame!r} is unknown: use one of {', '.join(sorted(FRAMES))}")
+    if inertia not in INERTIAS:
+        raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
+
+
+def check_frame(name: str, body: ReducedBody, frame: str) -> None:
+    """Refuse a frame that the kept triplets cannot define."""
+    traits = FRAMES[frame].traits
+    if traits.needs_rotations:
+        if not body.rotation_nodes:
+            others = [repr(n) for n, f in FRAMES.items() if not f.traits.needs_rotations]
+            raise InputError(f"superelement {name!r} keeps no rotation, so its frame cannot be "
+                             f"{frame!r}: use frame={' or '.join(others)}")
+        return
+    points = body.coordinates[list(body.position_nodes)]
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if len(points) < traits.fewest_positions[body.planar] or (
+            spread[body.coordinates.shape[1] - 2] < 1e-6 * max(spread[0], 1e-300)):
+        raise InputError(f"superelement {name!r}: the nodes that keep their position lie on a "
+                         f"line, so the frame {frame!r} cannot see rotations about it: use "
+                         "'converged_mean', or keep a node off the line")
+
+
+def frame_weights(name: str, body: ReducedBody, frame: str,
+                  node: int) -> tuple[NDArray, NDArray]:
+    """Weights of the nodes' positions and rotations in the frame; `node` may have to carry it."""
+    if not FRAMES[frame].on_one_node:
+        return body_weights(body)
+    if node not in body.position_nodes or node not in body.rotation_nodes:
+        raise InputError(f"superelement {name!r}: boundary node {node} cannot carry the frame, it "
+                         "needs both its position and its rotation: choose a full node")
+    alpha = np.array([float(i == node) for i in body.position_nodes])
+    return alpha, np.array([float(i == node) for i in body.rotation_nodes])

@@ -1,0 +1,96 @@
+"""Checks of what a user gives: nodes, vectors, names."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.errors import InputError
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
+
+
+def known(model: Mechanism, node: Node | str) -> Node:
+    """A node of this model."""
+    name = node.name if isinstance(node, Node) else node
+    if name not in model.nodes:
+        raise InputError(f"node {name!r} is unknown: the model has "
+                         f"{', '.join(model.nodes) or 'no nodes'}")
+    if isinstance(node, Node) and model.nodes[name] is not node:
+        raise InputError(f"node {name!r} is of another model: use that of this one")
+    return model.nodes[name]
+
+
+def triplet(node: Node, kind: str) -> Triplet:
+    """A triplet of a node, which must have it."""
+    found = getattr(node, kind)
+    if found is None:
+        raise InputError(f"node {node.name!r} has no {kind}: make it with keeps='full'")
+    return found
+
+
+def vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
+    """A vector of space or of the plane."""
+    given = _numbers(value)
+    if given.shape != (model.dimension,) or not np.isfinite(given).all():
+        raise InputError(f"{what} is {value}: give {model.dimension} finite numbers")
+    return given
+
+
+def turning(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
+    """A vector of rotation: three numbers, in a plane one."""
+    given = np.atleast_1d(_numbers(value))
+    if given.shape != (model.rotation_size,) or not np.isfinite(given).all():
+        raise InputError(f"{what} is {value}: give {model.rotation_size} finite number(s)")
+    return given
+
+
+def direction(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> NDArray:
+    """Unit vector along an axis."""
+    axis = vector(model, axis, f"axis of the {what} at {node.name!r}")
+    length = np.linalg.norm(axis)
+    if not length > 0:
+        raise InputError(f"axis of the {what} at {node.name!r} is zero: give its direction")
+    return axis / length
+
+
+def axes(model: Mechanism, axis: ArrayLike, what: str,
+         node: Node) -> tuple[NDArray, NDArray, NDArray]:
+    """Unit vector along an axis in space and two normal to it, right-handed."""
+    e = direction(model, axis, what, node)
+    e = e / np.linalg.norm(e)       # the length may still be off by a rounding error
+    first = np.cross(e, np.eye(3)[np.argmin(np.abs(e))])
+    first /= np.linalg.norm(first)
+    return e, first, np.cross(e, first)
+
+
+def chosen_name(model: Mechanism, name: str | None, default: str) -> str:
+    """The name of a joint, load or drive: its own, or the default one, which several may have."""
+    if name is None:
+        if default in model.own_names:
+            refuse_taken(model, default, default)
+        return default
+    if not (isinstance(name, str) and name):
+        raise InputError(f"name of the {default} is {name!r}: give a text that is not empty")
+    refuse_taken(model, name, default)
+    model.own_names.add(name)
+    return name
+
+
+def refuse_taken(model: Mechanism, name: str, what: str) -> None:
+    """Refuse a name that a body, joint, load or drive has."""
+    for element in model.elements():
+        if element.name == name:
+            raise InputError(f"{what} cannot be called {name!r}: a {_described(element)} has that "
+                             "name; give it its own with name=")
+
+
+def _described(element: Superelement | Element | Joint | Motion) -> str:
+    return element.kind.replace("_", " ") if isinstance(element, Element) else (
+        type(element).__name__.lower())
+
+
+def _numbers(value: ArrayLike) -> NDArray:
+    """As an array of numbers; what is none becomes NaN, which is refused with its name."""
+    try:
+        return np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        return np.full(1, np.nan)

@@ -1,0 +1,113 @@
+"""Loads of a model: forces, torques, gravity. Each of the first has a name and a work."""
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sebody.errors import InputError
+from sebody.kernels.user_functions import compile_force
+from sebody.model.histories import History, clock, history
+from sebody.model.inputs import chosen_name, known, triplet, turning, vector
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Node
+
+
+def force(model: Mechanism, node: Node | str, direction: ArrayLike,
+          amplitude: ArrayLike | Callable[[float], float] | History | None = None,
+          follower: bool = False, name: str | None = None) -> Element:
+    """Force on a node: `direction` times a history.
+
+    The direction is one of space, or with ``follower=True`` turns with the node.
+    """
+    node = known(model, node)
+    on = triplet(node, "position")
+    constants = {"d": vector(model, direction, f"force on {on.name}")}
+    triplets = (on, triplet(node, "rotation")) if follower else (on,)
+    kind = model.kind_of("follower_" * follower + "force")
+    course = history(amplitude)
+    name = chosen_name(model, name, f"force on {on.name}")
+    return _add(model, Element(name, kind, triplets, constants, history=course))
+
+
+def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
+           amplitude: ArrayLike | Callable[[float], float] | History | None = None,
+           follower: bool = False, name: str | None = None) -> Element:
+    """Torque on a node: `direction` (a number in a plane) times a history.
+
+    The direction is one of space, or with ``follower=True`` turns with the node.
+    """
+    on = triplet(known(model, node), "rotation")
+    constants = {"d": turning(model, direction, f"torque on {on.name}")}
+    kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
+    course = history(amplitude)
+    name = chosen_name(model, name, f"torque on {on.name}")
+    return _add(model, Element(name, kind, (on,), constants, history=course))
+
+
+def mode_force(model: Mechanism, body: str, mode: int, factor: float,
+               amplitude: ArrayLike | Callable[[float], float] | History | None = None,
+               name: str | None = None) -> Element:
+    """Force on an internal mode of a superelement: `factor` times a history.
+
+    A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
+    """
+    if body not in model.bodies:
+        raise InputError(f"superelement {body!r} is unknown: the model has "
+                         f"{', '.join(model.bodies) or 'none'}")
+    count = model.bodies[body].body.modes
+    if mode not in range(count):
+        raise InputError(f"superelement {body!r} has no mode {mode!r}: it has {count}, from 0")
+    if not np.isfinite(factor):
+        raise InputError(f"force on mode {mode} of {body!r} is {factor}: give a finite number")
+    course = history(amplitude)
+    name = chosen_name(model, name, f"force on mode {mode} of {body}")
+    return _add(model, Element(name, "mode_force", (), {"factor": float(factor)}, history=course,
+                               mode=(body, mode)))
+
+
+def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
+               function: Callable[..., None]) -> Element:
+    """Forces of a user's own, compiled into the loop.
+
+    Parameters
+    ----------
+    nodes : iterable of Node or str
+        Whose positions and velocities the function is given, and on which it acts.
+    function : callable
+        ``function(t, x, v, force)`` with arrays of all coordinates, node after node: sets
+        `force`, which comes as zeros. Numba compiles it; its derivatives are differences.
+
+    Raises
+    ------
+    InputError
+        A function that cannot be compiled, or no nodes.
+    """
+    triplets = tuple(triplet(known(model, n), "position") for n in nodes)
+    if not triplets:
+        raise InputError(f"user force {name!r} has no nodes: give those it acts on")
+    address = compile_force(name, function)
+    name = chosen_name(model, name, "user force")
+    return _add(model, Element(name, "user_force", triplets, {}, history=clock(),
+                               function=address))
+
+
+def gravity(model: Mechanism, field: ArrayLike) -> None:
+    """Uniform gravity on every body, through its (reduced) mass.
+
+    Parameters
+    ----------
+    field : (3,), planar (2,)
+        Acceleration of free fall [length/time^2].
+
+    Raises
+    ------
+    InputError
+        Not so many finite numbers.
+    """
+    model.gravity_field = vector(model, field, "gravity")
+
+
+def _add(model: Mechanism, load: Element) -> Element:
+    model.loads.append(load)
+    return load

@@ -1,0 +1,89 @@
+"""The data of a model, and how its parts are found by name."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
+
+
+@dataclass(eq=False)
+class Mechanism:
+    """A mechanism: nodes, superelements, rigid bodies, joints and forces.
+
+    Parameters
+    ----------
+    planar : bool
+        Motion in the x-y plane: positions (x, y) and one angle a node.
+    """
+
+    planar: bool = False
+    nodes: dict[str, Node] = field(default_factory=dict, init=False)
+    bodies: dict[str, Superelement] = field(default_factory=dict, init=False)
+    rigid_bodies: dict[str, Element] = field(default_factory=dict, init=False)
+    joints: list[Joint] = field(default_factory=list, init=False)
+    loads: list[Element] = field(default_factory=list, init=False)  # springs and dampers, too
+    grounds: list[Node] = field(default_factory=list, init=False)   # fixed ends of joints
+    own_names: set[str] = field(default_factory=set, init=False)    # all but default ones
+    gravity_field: NDArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.gravity_field = np.zeros(self.dimension)
+
+    @property
+    def dimension(self) -> int:
+        """Coordinates of a position."""
+        return 2 if self.planar else 3
+
+    @property
+    def rotation_size(self) -> int:
+        """Coordinates of a rotation."""
+        return 1 if self.planar else 3
+
+    @property
+    def constraints(self) -> list[Element]:
+        """The equations of all joints and drives."""
+        return [c for joint in self.joints for c in joint.constraints]
+
+    def kind_of(self, name: str) -> str:
+        """Kind of an element in this model's dimension: elements of a plane are of their own."""
+        return "planar_" + name if self.planar else name
+
+    def triplets(self) -> list[Triplet]:
+        """All triplets, each once."""
+        return list({id(t): t for n in (*self.nodes.values(), *self.grounds)
+                     for t in (n.position, n.rotation) if t is not None}.values())
+
+    def size(self) -> float:
+        """Extent of the model, at least one unit of length."""
+        return max([1.0, *(np.abs(n.point).max() for n in self.nodes.values())])
+
+    def elements(self) -> Iterator[Superelement | Element | Joint | Motion]:
+        """Everything with a name but the nodes: bodies, joints, loads, springs and drives."""
+        yield from (*self.bodies.values(), *self.rigid_bodies.values(), *self.joints, *self.loads)
+        for triplet in self.triplets():
+            yield from triplet.motions
+
+    def element(self, name: str) -> Superelement | Element | Joint | Motion:
+        """A body, joint, load, spring or drive by its name.
+
+        Raises
+        ------
+        InputError
+            Nothing, or more than one thing, has this name.
+        """
+        found = [e for e in self.elements() if e.name == name]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise InputError(f"{len(found)} elements are called {name!r}: build them with name= to "
+                             "tell them apart")
+        names = list(dict.fromkeys(e.name for e in self.elements()))
+        near = get_close_matches(str(name), names)
+        raise InputError(f"element {name!r} is unknown: " + (
+            f"did you mean {' or '.join(map(repr, near))}?" if near else
+            f"the model has {', '.join(map(repr, names)) or 'none'}"))

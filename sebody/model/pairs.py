@@ -1,0 +1,31 @@
+"""Two nodes that a joint, drive or spring acts on."""
+
+import numpy as np
+
+from sebody.errors import InputError
+from sebody.model.inputs import known, triplet
+from sebody.model.mechanism import Mechanism
+from sebody.model.nodes import ground
+from sebody.model.parts import Node
+
+NEAR = 1e-9     # of the size of the model: nodes of a joint start together
+
+
+def pair(model: Mechanism, node: Node | str, to: Node | str | None, what: str,
+         kinds: tuple[str, ...] = ("position", "rotation")) -> tuple[Node, Node]:
+    """Both nodes of a joint; the ground is a fixed node at the place of the first."""
+    a = known(model, node)
+    b = ground(model, a) if to is None else known(model, to)
+    if a is b:
+        raise InputError(f"{what}: node {a.name!r} is joined to itself: give two nodes")
+    for kind in kinds:
+        triplet(a, kind)
+        triplet(b, kind)
+    return a, b
+
+
+def check_together(model: Mechanism, a: Node, b: Node, what: str) -> None:
+    """Refuse nodes that start apart."""
+    if np.abs(b.point - a.point).max() > NEAR * model.size():
+        raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} start apart: give both the "
+                         "same point")

@@ -1,0 +1,114 @@
+"""What a mechanism is made of: triplets and nodes, bodies, the elements and joints between them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.model.histories import History
+from sebody.reduction import ReducedBody
+
+
+class Motion(NamedTuple):
+    """A prescribed motion of a triplet: its history times a direction, or about this axis."""
+
+    name: str
+    direction: NDArray
+    history: History
+
+
+@dataclass(eq=False)
+class Triplet:
+    """A block of unknowns: a position or a rotation (in a plane two coordinates or an angle).
+
+    It is free, fixed, moved in a prescribed way, or, for a position, dependent: at the end of rigid
+    arms that turn with rotations, the first one at a root.
+    """
+
+    name: str
+    start: NDArray                  # initial position; zeros for a rotation
+    rate: NDArray                   # initial velocity, or angular velocity (material = global)
+    fixed: bool = False             # not solved for: at rest or prescribed
+    motions: list[Motion] = field(default_factory=list)
+    root: "Triplet | None" = None   # of a dependent position, with its arms
+    arms: tuple[tuple["Triplet", NDArray], ...] = ()
+    given: bool = False             # its initial velocity was given by the user
+    turns: bool = False             # a rotation
+
+    @property
+    def solved(self) -> bool:
+        """Whether it is an unknown."""
+        return not self.fixed and self.root is None
+
+    def parents(self) -> list["Triplet"]:
+        """The triplets its place depends on: itself, or root and rotations of the arms."""
+        return [self] if self.root is None else [self.root, *(r for r, _ in self.arms)]
+
+
+@dataclass(eq=False)
+class Node:
+    """A named point of the model; either triplet may be absent or shared with another node."""
+
+    name: str
+    point: NDArray
+    position: Triplet | None
+    rotation: Triplet | None
+
+
+@dataclass(eq=False)
+class Superelement:
+    """A reduced body placed on nodes, with its matrices in global axes."""
+
+    name: str
+    body: ReducedBody
+    nodes: tuple[Node, ...]
+    frame: str
+    inertia: str
+    layout: str
+    alpha: NDArray          # frame weights of the positions
+    alpha_r: NDArray        # and of the rotations
+    kernel: str             # name of the generated module
+    mode_rates: NDArray     # initial velocities of the internal modes
+
+    @property
+    def positions(self) -> list[Triplet]:
+        """Position triplets in the order of the reduced coordinates."""
+        return [self.nodes[i].position for i in self.body.position_nodes]
+
+    @property
+    def rotations(self) -> list[Triplet]:
+        """Rotation triplets in the order of the reduced coordinates."""
+        return [self.nodes[i].rotation for i in self.body.rotation_nodes]
+
+
+@dataclass(eq=False)
+class Element:
+    """A rigid body, load, spring, or constraint of a joint: a generated kernel on triplets."""
+
+    name: str
+    kind: str                       # of its kernel
+    triplets: tuple[Triplet, ...]   # positions first, then rotations
+    constants: Mapping[str, ArrayLike]      # by the names that the kernel has for them
+    multipliers: int = 0
+    history: History | None = None
+    mode: tuple[str, int] | None = None     # superelement and internal mode it acts on
+    function: object = None                 # a user's compiled one, kept alive
+
+    @property
+    def direction(self) -> NDArray:
+        """Of a force or torque."""
+        return self.constants["d"]
+
+
+@dataclass(eq=False)
+class Joint:
+    """A joint or drive: its constraints, none where its nodes are fixed or share triplets."""
+
+    name: str
+    constraints: tuple[Element, ...]
+
+    @property
+    def multipliers(self) -> int:
+        """Number of its equations."""
+        return sum(c.multipliers for c in self.constraints)

@@ -1,0 +1,98 @@
+"""Springs and dampers of a model: between two points, about an axis, along and about all axes."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.errors import InputError
+from sebody.model.inputs import axes, chosen_name
+from sebody.model.mechanism import Mechanism
+from sebody.model.pairs import check_together, pair
+from sebody.model.parts import Element, Node, Triplet
+
+
+def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float = 0.0,
+           damping: float = 0.0, length: float | None = None, cubic: float = 0.0,
+           name: str | None = None) -> Element:
+    """Spring and damper between two points: ``F = k u + k3 u^3 + c u'``, u the stretch.
+
+    Parameters
+    ----------
+    stiffness, damping, cubic : float
+        k, c and k3.
+    length : float, optional
+        Without force; that at the start by default.
+
+    Raises
+    ------
+    InputError
+        Numbers that are negative, or nodes that start together.
+    """
+    a, b = pair(model, node, to, "spring", ("position",))
+    start = np.linalg.norm(b.point - a.point)
+    if not start > 0:
+        raise InputError(f"spring: nodes {a.name!r} and {b.name!r} start together, so it has "
+                         "no direction: use a bushing")
+    length = start if length is None else length
+    _check("spring", stiffness=stiffness, cubic=cubic, damping=damping, length=length)
+    return _add(model, name, "spring", a, (a.position, b.position),
+                {"k": stiffness, "k3": cubic, "c": damping, "length": length})
+
+
+def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
+                   damping: float = 0.0, axis: ArrayLike = (0.0, 0.0, 1.0),
+                   to: Node | str | None = None, rest: float = 0.0, cubic: float = 0.0,
+                   name: str | None = None) -> Element:
+    """Spring and damper about the axis of a revolute joint: ``M = k u + k3 u^3 + c u'``.
+
+    `rest` is the angle of `node` against `to` (the ground) without moment, zero at the start.
+    In space the angle stays within half a turn of the start.
+    """
+    what = "torsion spring"
+    a, b = pair(model, node, to, what, ("rotation",))
+    if not np.isfinite(rest):
+        raise InputError(f"torsion spring at {a.name!r}: rest is {rest}: give a number")
+    _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
+    constants = {"k": stiffness, "k3": cubic, "c": damping, "rest": rest}
+    if not model.planar:
+        constants |= zip(("n", "m"), axes(model, axis, what, a)[1:], strict=True)
+    return _add(model, name, what, a, (a.rotation, b.rotation), constants)
+
+
+def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
+            stiffness: ArrayLike = 0.0, damping: ArrayLike = 0.0,
+            turning_stiffness: ArrayLike = 0.0, turning_damping: ArrayLike = 0.0,
+            name: str | None = None) -> Element:
+    """Springs and dampers along and about the axes of `node`, between nodes at one point.
+
+    Each is a number, or one for each axis. Turns count as their sine: stay well below half a
+    right angle.
+    """
+    a, b = pair(model, node, to, "bushing")
+    check_together(model, a, b, "bushing")
+    constants = {"k": _spread(stiffness, model.dimension), "c": _spread(damping, model.dimension),
+                 "kt": _spread(turning_stiffness, model.rotation_size),
+                 "ct": _spread(turning_damping, model.rotation_size)}
+    if not all(np.isfinite(v).all() and (v >= 0).all() for v in constants.values()):
+        raise InputError(f"bushing at {a.name!r} has a coefficient that is negative or no "
+                         "number: give finite numbers >= 0")
+    return _add(model, name, "bushing", a, (a.position, b.position, a.rotation, b.rotation),
+                constants)
+
+
+def _add(model: Mechanism, name: str | None, what: str, a: Node, triplets: tuple[Triplet, ...],
+         constants: dict[str, ArrayLike]) -> Element:
+    name = chosen_name(model, name, f"{what} at {a.name}")
+    kind = model.kind_of(what.replace(" ", "_"))
+    model.loads.append(Element(name, kind, triplets, constants))
+    return model.loads[-1]
+
+
+def _spread(value: ArrayLike, size: int) -> NDArray:
+    """A coefficient for each axis."""
+    return np.broadcast_to(np.asarray(value, dtype=float), (size,))
+
+
+def _check(what: str, **values: float) -> None:
+    for name, value in values.items():
+        if not (np.isfinite(value) and value >= 0):
+            raise InputError(f"{what}: {name} is {value}: give a finite number >= 0")

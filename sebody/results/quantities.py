@@ -1,0 +1,194 @@
+"""Names of what a result holds, and how each is read: two tables.
+
+``<owner>.<quantity>`` is looked up in `OWNERS`; quantities of the whole model are in `OF_MODEL`.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.kernels.layout import ENERGIES
+from sebody.model.parts import Triplet
+from sebody.results.recording import Recording, record_counts
+
+
+class NodeQuantity(NamedTuple):
+    """A history of one of the two triplets of a node."""
+
+    turning: bool           # of the rotation, else of the position
+    read: Callable[[Recording, Triplet, slice], NDArray]    # the slice: where its coordinates are
+    saved: bool = True      # part of the output file
+
+
+class Owner(NamedTuple):
+    """A kind of named things and what is recorded of each."""
+
+    kind: str
+    offer: str              # for the message about an unknown name
+    names: Callable[[Recording], Iterable[str]]
+    quantities: Mapping[str, Callable[[Recording, str], NDArray]]
+
+
+def look_up(recording: Recording, name: str) -> NDArray:
+    """History of a quantity by its full name.
+
+    Raises
+    ------
+    InputError
+        A name that nothing has, or a quantity its owner does not have.
+    """
+    if name in OF_MODEL:
+        return OF_MODEL[name](recording)
+    owner, _, quantity = name.rpartition(".")
+    found = [one for one in OWNERS if owner in one.names(recording)]
+    for one in found:
+        if quantity in one.quantities:
+            return one.quantities[quantity](recording, owner)
+    if found:
+        raise InputError(f"{quantity!r} is unknown: " + "; ".join(
+            f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
+    offers = [one.offer.format(names=", ".join(one.names(recording)) or f"any {one.kind}",
+                               quantities=" and ".join(one.quantities)) for one in OWNERS]
+    raise InputError(f"{name!r} is unknown: {'; '.join(offers)}; of the model "
+                     f"{', '.join(OF_MODEL)}")
+
+
+def saved(recording: Recording) -> list[str]:
+    """Names of the histories an output file holds."""
+    names = ["t"]
+    for name, node in recording.model.nodes.items():
+        for quantity, (turning, _, kept) in OF_NODE.items():
+            triplet = node.rotation if turning else node.position
+            if kept and triplet is not None and id(triplet) in recording.numbering.triplets:
+                names.append(f"{name}.{quantity}")
+    return [*names, "energy.kinetic", "energy.strain", "energy.potential", "energy.external_work",
+            "momentum", "angular_momentum"]
+
+
+# the model
+
+
+def _energy(name: str, recording: Recording) -> NDArray:
+    values = ENERGIES.slices(record_counts(recording.numbering))[name]
+    part = recording.energies[:, values]
+    return part if values.stop - values.start > 1 else part[:, 0]
+
+
+OF_MODEL: dict[str, Callable[[Recording], NDArray]] = {
+    "t": lambda recording: recording.recorded("t")[:, 0],
+    "energy.external_work": lambda recording: recording.recorded("works").sum(axis=1),
+    "constraints.position": lambda recording: recording.constraint_residuals[:, 0],
+    "constraints.velocity": lambda recording: recording.constraint_residuals[:, 1],
+    "energy.kinetic": partial(_energy, "kinetic"),
+    "energy.strain": partial(_energy, "strain"),
+    "momentum": partial(_energy, "momentum"),
+    "angular_momentum": partial(_energy, "moment"),
+    "energy.potential": partial(_energy, "potential"),
+}
+
+
+# nodes
+
+
+def _coordinates(part: str, recording: Recording, triplet: Triplet, at: slice) -> NDArray:
+    return recording.recorded(part)[:, at]
+
+
+def _rotation(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
+    """Rotation matrices, (n, 3, 3); in a plane angles."""
+    if recording.model.planar:
+        return recording.recorded("q")[:, at.start]
+    k = recording.numbering.rotations[id(triplet)]
+    return recording.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
+
+
+def _angular_velocity(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
+    v = recording.recorded("v")
+    if recording.model.planar:
+        return v[:, at.start]
+    return np.einsum("nij,nj->ni", _rotation(recording, triplet, at), v[:, at])
+
+
+def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
+    """What the support of a fixed or prescribed triplet exerts, in global axes."""
+    if not triplet.fixed:
+        raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
+                         "reaction; a joint's force is in its multipliers")
+    values = recording.forces.sums[:, at]
+    if id(triplet) not in recording.numbering.rotations:
+        return values
+    return np.einsum("nij,nj->ni", _rotation(recording, triplet, at), values)
+
+
+def _of_node(quantity: str, recording: Recording, name: str) -> NDArray:
+    node, numbering = recording.model.nodes[name], recording.numbering
+    turning, read, _ = OF_NODE[quantity]
+    triplet = node.rotation if turning else node.position
+    if triplet is None or id(triplet) not in numbering.triplets:
+        raise InputError(f"node {name!r} has no {quantity}: the triplet is not in the model")
+    first = numbering.triplets[id(triplet)]
+    return read(recording, triplet, slice(first, first + triplet.start.size))
+
+
+OF_NODE = {
+    "position": NodeQuantity(False, partial(_coordinates, "q")),
+    "rotation": NodeQuantity(True, _rotation),
+    "velocity": NodeQuantity(False, partial(_coordinates, "v")),
+    "angular_velocity": NodeQuantity(True, _angular_velocity),
+    "acceleration": NodeQuantity(False, partial(_coordinates, "a"), saved=False),
+    "reaction": NodeQuantity(False, _reaction, saved=False),
+    "reaction_moment": NodeQuantity(True, _reaction, saved=False),
+}
+
+
+# bodies, joints, and what does work
+
+
+def _bodies(recording: Recording) -> dict:
+    return recording.model.bodies | recording.model.rigid_bodies
+
+
+def _modes(recording: Recording, name: str) -> NDArray:
+    if name not in recording.model.bodies:
+        raise InputError(f"body {name!r} is rigid: it has forces, but no modes")
+    first = recording.numbering.modes[name]
+    return recording.recorded("q")[:, first:first + recording.model.bodies[name].body.modes]
+
+
+def _body_forces(recording: Recording, name: str) -> NDArray:
+    """Forces of neighbours and supports on a body's nodes, its inertia balanced."""
+    part = _bodies(recording)[name]
+    first = recording.numbering.forces_at[id(part)]
+    width = (part.body.stiffness.shape[0] if name in recording.model.bodies else
+             sum(t.start.size for t in part.triplets))
+    return recording.forces.elements[:, first:first + width]
+
+
+def _multipliers(recording: Recording, name: str) -> NDArray:
+    equations = [c for c in recording.model.constraints if c.name == name]
+    if not equations:
+        raise InputError(f"joint {name!r} takes no equation, so it has no multipliers: what it "
+                         "joins is shared or fixed; the force on a fixed node is its reaction")
+    firsts = [(recording.numbering.multipliers[id(c)], c.multipliers) for c in equations]
+    return recording.recorded("q")[:, [first + k for first, count in firsts for k in range(count)]]
+
+
+def _work(recording: Recording, name: str) -> NDArray:
+    return recording.recorded("works")[:, recording.numbering.item_names.index(name)]
+
+
+OWNERS = (
+    Owner("node", "nodes are {names}", lambda recording: recording.model.nodes,
+          {name: partial(_of_node, name) for name in OF_NODE}),
+    Owner("body", "of bodies ({names}) there are {quantities}", _bodies,
+          {"modes": _modes, "forces": _body_forces}),
+    Owner("joint", "of joints {quantities}",
+          lambda recording: [joint.name for joint in recording.model.joints],
+          {"multipliers": _multipliers}),
+    Owner("load", "of {names} {quantities}", lambda recording: recording.numbering.item_names,
+          {"work": _work}),
+)

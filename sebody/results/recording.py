@@ -1,0 +1,63 @@
+"""What a run leaves, as plain data: everything a result is read from."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from numpy.typing import NDArray
+
+from sebody.assembly.numbering import Numbering
+from sebody.engine.state import State
+from sebody.engine.system import System
+from sebody.kernels.layout import RECORD
+from sebody.model.mechanism import Mechanism
+from sebody.results.postprocessing import Forces, constraint_residuals, energies, forces
+
+
+class Start(NamedTuple):
+    """What a simulation did before its first step."""
+
+    changed: dict[str, float]       # triplets whose velocity was solved for, and by how much
+    redundant: tuple[str, ...]      # joints with constraints that others contain
+
+
+@dataclass(eq=False)
+class Recording:
+    """A model, its arrays, and the states a run has recorded."""
+
+    model: Mechanism
+    numbering: Numbering
+    system: System
+    state: State                    # the one the run has reached
+    rows: NDArray                   # (n, numbers of `layout.RECORD`) recorded states
+    seconds: float                  # in the compiled loop
+    failure: str = ""
+    start: Start | None = None
+    warnings: tuple[str, ...] = ()  # what the run was warned of, see sebody.analysis.limits
+    error: float | None = None      # estimated, in what is allowed: see sebody.analysis.accuracy
+    all_seconds: float = 0.0        # of the runs that led to it, too
+
+    def recorded(self, name: str) -> NDArray:
+        """History of one of the parts of `layout.RECORD`, (n, size)."""
+        return self.rows[:, RECORD.slices(record_counts(self.numbering))[name]]
+
+    @cached_property
+    def energies(self) -> NDArray:
+        """Energies and momenta of every recorded state, rows of `layout.ENERGIES`."""
+        return energies(self.system, self.state, self.rows)
+
+    @cached_property
+    def forces(self) -> Forces:
+        """Forces in every recorded state."""
+        return forces(self.system, self.state, self.rows)
+
+    @cached_property
+    def constraint_residuals(self) -> NDArray:
+        """Largest residuals of the constraints and of their rates, (n, 2)."""
+        return constraint_residuals(self.system, self.state, self.rows)
+
+
+def record_counts(numbering: Numbering) -> dict[str, int]:
+    """What the sizes in `layout.RECORD` and `layout.ENERGIES` are for a model."""
+    return {"items": len(numbering.histories), "coordinates": numbering.total,
+            "rotations": len(numbering.rotations), "bodies": len(numbering.modes)}

@@ -1,0 +1,178 @@
+"""Kernels write through pointers: what does not fit them is refused before anything runs."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from sebody import InputError, Model
+from sebody.assembly import contracts
+from sebody.assembly.batches import superelement_constants
+from sebody.assembly.build import build
+from sebody.fem import Section
+from sebody.kernels.layout import INDEX, Row
+from sebody.kernels.loader import element_kernel, load
+from sebody.model.histories import history
+
+Z = (0.0, 0.0, 1.0)
+SECTION = Section(area=4e-4, inertia_y=1.33e-8, inertia_z=1.33e-8, torsion=2.25e-8,
+                  youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+
+
+def driven():
+    """Two bodies on a hinge that a drive turns, with a spring."""
+    model = Model()
+    for name, x in (("a", 0.0), ("b", 0.0)):
+        model.rigid_body(name, model.node(name, (x, 0, 0)), 1.0, (0.1, 0.2, 0.2))
+    model.fix("b")
+    model.revolute("a", Z, to="b", explicit=True, name="hinge")
+    model.drive_angle("a", [(0.0, 0.0), (1.0, 0.5)], Z, to="b", name="drive")
+    model.torsion_spring("a", 3.0, name="spring")
+    return model
+
+
+def beam():
+    model = Model()
+    ends = model.node("base", (0, 0, 0)), model.node("tip", (1.0, 0, 0))
+    model.beam("beam", ends, SECTION, 1)
+    return model
+
+
+def constraint(model, name, k=0):
+    return model.element(name).constraints[k]
+
+
+def fewer_multipliers(m):
+    constraint(m, "hinge", 1).multipliers = 1
+
+
+def more_multipliers(m):
+    constraint(m, "hinge", 1).multipliers = 3
+
+
+def fewer_triplets(m):
+    one = constraint(m, "hinge", 1)
+    one.triplets = one.triplets[:1]
+
+
+def no_history(m):
+    constraint(m, "drive").history = None
+
+
+def a_history(m):
+    constraint(m, "hinge").history = history(None)
+
+
+def short_row(m):
+    del m.element("spring").constants["m"]
+
+
+def misspelt(m):
+    constants = m.element("spring").constants
+    constants["axis"] = constants.pop("m")
+
+
+def wrong_shape(m):
+    m.element("spring").constants["m"] = np.zeros(2)
+
+
+def another_kernel(m):
+    constraint(m, "hinge").kind = "on_plane"
+
+
+def a_body_that_works(m):
+    m.element("a").kind = "torque"
+
+
+@pytest.mark.parametrize("damage, message", [
+    (fewer_multipliers, "'hinge' does not fit its kernel .*element_parallel: it has 7 unknowns and "
+                        "the kernel 8; it has 1 multipliers and the kernel 2: regenerate the "
+                        "kernels with python -m sebody.derive, or reinstall sebody"),
+    (more_multipliers, "it has 9 unknowns and the kernel 8; it has 3 multipliers and the kernel 2"),
+    (fewer_triplets, "'hinge' .*element_parallel: .*it has 1 rotation matrices and the kernel 2"),
+    (no_history, "'drive' .*element_turn_drive: it has no history and the kernel reads one"),
+    (a_history, "'hinge' .*element_coincident: it has a history and the kernel reads none"),
+    (short_row, "'spring' .*element_torsion_spring: constants: the kernel reads k, k3, c, rest, n, "
+                "m; given are k, k3, c, rest, n:"),
+    (misspelt, "the kernel reads k, k3, c, rest, n, m; given are k, k3, c, rest, n, axis"),
+    (wrong_shape, r"constants: m has shape \(2,\), the kernel reads \(3,\)"),
+    (another_kernel, "'hinge' .*element_on_plane: it has 9 unknowns and the kernel 10; .*it has 0 "
+                     "rotation matrices and the kernel 1"),
+    (a_body_that_works, "'a' .*element_torque: .*it is no item and the kernel writes the power")])
+def test_elements_that_do_not_fit_their_kernel(damage, message):
+    model = driven()
+    build(model)
+    damage(model)
+    with pytest.raises(InputError, match=message):
+        build(model)
+
+
+def test_a_joint_built_with_a_multiplier_too_few(monkeypatch):
+    """As if the formula of a joint had changed and the model had not followed."""
+    from sebody.model import joints
+
+    right = joints._parallel
+    monkeypatch.setattr(joints, "_parallel",
+                        lambda *given: right(*given)._replace(multipliers=1))
+    with pytest.raises(InputError, match="'hinge' does not fit its kernel .*element_parallel: it "
+                                         "has 7 unknowns and the kernel 8"):
+        build(driven())
+
+
+@pytest.mark.parametrize("kernel, message", [
+    ("superelement_f3_converged_mean_b", "'beam' does not fit its kernel .*: it has 2 positions "
+                                         "and the kernel 3; it has 2 rotations and the kernel 3"),
+    ("superelement_f2m4_converged_mean_b", "it has 0 modes and the kernel 4"),
+    ("superelement_f2d_converged_mean_b", "it has no damping matrix and the kernel reads one"),
+    ("superelement_planar_f2_converged_mean_b", "it is spatial and the kernel is not")])
+def test_superelements_that_do_not_fit_their_kernel(kernel, message):
+    model = beam()
+    model.element("beam").kernel = kernel
+    with pytest.raises(InputError, match=message):
+        build(model)
+
+
+def test_a_superelement_without_a_constant(monkeypatch):
+    """As if an inertia option needed one more and assembly had not followed."""
+    from sebody.assembly import batches
+
+    def fewer(body):
+        return {k: v for k, v in superelement_constants(body).items() if k != "mc"}
+    monkeypatch.setattr(batches, "superelement_constants", fewer)
+    with pytest.raises(InputError, match="'beam' does not fit its kernel .*: constants: the kernel "
+                                         "reads alphas, .*, mc, masses; given are .*mass_rows, "
+                                         "masses"):
+        build(beam())
+
+
+def test_rows_are_those_of_the_table():
+    """Index and constants of a model, taken apart by the tables, are what the model says."""
+    model = driven()
+    model.point_mass("c", model.node("c", (2.0, 0, 0), keeps="translation"), 7.0)
+    system, numbering = build(model)
+    spring, kernel = model.element("spring"), element_kernel("torsion_spring")
+    k = system.address.tolist().index(kernel.kernel.address)
+    counts = {"N_ROTATIONS": 2, "n": 6}
+    index = INDEX.unpack(counts, system.index[system.at_index[k]:][:INDEX.size(counts)])
+    assert index["item"] == numbering.item_names.index("spring")
+    assert index["nodes"].tolist() == [numbering.rotations[id(t)] for t in spring.triplets]
+    row = Row("constants", kernel.CONSTANTS)
+    constants = row.unpack({}, system.constants[int(index["constants"]):][:row.size({})])
+    assert constants["k"] == 3.0 and constants["m"].tolist() == spring.constants["m"].tolist()
+
+
+def test_a_superelements_constants_come_back_from_its_row():
+    body = beam().element("beam")
+    kernel, counts = load(body.kernel), contracts.counts_of(body)
+    values = superelement_constants(body)
+    row = contracts.constants_row("beam", kernel, counts, values)
+    back = Row("constants", kernel.CONSTANTS).unpack(counts, row)
+    assert back.keys() == values.keys()
+    assert all(np.array_equal(back[name], values[name]) for name in values)
+
+
+def test_index_rows_with_too_few_rotations():
+    kernel = SimpleNamespace(__name__="kernel", N_ROTATIONS=2)
+    with pytest.raises(InputError, match=r"'x' does not fit its kernel kernel: .*nodes has shape "
+                                         r"\(1,\), the kernel reads \(2,\)"):
+        contracts.index_row("x", kernel, [0, 1, 2], constants=0, frame=0, item=0, nodes=[4])

@@ -1,0 +1,74 @@
+"""The editable install: found from anywhere, also beside a clone."""
+
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FOLDERS = ("sebody", "derive", "generated", "examples")
+FILES = ("pyproject.toml", "README.md", "LICENSE", ".build")
+SCRIPT = """
+import site, sys
+libraries, editable = sys.argv[1:]
+site.addsitedir(editable)
+site.addsitedir(editable)       # which must not do anything more
+sys.path.append(libraries)      # of what sebody needs; an installation there is not looked at
+import sebody.derive, sebody.scenes
+from sebody import Model
+print(sebody.__file__)
+print(sys.meta_path[0].__module__)
+"""
+
+
+@pytest.fixture(scope="module")
+def beside_a_clone(tmp_path_factory):
+    """A folder with a clone named sebody in it, and the contents of its editable wheel."""
+    folder = tmp_path_factory.mktemp("projects")
+    clone = folder / "sebody"
+    clone.mkdir()
+    for name in (*FOLDERS, *FILES):
+        (clone / name).symlink_to(ROOT / name)
+    build = ("import sys; sys.path.insert(0, '.build'); import backend; "
+             "print(backend.build_editable(sys.argv[1]))")
+    done = subprocess.run([sys.executable, "-c", build, str(folder)], cwd=clone, text=True,
+                          capture_output=True, check=True)
+    with zipfile.ZipFile(folder / done.stdout.split()[-1]) as wheel:
+        wheel.extractall(folder / "site")
+    return folder
+
+
+def test_a_script_beside_a_clone_imports_the_package(beside_a_clone):
+    script = beside_a_clone / "script.py"
+    script.write_text(SCRIPT)
+    libraries = Path(np.__file__).parents[1]
+    done = subprocess.run(
+        [sys.executable, "-S", str(script), str(libraries), str(beside_a_clone / "site")],
+        cwd=beside_a_clone, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    file, first = done.stdout.splitlines()
+    assert Path(file).samefile(ROOT / "sebody" / "__init__.py")
+    assert first.startswith("__editable__")
+
+
+def test_record_lists_what_the_wheel_holds(beside_a_clone):
+    """pip refuses nothing here, but removes only what is recorded."""
+    site = beside_a_clone / "site"
+    record, = site.glob("*.dist-info/RECORD")
+    listed = {line.split(",")[0]: line.split(",")[1:] for line in record.read_text().split()}
+    assert set(listed) == {str(p.relative_to(site)) for p in site.rglob("*") if p.is_file()}
+    for name, (digest, size) in listed.items():
+        if digest:
+            assert int(size) == (site / name).stat().st_size
+
+
+def test_every_package_is_installed():
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
+    names = {folder: name for name, folder in settings["package-dir"].items()}
+    found = {".".join([names[path.parts[0]], *path.parts[1:]]) for folder in FOLDERS
+             for path in (p.parent.relative_to(ROOT) for p in (ROOT / folder).rglob("__init__.py"))}
+    assert sorted(settings["packages"]) == sorted(found)

@@ -1,0 +1,51 @@
+"""Names a user imports: what every room offers, and where."""
+
+import inspect
+import re
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+ROOMS = {
+    "sebody": {"InputError", "LimitWarning", "Model", "Result", "SebodyError", "Simulation",
+               "SimulationError", "Tolerance", "generalized_alpha", "hht", "simulate",
+               "simulate_within", "with_corners"},
+    "sebody.analysis": {"Linearization", "Modes", "Vibrations", "equilibrium", "linearize",
+                        "modes", "resume", "save_state", "spin_limit", "vibrations"},
+    "sebody.results": {"Recording", "Result", "Start", "save_picture"},
+    "sebody.fem": {"FEModel", "Section", "frame", "hexahedral_block", "planar_beam",
+                   "straight_beam"},
+    "sebody.reduction": {"ComponentModes", "ReducedBody", "body_weights", "component_modes",
+                         "craig_bampton", "frame_weights"},
+    "sebody.io": set(),
+}
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_offers_its_names(room):
+    module = import_module(room)
+    assert set(getattr(module, "__all__", ())) == ROOMS[room]
+    assert module.__doc__
+    for name in ROOMS[room]:
+        assert inspect.getdoc(getattr(module, name)), f"{room}.{name} says nothing of itself"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_readme_lists_the_names(room):
+    text = (Path(__file__).parents[1] / "README.md").read_text()
+    row = re.search(rf"^\| `{room}` \| (.*) \|$", text, re.MULTILINE)
+    assert set(re.findall(r"`(\w+)`", row[1])) == ROOMS[room]
+
+
+def test_every_name_has_one_place():
+    """But for the class of what runs return, which has a room of its own."""
+    names = [name for room in ROOMS.values() for name in room]
+    assert {name for name in names if names.count(name) > 1} == {"Result"}
+
+
+def test_names_of_submodules_do_not_hide_functions():
+    """`from sebody.reduction import craig_bampton` is the function, not the file of that name."""
+    for room, names in ROOMS.items():
+        for name in names:
+            assert not inspect.ismodule(getattr(import_module(room), name))
