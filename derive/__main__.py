@@ -15,11 +15,10 @@ from pathlib import Path
 import sebody.generated
 from sebody.derive.compiler import Variant, compile_kernel, file_name
 from sebody.derive.kernels.layouts import Layout, LayoutError, fits
-from sebody.derive.kernels.manifest import (
-    ELEMENTS,
+from sebody.derive.kernels.manifest import ELEMENTS, SUPERELEMENTS
+from sebody.derive.kernels.options import (
     FRAMES,
     INERTIA_OPTIONS,
-    SUPERELEMENTS,
     frame_traits,
     inertia_traits,
 )
@@ -103,12 +102,13 @@ def main(arguments: list[str] | None = None) -> int:
     except LayoutError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    count = sum(name.startswith(PREFIXES) for name in texts)
     if options.check:
         found = differences(directory, texts, orphans=not options.layouts)
-        print("\n".join(found) if found else f"{len(texts)} kernels are up to date")
+        print("\n".join(found) if found else f"{count} kernels are up to date")
         return 1 if found else 0
     changed = write(directory, texts)
-    print(f"{len(texts)} kernels derived, {len(changed)} written to {directory}")
+    print(f"{count} kernels derived, {len(changed)} written to {directory}")
     return 0
 
 

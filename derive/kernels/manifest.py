@@ -1,25 +1,12 @@
-"""What is shipped: frames and inertia options by name, superelements, and all elements.
+"""The kernels that are shipped: one table of superelements, and all elements of `catalogue`.
 
 A kernel fuses one frame and one inertia option, so the loop makes one call an element and the
 compiler sees all of its arithmetic. The formulas are derived once for each and only combined here:
 sources add, and files multiply no further than this table; any other combination is made on demand.
 """
 
-from sebody.derive.formulas.frames import converged_mean, mean, mean_small, positions
-from sebody.derive.formulas.inertia import option_a, option_b
 from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
-from sebody.kernels.layout import FrameTraits, InertiaTraits
 
-FRAMES = {
-    "converged_mean": converged_mean.FRAME,     # the first that a layout can carry is its default
-    "mean": mean.FRAME,
-    "mean_small": mean_small.FRAME,
-    "positions": positions.FRAME,
-}
-INERTIA_OPTIONS = {
-    "a": option_a.INERTIA,
-    "b": option_b.INERTIA,
-}
 SUPERELEMENTS = (
     # layout, frame, inertia option; pinned numbers of modes where beams mostly need no others
     ("f2", "converged_mean", "b"),
@@ -44,13 +31,3 @@ SUPERELEMENTS = (
     ("planar-f3", "converged_mean", "b"),
 )
 ELEMENTS = tuple(CATALOGUE)
-
-
-def frame_traits() -> dict[str, FrameTraits]:
-    """What each frame needs."""
-    return {name: option.traits for name, option in FRAMES.items()}
-
-
-def inertia_traits() -> dict[str, InertiaTraits]:
-    """What each inertia option needs."""
-    return {name: option.traits for name, option in INERTIA_OPTIONS.items()}

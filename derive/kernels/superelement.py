@@ -17,7 +17,7 @@ from sebody.derive.formulas.inertia.option import Inertia, InertiaOption
 from sebody.derive.formulas.kinematics import local_displacement, local_velocity
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.kernels.layouts import Layout, check_frame
-from sebody.derive.kernels.manifest import FRAMES, INERTIA_OPTIONS, frame_traits
+from sebody.derive.kernels.options import FRAMES, INERTIA_OPTIONS, frame_traits
 from sebody.derive.symbolic.rotations import stumpff, tangent_inverse
 from sebody.derive.symbolic.spaces import Space
 from sebody.derive.symbolic.steps import (

@@ -1,1 +1,1 @@
-"""Floating frames, one file each; `sebody.derive.kernels.manifest` lists them."""
+"""Floating frames, one file each; `sebody.derive.kernels.options` lists them."""
