@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -63,3 +64,11 @@ def test_record_lists_what_the_wheel_holds(beside_a_clone):
     for name, (digest, size) in listed.items():
         if digest:
             assert int(size) == (site / name).stat().st_size
+
+
+def test_every_package_is_installed():
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
+    names = {folder: name for name, folder in settings["package-dir"].items()}
+    found = {".".join([names[path.parts[0]], *path.parts[1:]]) for folder in FOLDERS
+             for path in (p.parent.relative_to(ROOT) for p in (ROOT / folder).rglob("__init__.py"))}
+    assert sorted(settings["packages"]) == sorted(found)

@@ -37,7 +37,10 @@ def test_node_frame_is_less_accurate():
 
 @pytest.mark.parametrize("alpha, expected", [(-0.05, 9.3e-4), (-0.1, 9.6e-4)])
 def test_hht_tip_error(alpha, expected):
-    """Errors of an independent prototype; the reference is another than here, hence 5 %."""
+    """As measured with another program, which is not in this repository, against its reference.
+
+    Neither follows from a formula; 5 % allow for the two digits and the other reference.
+    """
     assert tip_error(run(alpha=alpha)) == pytest.approx(expected, rel=0.05)
 
 

@@ -1,7 +1,7 @@
 """``sebody atlas``: where methods fail, what theory says of it, what is measured, what is done.
 
-Every row of the table is a number that theory or another program predicts, or that says what the
-program is to do, and that a run has to show; numbers that are only measured stand alone.
+Every row of the table is a number that a run has to show: theory or another program predicts it,
+or it says what this program is to do there.
 """
 
 import warnings
@@ -61,10 +61,8 @@ def explore(name: str) -> Finding:
 def report(finding: Finding) -> str:
     """Theory, what the program does, and a line for every number."""
     lines = [finding.title, f"  theory   {finding.theory}", f"  program  {finding.program}"]
-    wide = max(len(what) for what in (*(row.what for row in finding.rows), *finding.remarks))
+    wide = max(len(row.what) for row in finding.rows)
     lines += [f"    {row.what:{wide}}  {row.source:9} {row.expected:<12.6g} "
               f"measured {row.measured:<12.6g} {'ok' if row.passed else 'DIFFERS'}"
               for row in finding.rows]
-    lines += [f"    {what:{wide}}  {'':22} measured {value:<12.6g}"
-              for what, value in finding.remarks.items()]
     return "\n".join(lines)

@@ -30,7 +30,7 @@ class Row(NamedTuple):
 
 @dataclass
 class Finding:
-    """A case: each row is one number known beforehand, each remark one that is only measured."""
+    """A case: each row is one number known beforehand."""
 
     title: str
     theory: str             # what it says
@@ -38,6 +38,5 @@ class Finding:
     xlabel: str
     ylabel: str
     rows: list[Row] = field(default_factory=list)
-    remarks: dict[str, float] = field(default_factory=dict)
     curves: dict[str, tuple[ArrayLike, ArrayLike]] = field(default_factory=dict)
     logarithmic: str = ""   # axes, "x", "y" or "xy"
