@@ -15,11 +15,12 @@ FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.g
 ROOMS = {
     "errors": set(),
     "kernels": set(),
+    "generated": {"kernels"},
     "engine": {"kernels"},
     "fem": set(),
     "reduction": {"fem"},
     "io": {"fem"},
-    "model": {"kernels", "fem", "reduction"},
+    "model": {"kernels", "generated", "fem", "reduction"},     # of generated the options alone
     "assembly": {"kernels", "engine", "reduction", "model"},
     "results": {"kernels", "engine", "model", "assembly"},
     "analysis": {"kernels", "engine", "model", "assembly", "results"},
@@ -28,7 +29,6 @@ ROOMS = {
     "studies": {"kernels", "engine", "fem", "reduction", "model", "assembly", "results",
                 "analysis", "scenes"},
     "cli": {"kernels", "results", "analysis", "scenes", "studies"},
-    "generated": {"kernels"},
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}

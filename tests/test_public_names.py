@@ -1,7 +1,9 @@
 """Names a user imports: what every room offers, and where."""
 
 import inspect
+import re
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
@@ -27,6 +29,13 @@ def test_a_room_offers_its_names(room):
     assert module.__doc__
     for name in ROOMS[room]:
         assert inspect.getdoc(getattr(module, name)), f"{room}.{name} says nothing of itself"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_readme_lists_the_names(room):
+    text = (Path(__file__).parents[1] / "README.md").read_text()
+    row = re.search(rf"^\| `{room}` \| (.*) \|$", text, re.MULTILINE)
+    assert set(re.findall(r"`(\w+)`", row[1])) == ROOMS[room]
 
 
 def test_every_name_has_one_place():

@@ -18,13 +18,14 @@ from sebody.engine.state import (
 )
 from sebody.engine.system import System
 from sebody.kernels.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
-from sebody.model.model import Model
+from sebody.model.mechanism import Mechanism
 from sebody.results.recording import record_counts
 
 SLOW_CONTRACTION = 0.95     # what Newton's iteration is taken to contract by before it was seen
 
 
-def allocate(model: Model, system: System, numbering: Numbering, h: float, dense: bool) -> State:
+def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
+             dense: bool) -> State:
     """The state of a model at t = 0, without accelerations and multipliers.
 
     Parameters
@@ -66,7 +67,7 @@ def allocate(model: Model, system: System, numbering: Numbering, h: float, dense
     return state
 
 
-def _start(model: Model, numbering: Numbering) -> tuple[NDArray, NDArray]:
+def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
     """Initial places and velocities of all coordinates."""
     q, v = np.zeros((2, numbering.total))
     for node in (*model.nodes.values(), *model.grounds):

@@ -19,7 +19,7 @@ from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.kernels.layout import ACCELERATION, RESIDUAL, VELOCITY
-from sebody.model.model import Model
+from sebody.model.mechanism import Mechanism
 from sebody.results.recording import Start
 
 WHAT = "the initial state"
@@ -27,7 +27,7 @@ SMALL = 1e-8            # residuals of constraints, relative to lengths and velo
 HEAVY = 1e10            # mass that keeps velocities the user gave
 
 
-def start(model: Model, system: System, numbering: Numbering, state: State) -> Start:
+def start(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
     """Fit the velocities to the constraints, then solve for accelerations and multipliers.
 
     Raises
@@ -104,7 +104,7 @@ def _check(values: NDArray, size: float, what: str, multipliers: NDArray, number
                              f"{remedy}")
 
 
-def _fit_velocities(model: Model, system: System, numbering: Numbering, state: State,
+def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, state: State,
                     masses: csc_matrix, multipliers: NDArray) -> dict[str, float]:
     """Change velocities as little as the kinetic energy allows; those given stay."""
     if not multipliers.size:

@@ -14,7 +14,7 @@ from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
 from sebody.kernels.layout import RECORD
-from sebody.model.model import Model
+from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 from sebody.results.recording import record_counts
 
@@ -54,7 +54,7 @@ class Watch:
                          "small deflection; keep a rotation and take another frame, or a node "
                          "off the line")
 
-    def look(self, model: Model, numbering: Numbering, rows: NDArray) -> None:
+    def look(self, model: Mechanism, numbering: Numbering, rows: NDArray) -> None:
         """Compare recorded states with the limits of every body.
 
         Parameters
@@ -100,7 +100,7 @@ class Group(NamedTuple):
     least: NDArray          # (b,) lower bounds of the limits of spin
 
 
-def _grouped(model: Model, numbering: Numbering) -> list[Group]:
+def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
     found: dict[int, list] = {}
     limits: dict[tuple, float] = {}
     for k, body in enumerate(model.bodies.values()):

@@ -41,7 +41,8 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
     if kernel.POWER != (id(element) in numbering.items):
         wrong.append("it is no item and the kernel writes the power of one" if kernel.POWER else
                      "it is an item and the kernel writes no power")
-    _refuse(element.name, kernel, wrong)
+    if wrong:
+        raise _misfit(element.name, kernel, wrong)
 
 
 def check_superelement(body: Superelement, kernel: ModuleType) -> None:
@@ -63,7 +64,8 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
     if kernel.DAMPED != (reduced.damping is not None):
         wrong.append(f"it has {'no' if kernel.DAMPED else 'a'} damping matrix and the kernel reads "
                      f"{'one' if kernel.DAMPED else 'none'}")
-    _refuse(body.name, kernel, wrong)
+    if wrong:
+        raise _misfit(body.name, kernel, wrong)
 
 
 def constants_row(name: str, kernel: ModuleType, counts: Counts,
@@ -78,7 +80,7 @@ def constants_row(name: str, kernel: ModuleType, counts: Counts,
     try:
         return Row("constants", kernel.CONSTANTS).pack(counts, values)
     except ContractError as error:
-        _refuse(name, kernel, [str(error)])
+        raise _misfit(name, kernel, [str(error)]) from error
 
 
 def index_row(name: str, kernel: ModuleType, unknowns: list[int],
@@ -94,7 +96,7 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int],
     try:
         return INDEX.pack(counts, values | {"unknowns": unknowns}).astype(np.int64)
     except ContractError as error:
-        _refuse(name, kernel, [str(error)])
+        raise _misfit(name, kernel, [str(error)]) from error
 
 
 def counts_of(body: Superelement) -> Counts:
@@ -114,7 +116,6 @@ def _different(facts: Iterable[tuple[str, int, int | None]]) -> list[str]:
             if read is not None and own != read]
 
 
-def _refuse(name: str, kernel: ModuleType, wrong: list[str]) -> None:
-    if wrong:
-        raise InputError(f"{name!r} does not fit its kernel {kernel.__name__}: "
-                         f"{'; '.join(wrong)}: {REMEDY}")
+def _misfit(name: str, kernel: ModuleType, wrong: list[str]) -> InputError:
+    return InputError(f"{name!r} does not fit its kernel {kernel.__name__}: {'; '.join(wrong)}: "
+                      f"{REMEDY}")

@@ -21,18 +21,8 @@ from numba import types
 from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
-from sebody.kernels.layout import (  # noqa: F401  (kernels take them from here)
-    ACCELERATION,
-    ARGUMENTS,
-    ENERGY,
-    HEADER,
-    LANES,
-    POWERS,
-    RESIDUAL,
-    TANGENT,
-    VELOCITY,
-)
-from sebody.kernels.pipeline import SIGNATURE, compiled  # noqa: F401  (generated kernels take SIGNATURE from here)
+from sebody.kernels.layout import ARGUMENTS, LANES
+from sebody.kernels.pipeline import compiled
 
 
 @compiled

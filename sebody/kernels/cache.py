@@ -55,5 +55,6 @@ class FunctionCache(NullCache):
         entries[sig, data.codegen.magic_tuple()] = dumps(data._reduce())
         if not store.write(self._source, self._name, self._made_from, dumps(entries)):
             tried = ", ".join(map(str, store.folders(self._source)))
-            store.say_once("compiled code cannot be kept, every start compiles it again: no folder "
-                           f"of {tried} can be written; set NUMBA_CACHE_DIR to one that can")
+            store.say_once("writing", "compiled code cannot be kept, every start compiles it "
+                           f"again: no folder of {tried} can be written; set NUMBA_CACHE_DIR to "
+                           "one that can")

@@ -2,6 +2,7 @@
 
 import gc
 import os
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +14,7 @@ from types import ModuleType
 
 from sebody.errors import InputError
 from sebody.kernels.names import element_name, layout_variant, superelement_name
+from sebody.kernels.sources import room_hash
 
 USER_FORCE = element_name("user_force")      # written by hand, in this room
 
@@ -22,7 +24,7 @@ def user_directory() -> Path:
 
     ``SEBODY_KERNELS``, or ``~/.sebody/kernels``.
     """
-    return Path(os.environ.get("SEBODY_KERNELS") or Path.home() / ".sebody" / "kernels")
+    return Path(os.environ.get("SEBODY_KERNELS") or os.path.expanduser("~/.sebody/kernels"))
 
 
 @contextmanager
@@ -38,35 +40,50 @@ def without_collector() -> Iterator[None]:
 
 
 def find(name: str) -> Path | None:
-    """The file of a kernel, shipped or in the user's directory; None if there is none."""
-    folders = (*find_spec("sebody.generated").submodule_search_locations, user_directory())
-    return next((path for folder in folders if (path := Path(folder) / f"{name}.py").exists()),
-                None)
+    """The file of a kernel, shipped or in the user's directory; None if there is none.
+
+    Raises
+    ------
+    InputError
+        The user's was made for other functions than today's in ``kernels/``.
+    """
+    for folder in find_spec("sebody.generated").submodule_search_locations:
+        if (path := Path(folder) / f"{name}.py").exists():
+            return path
+    path = user_directory() / f"{name}.py"
+    if not path.exists():
+        return None
+    lines = re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE)
+    facts = dict(lines)
+    if facts.get("ROOM") != room_hash("kernels"):
+        variant = ":".join(facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA"))
+        raise InputError(f"kernel {path} was made by another version of sebody: make it again with"
+                         f"\n    python -m sebody.derive {variant}")
+    return path
 
 
 @cache
 def load(name: str) -> ModuleType | None:
-    """The module of a kernel, compiled (or read from the cache) on import; None if absent."""
+    """The module of a kernel, compiled (or read from the cache) on import; None if absent.
+
+    Raises
+    ------
+    InputError
+        A kernel of another version of sebody: see `find`.
+    """
     if name == USER_FORCE:
         return import_module("sebody.kernels.user_force")   # the one kernel that is not generated
-    with without_collector():
-        return _load(name)
-
-
-def _load(name: str) -> ModuleType | None:
-    try:
-        return import_module(f"sebody.generated.{name}")
-    except ModuleNotFoundError as error:
-        if error.name != f"sebody.generated.{name}":
-            raise
-    path = user_directory() / f"{name}.py"
-    if not path.exists():
+    path = find(name)
+    if path is None:
         return None
-    spec = spec_from_file_location(f"sebody_user_kernels.{name}", path)
-    module = module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+    with without_collector():
+        if path.parent != user_directory():
+            return import_module(f"sebody.generated.{name}")
+        spec = spec_from_file_location(f"sebody_user_kernels.{name}", path)
+        module = module_from_spec(spec)
+        sys.modules[spec.name] = module
+        spec.loader.exec_module(module)
+        return module
 
 
 def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
@@ -104,12 +121,6 @@ def element_kernel_name(kind: str) -> str:
         raise InputError(f"there is no kernel for element {kind!r}: reinstall sebody or run "
                          "python -m sebody.derive")
     return name
-
-
-def superelement_kernel(layout: str, frame: str, inertia: str, modes: int,
-                        damped: bool = False) -> ModuleType:
-    """The kernel `superelement_kernel_name` names, compiled."""
-    return load(superelement_kernel_name(layout, frame, inertia, modes, damped))
 
 
 def element_kernel(kind: str) -> ModuleType:

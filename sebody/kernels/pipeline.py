@@ -25,11 +25,13 @@ from numba.core.untyped_passes import FixupArgs, IRProcessing, TranslateByteCode
 
 from sebody.kernels.cache import FunctionCache
 from sebody.kernels.layout import ARGUMENTS
-from sebody.kernels.sources import function_hash, kernel_hash
+from sebody.kernels.sources import KERNELS, function_hash, in_room, kernel_hash
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(types.float64)}
 # of every kernel: task, count, stride and width, then pointers
 SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
+
+CONTRACT = {"contract"}     # a product and a sum in one rounding
 
 
 class _Remembering:
@@ -75,10 +77,16 @@ class KernelPasses(CompilerBase):
 
 
 def compiled(function: Callable | None = None, **options) -> Callable:
-    """Compile a function of the runtime, and keep what was compiled."""
+    """Compile a function of the runtime, and keep what was compiled.
+
+    Functions of ``kernels/`` round like the kernels that call them, others like the time loop. If
+    that were left open Numba would take it from whoever is compiled first, so that numbers would
+    depend on what was run before.
+    """
     if function is None:
         return partial(compiled, **options)
-    dispatcher = njit(error_model="numpy", **options)(function)
+    rounding = CONTRACT if in_room(function, KERNELS) else False
+    dispatcher = njit(**{"error_model": "numpy", "fastmath": rounding} | options)(function)
     dispatcher._cache = FunctionCache(function, function_hash(function))
     return dispatcher
 
@@ -89,7 +97,7 @@ def kernel_function(function: Callable) -> CFunc:
     Its attribute `address` is that of the machine code.
     """
     kernel = CFunc(function, normalize_signature(SIGNATURE), {},
-                   {"error_model": "numpy", "fastmath": {"contract"}}, KernelPasses)
+                   {"error_model": "numpy", "fastmath": CONTRACT}, KernelPasses)
     kernel._cache = FunctionCache(function, kernel_hash(function))
     kernel.compile()
     return kernel

@@ -64,7 +64,7 @@ def inverse_tangent_coefficients(s):
     return top / (2.0 * c2), (d_top - top * d_c2 / c2) / (2.0 * c2)
 
 
-@compiled
+@compiled(fastmath=False)      # for the time loop
 def tangent_operator(x, y, z):
     """``T(psi)``, row by row: ``Omega = T(psi) psidot``."""
     c2, c3 = stumpff_23(x * x + y * y + z * z)

@@ -36,17 +36,22 @@ def room_hash(*rooms: str) -> str:
     return _syntax_hash("-".join(rooms), *paths)
 
 
+def in_room(function: Callable, room: str) -> bool:
+    """Whether a function is written in a folder of the package."""
+    return Path(function.__code__.co_filename).is_relative_to(PACKAGE / room)
+
+
 def function_hash(function: Callable) -> str:
     """Hash of all that a compiled function of the runtime may depend on.
 
     Those in ``kernels/`` call one another; all others call ``kernels/``, ``engine/`` and their own
     module.
     """
-    path = Path(function.__code__.co_filename)
-    if path.is_relative_to(PACKAGE / KERNELS):
+    if in_room(function, KERNELS):
         return room_hash(KERNELS)
-    if path.is_relative_to(PACKAGE / ENGINE):
+    if in_room(function, ENGINE):
         return room_hash(KERNELS, ENGINE)
+    path = Path(function.__code__.co_filename)
     return f"{room_hash(KERNELS, ENGINE)} {_syntax_hash(path.stem, path)}"
 
 

@@ -8,7 +8,6 @@ import os
 import warnings
 import zlib
 from collections.abc import Iterator
-from functools import cache
 from hashlib import sha1
 from pathlib import Path
 from uuid import uuid4
@@ -17,6 +16,7 @@ from numba import config
 from numba.misc.appdirs import AppDirs
 
 _CHECKSUM = 4       # bytes
+_said = set()       # topics of warnings
 
 
 def folders(source: Path) -> list[Path]:
@@ -46,8 +46,8 @@ def _content(path: Path, made_from: str) -> bytes | None:
     except OSError:
         return None
     if data[:_CHECKSUM] != _checksum(memoryview(data)[_CHECKSUM:]):
-        say_once(f"{path} is damaged and not used: it is written anew where that is allowed, "
-                 "otherwise delete it")
+        say_once(str(path), f"{path} is damaged and not used: it is written anew where that is "
+                 "allowed, otherwise delete it")
         return None
     end = data.index(b"\n", _CHECKSUM)
     return data[end + 1:] if data[_CHECKSUM:end] == made_from.encode() else None
@@ -80,7 +80,8 @@ def _checksum(data) -> bytes:
     return zlib.crc32(data).to_bytes(_CHECKSUM, "big")
 
 
-@cache
-def say_once(message: str) -> None:
-    """Warn, once in a process."""
-    warnings.warn(message, RuntimeWarning, stacklevel=2)
+def say_once(topic: str, message: str) -> None:
+    """Warn, once in a process about each topic."""
+    if topic not in _said:
+        _said.add(topic)
+        warnings.warn(message, RuntimeWarning, stacklevel=1)

@@ -36,7 +36,7 @@ def _call(typingctx, address, n, t, x, v, force):
     return types.void(types.int64, types.int64, types.float64, x, v, force), codegen
 
 
-@compiled
+@compiled(fastmath=False)
 def _evaluate(address, n, t, x, v, force):
     """Set the forces; returns their power."""
     for i in range(n):

@@ -11,7 +11,6 @@ from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.frames import FRAMES, check_frame, check_options, frame_weights
 from sebody.model.inputs import known, refuse_taken, triplet, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.pairs import kind_of
 from sebody.model.parts import Element, Node, Superelement
 from sebody.reduction import ReducedBody
 
@@ -89,7 +88,7 @@ def rigid_body(model: Mechanism, name: str, node: Node | str, mass: float, inert
         moments = {f"J_{'xyz'[i]}{'xyz'[j]}": J[i, j]
                    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
     triplets = triplet(node, "position"), triplet(node, "rotation")
-    return _add(model, Element(name, kind_of(model, "rigid_body"), triplets,
+    return _add(model, Element(name, model.kind_of("rigid_body"), triplets,
                                {"mass": mass, "mc": mass * arm, **moments}))
 
 
@@ -102,7 +101,7 @@ def point_mass(model: Mechanism, name: str, node: Node | str, mass: float) -> El
         A mass that is not positive, or a name that is taken.
     """
     _check_rigid(model, name, mass)
-    return _add(model, Element(name, kind_of(model, "point_mass"),
+    return _add(model, Element(name, model.kind_of("point_mass"),
                                (triplet(known(model, node), "position"),), {"mass": mass}))
 
 

@@ -8,7 +8,7 @@ from sebody.model import histories
 from sebody.model.histories import History
 from sebody.model.inputs import axes, chosen_name, direction, known, triplet, turning, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.pairs import kind_of, pair
+from sebody.model.pairs import pair
 from sebody.model.parts import Element, Joint, Motion, Node
 from sebody.model.sharing import hold
 
@@ -31,7 +31,7 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
     constants = {} if model.planar else dict(
         zip(("n", "m"), axes(model, axis, "drive", a)[1:], strict=True))
     name = chosen_name(model, name, f"angle at {a.name}")
-    return _drive(model, Element(name, kind_of(model, "turn_drive"), (a.rotation, b.rotation),
+    return _drive(model, Element(name, model.kind_of("turn_drive"), (a.rotation, b.rotation),
                                  constants, 1, history))
 
 
@@ -48,7 +48,7 @@ def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayL
     e = direction(model, axis, "drive", a)
     history = _starting_at_zero(histories.motion(motion), a)
     name = chosen_name(model, name, f"slide at {a.name}")
-    return _drive(model, Element(name, kind_of(model, "slide_drive"),
+    return _drive(model, Element(name, model.kind_of("slide_drive"),
                                  (a.position, b.position, a.rotation),
                                  {"e": e, "start": e @ (b.point - a.point)}, 1, history))
 

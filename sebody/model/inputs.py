@@ -55,9 +55,8 @@ def direction(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> NDArr
 def axes(model: Mechanism, axis: ArrayLike, what: str,
          node: Node) -> tuple[NDArray, NDArray, NDArray]:
     """Unit vector along an axis in space and two normal to it, right-handed."""
-    # twice normalised: results depend on it bit by bit
-    axis = direction(model, axis, what, node)
-    e = axis / np.linalg.norm(axis)
+    e = direction(model, axis, what, node)
+    e = e / np.linalg.norm(e)       # the length may still be off by a rounding error
     first = np.cross(e, np.eye(3)[np.argmin(np.abs(e))])
     first /= np.linalg.norm(first)
     return e, first, np.cross(e, first)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.errors import InputError
 from sebody.model.inputs import axes, chosen_name, direction, known, triplet
 from sebody.model.mechanism import Mechanism
-from sebody.model.pairs import NEAR, check_together, kind_of, pair
+from sebody.model.pairs import NEAR, check_together, pair
 from sebody.model.parts import Element, Joint, Node, Triplet
 from sebody.model.sharing import hold, share
 
@@ -160,7 +160,7 @@ def distance(model: Mechanism, node: Node | str, to: Node | str,
     if not length > NEAR * model.size():
         raise InputError(f"distance between {a.name!r} and {b.name!r} is zero: use a spherical "
                          "joint for nodes that start together")
-    rod = Equations(kind_of(model, "distance"), (a.position, b.position), {"length": length}, 1)
+    rod = Equations(model.kind_of("distance"), (a.position, b.position), {"length": length}, 1)
     return _joint(model, _named(model, name, "distance", a), [rod])
 
 
@@ -183,9 +183,9 @@ def _together(model: Mechanism, a: Node, b: Node, to: Node | str | None, what: s
             raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} share their position "
                              "already: leave the joint out")
         if to is None:
-            return [Equations(kind_of(model, "coincident_ground"), (a.position,), {"c": a.point},
+            return [Equations(model.kind_of("coincident_ground"), (a.position,), {"c": a.point},
                               model.dimension)]
-        return [Equations(kind_of(model, "coincident"), (a.position, b.position), {},
+        return [Equations(model.kind_of("coincident"), (a.position, b.position), {},
                           model.dimension)]
     if to is None and a.position.root is None:
         a.position.fixed = True
@@ -220,7 +220,7 @@ def _on_line(model: Mechanism, what: str, a: Node, b: Node,
         if abs(normal @ (b.point - a.point)) > NEAR * model.size():
             raise InputError(f"{what}: node {b.name!r} is off the axis through "
                              f"{a.name!r}: place it there or turn the axis")
-    return Equations(kind_of(model, "on_line"), (a.position, b.position, a.rotation),
+    return Equations(model.kind_of("on_line"), (a.position, b.position, a.rotation),
                      {f"n{k}": normal for k, normal in enumerate(normals, 1)}, len(normals))
 
 

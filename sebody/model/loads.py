@@ -10,7 +10,6 @@ from sebody.kernels.user_functions import compile_force
 from sebody.model.histories import History, clock, history
 from sebody.model.inputs import chosen_name, known, triplet, turning, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.pairs import kind_of
 from sebody.model.parts import Element, Node
 
 
@@ -25,7 +24,7 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
     on = triplet(node, "position")
     constants = {"d": vector(model, direction, f"force on {on.name}")}
     triplets = (on, triplet(node, "rotation")) if follower else (on,)
-    kind = kind_of(model, "follower_" * follower + "force")
+    kind = model.kind_of("follower_" * follower + "force")
     course = history(amplitude)
     name = chosen_name(model, name, f"force on {on.name}")
     return _add(model, Element(name, kind, triplets, constants, history=course))
@@ -40,7 +39,7 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
     """
     on = triplet(known(model, node), "rotation")
     constants = {"d": turning(model, direction, f"torque on {on.name}")}
-    kind = kind_of(model, "follower_" * (follower and not model.planar) + "torque")
+    kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
     course = history(amplitude)
     name = chosen_name(model, name, f"torque on {on.name}")
     return _add(model, Element(name, kind, (on,), constants, history=course))

@@ -49,6 +49,10 @@ class Mechanism:
         """The equations of all joints and drives."""
         return [c for joint in self.joints for c in joint.constraints]
 
+    def kind_of(self, name: str) -> str:
+        """Kind of an element in this model's dimension: elements of a plane are of their own."""
+        return "planar_" + name if self.planar else name
+
     def triplets(self) -> list[Triplet]:
         """All triplets, each once."""
         return list({id(t): t for n in (*self.nodes.values(), *self.grounds)

@@ -29,8 +29,3 @@ def check_together(model: Mechanism, a: Node, b: Node, what: str) -> None:
     if np.abs(b.point - a.point).max() > NEAR * model.size():
         raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} start apart: give both the "
                          "same point")
-
-
-def kind_of(model: Mechanism, name: str) -> str:
-    """The kernel of an element in this model's dimension."""
-    return "planar_" + name if model.planar else name

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.errors import InputError
 from sebody.model.inputs import axes, chosen_name
 from sebody.model.mechanism import Mechanism
-from sebody.model.pairs import check_together, kind_of, pair
+from sebody.model.pairs import check_together, pair
 from sebody.model.parts import Element, Node, Triplet
 
 
@@ -82,7 +82,7 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
 def _add(model: Mechanism, name: str | None, what: str, a: Node, triplets: tuple[Triplet, ...],
          constants: dict[str, ArrayLike]) -> Element:
     name = chosen_name(model, name, f"{what} at {a.name}")
-    kind = kind_of(model, what.replace(" ", "_"))
+    kind = model.kind_of(what.replace(" ", "_"))
     model.loads.append(Element(name, kind, triplets, constants))
     return model.loads[-1]
 

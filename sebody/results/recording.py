@@ -10,7 +10,7 @@ from sebody.assembly.numbering import Numbering
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.layout import RECORD
-from sebody.model.model import Model
+from sebody.model.mechanism import Mechanism
 from sebody.results.postprocessing import Forces, constraint_residuals, energies, forces
 
 
@@ -25,7 +25,7 @@ class Start(NamedTuple):
 class Recording:
     """A model, its arrays, and the states a run has recorded."""
 
-    model: Model
+    model: Mechanism
     numbering: Numbering
     system: System
     state: State                    # the one the run has reached

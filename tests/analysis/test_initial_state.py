@@ -176,7 +176,7 @@ def test_velocities_that_are_not_given_are_solved_for():
     run = Simulation(model, 0.01)
     assert run.start.changed["base.rotation"] == pytest.approx(0.5, rel=1e-6)
     assert run.state.v[run.numbering.triplets[id(model.nodes["base"].rotation)]] == (
-        pytest.approx(0.0, abs=1e-12))
+        pytest.approx(0.0, abs=1e-12))      # one regular solution, of velocities of order one
     assert "solved for           initial velocity of base.rotation (by 0.5)" in (
         run.run_to(0.02).result().summary())
 
@@ -228,6 +228,7 @@ def test_initial_acceleration_of_the_rigid_motion(spin):
     body = model.bodies["beam"].body
     turning = body.rigid_modes[:, 5]
     run = Simulation(model, 0.01)
+    # rigid motion through a condensation of condition 4e2, times EPS
     assert turning @ body.mass @ turning == pytest.approx(INERTIA, rel=1e-12)
     moment = turning @ body.mass @ accelerations(run)
     assert moment / INERTIA == pytest.approx(TORQUE / INERTIA, rel=1e-9)

@@ -7,9 +7,11 @@ References: closed solutions and, for beams cut into linear bodies, the theory o
 import numpy as np
 import pytest
 from helpers import order
+from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation
 from sebody.analysis import equilibrium, linearize, modes, vibrations
+from sebody.assembly.numbering import coordinates
 from sebody.fem import Section
 from sebody.scenes import hinged_beam
 from sebody.studies.atlas.theory import beck_load, cantilever, divergence, euler_load, flap
@@ -162,6 +164,7 @@ def test_equations_as_joints_turn_alike():
         model.revolute("root", (0, 0, 1), explicit=explicit)
         result = equilibrium(model, 2, spin=spin)
         found.append((result["tip.position"][-1], modes(result, spin).omega[3:8]))
+    # Newton's last correction is below 1e-11 of the length, and of second order what it leaves
     assert found[1][0] == pytest.approx(found[0][0], abs=1e-12)
     assert found[1][1] == pytest.approx(found[0][1], rel=1e-8)
 
@@ -267,3 +270,47 @@ def test_refusals():
     linked.point_mass("ball", "end", 1.0)
     with pytest.raises(InputError, match="hangs on a rigid link, which the tangents"):
         modes(Simulation(linked, 0.01), 2.0)
+
+
+def test_frequencies_do_not_depend_on_where_space_points():
+    """A turning state as a whole turned by one radian, its spin axis with it: the same motion.
+
+    What the frames of the bodies were before is then no more along the spin or across it.
+    """
+    found, spin = turning(2, 6.0, internal=2, elements=8)
+    expected = modes(found, spin).values
+    Q = Rotation.from_rotvec([0.6, -0.7, 0.4]).as_matrix()
+    state, numbering = found.state, found.numbering
+    for node in found.model.nodes.values():
+        at = coordinates(numbering, node.position)
+        for part in (state.q, state.v, state.a):
+            part[at] = Q @ part[at]
+    for matrices in (state.R, state.frames, state.frames_old):
+        matrices[:] = (Q @ matrices.reshape(-1, 3, 3)).ravel()
+    turned = modes(found, Q @ spin).values
+    # eigenvalues of a matrix of the order of the highest square, with its rounding
+    size = np.abs(expected).max()**2
+    assert np.abs(turned**2 - expected**2).max() < 1e-10 * size
+    low = np.abs(expected) < 1e2
+    assert low.sum() >= 4
+    assert np.abs(turned[low].imag - expected[low].imag).max() < 1e-5
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_stiffness_of_a_force_at_the_end_of_a_link(planar):
+    """A force F of space on an arm r, in no equilibrium: its moment ``r x R^T F`` by the turn.
+
+    By a turn theta it changes by ``F (r . theta) - (r . F) theta``; the stiffness is minus that.
+    """
+    d = 2 if planar else 3
+    arm, force = np.array([1.2, -0.5, 0.8])[:d], np.array([3.0, 2.0, -4.0])[:d]
+    model = Model(planar=planar)
+    hub = model.node("hub", np.zeros(d))
+    model.fix(hub, "position")
+    model.rigid_body("body", hub, 1.0, 2.0 if planar else (2.0, 2.5, 3.0))
+    model.attach("end", arm, hub)
+    model.force("end", force)
+    found = linearize(Simulation(model, 0.01))
+    expected = (np.array([[arm @ force]]) if planar else
+                arm @ force * np.eye(3) - np.outer(force, arm))
+    assert found.free @ found.stiffness @ found.free.T == pytest.approx(expected, abs=1e-12)

@@ -131,7 +131,7 @@ def held(scheme, push, steps, h=0.01):
     found = []
     for k in range(1, steps + 1):
         run.run_to(k * h)
-        assert abs(run.state.q[1]) < 1e-12
+        assert abs(run.state.q[1]) < 1e-12      # linear: within the tolerance after one correction
         found.append((h * run.state.v[1], h * h * run.state.aux[1]))
     return np.array(found)
 
@@ -144,6 +144,7 @@ def test_powers_of_the_matrix_of_constrained_directions(scheme):
     found, state = held(scheme, 1e-3, 40), np.array([1e-5, 0.0])
     for k in range(40):
         state = T @ state
+        # powers that pass through zero: 1e-10 of the push, h v = 1e-5
         assert found[k] == pytest.approx(state, rel=1e-7, abs=1e-12 * 1e-3)
 
 
@@ -157,5 +158,6 @@ def test_weak_instability_without_damping():
 
 def test_index_2_has_no_such_motion():
     """A velocity that the constraint forbids is taken away in the first step."""
+    # solved for by one linear equation: 1e-10 of the push, h v = 1e-5
     assert np.abs(held(hht(0.0, index=2), 1e-3, 20)[:, 0]).max() < 1e-15
 

@@ -18,9 +18,13 @@ def test_loop_follows_the_scheme():
     s, h = run.state, 0.01
     assert np.allclose((1 - am) * s.aux + am * s.aux_old, (1 - af) * s.a + af * s.a_old,
                        rtol=1e-9, atol=1e-9)
-    assert np.allclose(s.v, s.v_old + h * ((1 - gamma) * s.aux_old + gamma * s.aux), atol=1e-12)
+    # rates and increments are corrected in step with accelerations: rounding of a few corrections
+    rounding = 1e2 * np.finfo(float).eps
+    assert np.allclose(s.v, s.v_old + h * ((1 - gamma) * s.aux_old + gamma * s.aux), rtol=0,
+                       atol=rounding * h * np.abs(s.aux).max())
     assert np.allclose(s.dq[:3], h * s.v_old[:3] + h * h * (
-        (0.5 - beta) * s.aux_old[:3] + beta * s.aux[:3]), atol=1e-12)
+        (0.5 - beta) * s.aux_old[:3] + beta * s.aux[:3]), rtol=0,
+        atol=rounding * h * h * np.abs(s.aux).max())
 
 
 def test_run_in_pieces_equals_one_run():
@@ -60,7 +64,7 @@ def test_cut_steps_rejoin_the_grid():
     run = struck(1e6).run_to(0.3)
     result = run.result()
     assert result.cuts > 0
-    assert np.allclose(result.t, np.arange(31) * 0.01, atol=1e-12)
+    assert np.allclose(result.t, np.arange(31) * 0.01, rtol=0, atol=1e-12)      # products of h
     fine = struck(1e6, 0.000625).run_to(0.3).result()["tip.position"][::16]
     assert np.abs(result["tip.position"][:10] - fine[:10]).max() < 1e-3
 

@@ -191,13 +191,18 @@ def test_no_command_and_unknown_commands_are_refused(capsys):
 
 
 def test_example_of_the_readme(capsys):
-    code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S).group(1)
+    text = (ROOT / "README.md").read_text()
+    code = re.search(r"```python\n(.*?)```", text, re.S).group(1)
     names = {}
     exec(code, names)
     assert "steps                3000 (0 cut), to t = 30" in capsys.readouterr().out
     result = names["result"]
     assert len(result.t) == len(reference("hinged_beam")["t"])
     assert tip_error("hinged_beam", result.t, result["tip.position"]) <= 1.0e-3
+    for name in re.findall(r'result\["(.*?)"\]', text):
+        assert len(result[name]) == len(result.t), name
+    for name in re.findall(r'model\.element\("(.*?)"\)', text):
+        assert names["model"].element(name).name == name
 
 
 def test_names_in_the_readme_exist():

@@ -94,6 +94,7 @@ def test_erratum_4_derived_velocity_tangent(state):
     case, paper, exact = state
     assert states.difference(paper.pseudo_damping(), exact) < 1e-7
     J = states.evaluate(case, 1, (0, 1, 0, 1, 1))[1]
+    # equal but for rounding, of products of up to five matrices of 16 unknowns
     assert states.difference(J, paper.pseudo_damping()) < 1e-12
 
 
@@ -111,7 +112,7 @@ def test_mass_48_60(state):
     """(48), (60) are right as printed: ``P^T Mbar P``."""
     case, paper, _ = state
     J = states.evaluate(case, 1, (1, 0, 0, 1, 1))[1]
-    assert states.difference(J, paper.P.T @ paper.M @ paper.P) < 1e-12
+    assert states.difference(J, paper.P.T @ paper.M @ paper.P) < 1e-12      # as above
 
 
 @pytest.fixture(scope="module")
@@ -283,7 +284,7 @@ def test_erratum_6_left_hand_side_of_52():
     kinetic = states.evaluate(case, 2)[2][0]
     printed = paper.ydot.copy()
     printed[6:12] = np.concatenate([rate, rate])
-    assert np.abs(rate).max() < 1e-12
+    assert np.abs(rate).max() < 1e-12       # differences over 0.01: EPS / 0.01 times ten
     assert kinetic == pytest.approx(paper.ydot @ paper.M @ paper.ydot / 2, rel=1e-12)
     assert abs(printed @ paper.M @ printed / 2 / kinetic - 1) > 1e-2
 
@@ -305,5 +306,6 @@ def test_erratum_7_variations_are_not_increments():
     columns = [states.derivative(
         lambda s, e=e: (here.inv() * Rotation.from_rotvec(increment + s * e)).as_rotvec(), 0.01)
         for e in np.eye(3)]
+    # sixth-order differences over 0.01: 0.01^6 of a seventh derivative below ten, and EPS / 0.01
     assert np.abs(np.array(columns).T - tangent(increment)).max() < 1e-11
     assert np.abs(np.array(columns).T - np.eye(3)).max() > 0.1

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from helpers import order
 
-from sebody import InputError, Simulation, SimulationError, generalized_alpha
+from sebody import (
+    InputError,
+    Model,
+    Simulation,
+    SimulationError,
+    generalized_alpha,
+    simulate,
+)
 from sebody.analysis.accuracy import difference, simulate_within
 from sebody.analysis.tolerance import Tolerance
 from sebody.engine import loop
@@ -122,6 +129,7 @@ def test_output_between_steps_is_of_third_order():
         start, end = run.state.R_old.copy(), run.state.R.copy()
         assert run.state.clock[CURRENT_STEP] == h == run.state.clock[TIME]
         R = record.rows[:4, run.state.recorded_parts["R"]]
+        # the increment again, through cubics and a logarithm: some hundred EPS
         assert R[3] == pytest.approx(end, abs=1e-13) and not np.allclose(R[1], start)
         fine = Simulation(heavy_top.build().model, h / 400).run_to(h / 2)
         found.append(np.abs(R[1] - fine.state.R).max())
@@ -135,7 +143,8 @@ def test_rows_are_those_of_a_run_that_ends_there():
     assert np.array_equal(short.result().rows, long.result().rows[:61])
     assert short.time >= 3.0
     assert np.array_equal(short.run_to(6.0).result().rows, long.result().rows)
-    assert np.allclose(long.result().t, 0.05 * np.arange(121), atol=1e-12)
+    # products of the step, of six: their rounding
+    assert np.allclose(long.result().t, 0.05 * np.arange(121), rtol=0, atol=1e-12)
 
 
 def test_work_and_energy_between_steps():
@@ -214,3 +223,15 @@ def test_an_error_that_cannot_be_kept_stops_the_run():
     with pytest.raises(SimulationError, match="error of a step is above the tolerance") as caught:
         Simulation(scene.model, 0.1, tolerance=Tolerance(1e-40)).run_to(1.0)
     assert len(caught.value.result.t) >= 1
+
+
+def test_work_within_steps_follows_the_power():
+    """A constant force on a mass: ``W = F^2 t^2 / 2 m``, exact on any grid and with any steps."""
+    push, mass = 3.0, 2.0
+    model = Model(planar=True)
+    model.point_mass("ball", model.node("ball", (1.0, 0.0), keeps="translation"), mass)
+    model.force("ball", (0.0, push))
+    result = simulate(model, 0.01, 2.0, tolerance=Tolerance(1e-3))
+    assert result.steps < len(result.t) / 3
+    exact = push**2 * result.t**2 / (2 * mass)
+    assert result["force on ball.position.work"] == pytest.approx(exact, rel=1e-9, abs=1e-12)

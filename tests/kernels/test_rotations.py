@@ -8,6 +8,11 @@ from scipy.spatial.transform import Rotation
 from sebody.kernels import rotations
 
 mpmath.mp.dps = 50
+# Bounds are multiples of EPS, 2.2e-16. Entries of a rotation matrix are up to one, each a sum of
+# three rounded products: 1e-15; where SciPy's own or a second product is compared with, 2e-15 and
+# 4e-15. Logarithms and T^-1 divide by sines of up to 2.9 rad, 0.24: 1e-14. Coefficients of closed
+# forms cancel: each power of s up to the third loses a factor of four at the switch, s = 0.25,
+# which with the factorials makes some hundred EPS.
 TOLERANCE = 1e-13
 # squares of angles: up to 3 rad, both sides of the switch to closed forms at 0.25
 SQUARES = [1e-16, 1e-12, 1e-8, 1e-4, 1e-2, 0.1, 0.2, np.nextafter(0.25, 0), 0.25,

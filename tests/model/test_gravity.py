@@ -35,6 +35,7 @@ def test_free_fall_does_not_deform(planar):
     result = simulate(free_beam(planar), 0.01, 1.0)
     fall = 0.5 * FIELD[:d] * result.t[:, None]**2
     assert np.abs(result["tip.position"] - END[:d] - fall).max() < 1e-9
+    # deflections within the tolerance, 1e-8 of the increments, count with their square
     assert result["energy.strain"].max() < 1e-12 * result["energy.kinetic"].max()
     assert np.allclose(result["momentum"][:, :d],
                        SECTION.density * SECTION.area * np.linalg.norm(END[:d])
@@ -56,7 +57,9 @@ def test_potential_is_that_of_the_centre_of_mass():
     result = simulate(free_beam(), 0.01, 0.5)
     mass = SECTION.density * SECTION.area * np.linalg.norm(END)
     middle = (result["base.position"] + result["tip.position"]) / 2
-    assert np.allclose(result["energy.potential"], -mass * middle @ FIELD, rtol=1e-12)
+    # the reduced mass has the rounding of its condensation, EPS times a condition of 5e3
+    assert np.allclose(result["energy.potential"], -mass * middle @ FIELD,
+                       rtol=5e3 * np.finfo(float).eps)
 
 
 def test_energy_balance_of_a_falling_pendulum_falls_with_the_square_of_the_step():

@@ -6,7 +6,8 @@ import pytest
 from sebody import InputError, Model
 from sebody.assembly.build import build, number
 from sebody.fem import Section, frame, planar_beam, straight_beam
-from sebody.kernels.layout import layout_name
+from sebody.kernels.layout import FrameTraits, layout_name
+from sebody.model import frames
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes.hinged_beam import SECTION
 
@@ -100,6 +101,19 @@ def test_no_rotation_needs_the_positions_frame():
     with pytest.raises(InputError, match="keeps no rotation, so its frame cannot be "
                                          "'converged_mean': use frame='positions'"):
         model.superelement("b", body, nodes)
+
+
+def test_frames_are_judged_by_what_they_need(monkeypatch):
+    """A frame of another name is refused, or finds its kernel, by its traits alone."""
+    kinds = {"fits": frames.Frame("positions", FrameTraits("", needs_rotations=False)),
+             "turns": frames.Frame("converged_mean", FrameTraits(""), on_one_node=True)}
+    for name, kind in kinds.items():
+        monkeypatch.setitem(frames.FRAMES, name, kind)
+    with pytest.raises(InputError, match="lie on a line, so the frame 'fits' cannot see rotations"):
+        place(frame="fits")(model_with_nodes())
+    placed_body = place(frame="turns", frame_node=1)(model_with_nodes())
+    assert placed_body.kernel == "superelement_f2_converged_mean_b"
+    assert placed_body.alpha.tolist() == [0.0, 1.0]
 
 
 def test_missing_kernel_says_the_command_that_makes_it(monkeypatch, tmp_path):

@@ -42,6 +42,7 @@ def test_spring_and_damper(planar, damping):
     assert np.abs(result["ball.position"][:, :2] - exact[:2].T).max() < 5e-5
     assert result.energy_balance() < 2e-5
     lost = result["spring at anchor.work"]
+    # a work of order one never comes back, but by the rounding of its sum
     assert (np.diff(lost) <= 1e-15).all() and (lost[-1] < -0.1) == (damping > 0)
 
 

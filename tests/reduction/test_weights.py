@@ -37,7 +37,8 @@ def test_printed_recipe_depends_on_the_origin():
     nodes = np.array([[0, 0, 0], [100, 100, 0]]) + [1e6, 1e6, 0]
     centre = nodes.mean(axis=0)
     assert_allclose(printed_weights(nodes, centre), [0.499975, 0.500025], atol=1e-6)
-    assert_allclose(frame_weights(nodes, centre), [0.5, 0.5], atol=1e-11)
+    # 1e6 from the origin places have an EPS of 1e-10, to the distance of 100: 1e-12
+    assert_allclose(frame_weights(nodes, centre), [0.5, 0.5], rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize(
@@ -79,28 +80,30 @@ def test_collinear_nodes_in_a_general_direction():
     direction = np.array([1.0, 2.0, -0.7]) / 3
     nodes = np.outer([0.0, 1.0, 3.0], direction) + 10
     middle = nodes.mean(axis=0)
-    assert_allclose(frame_weights(nodes, middle), [1 / 3] * 3, atol=1e-14)
+    # ten from the origin, one apart: ten times the rounding, and five times as far off the line
+    assert_allclose(frame_weights(nodes, middle), [1 / 3] * 3, rtol=0, atol=1e-14)
     assert_allclose(frame_weights(nodes, middle + np.cross(direction, [0, 0, 5])), [1 / 3] * 3,
-                    atol=1e-13)
+                    rtol=0, atol=1e-13)
 
 
 def test_body_weights_of_beam_frame_and_solid():
     beam = straight_beam([0, 0, 0], [100, 100, 0], SECTION, 10)
     for weights in body_weights(craig_bampton(beam, {0: "full", 10: "full"}, 2)):
-        assert_allclose(weights, [0.5, 0.5], atol=1e-11)
+        # centres of reduced masses: EPS times the condition of the condensation, 2e4
+        assert_allclose(weights, [0.5, 0.5], rtol=0, atol=1e-11)
     # Positions at nodes 0 and 2, rotations at 0 and 1: each set has its own weights.
     elbow = frame([[0, 0, 0], [5, 0, 0], [5, 3, 0]], [(0, 1), (1, 2)], SECTION, 4)
     body = craig_bampton(elbow, {0: "full", 1: "rotation", 2: "translation"}, 0)
     centre = np.array([27.5 / 8, 4.5 / 8, 0])
     positions, rotations = body_weights(body)
     tip = centre @ [5, 3, 0] / 34
-    assert_allclose(positions, [1 - tip, tip], atol=1e-10)
-    assert_allclose(rotations, [1 - centre[0] / 5, centre[0] / 5], atol=1e-10)
+    assert_allclose(positions, [1 - tip, tip], rtol=0, atol=1e-10)
+    assert_allclose(rotations, [1 - centre[0] / 5, centre[0] / 5], rtol=0, atol=1e-10)
     solid = hexahedral_block([0, 0, 0], [2, 3, 1], (2, 2, 2), 2.1e6, 0.3, 7.8e-3)
     corners = [solid.node_at((x, y, z)) for x in (0, 2) for y in (0, 3) for z in (0, 1)]
     body = craig_bampton(solid, [(node, "translation") for node in corners], 0)
     positions, rotations = body_weights(body)
-    assert_allclose(positions, 1 / 8, atol=1e-12)
+    assert_allclose(positions, 1 / 8, rtol=0, atol=1e-12)       # a condition of 130
     assert rotations.shape == (0,)
 
 

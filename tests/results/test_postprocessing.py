@@ -130,3 +130,23 @@ def test_reading_results_leaves_the_run_alone():
         assert np.isfinite(result[name]).all()
     assert np.array_equal(read.state.now, unread.state.now)
     assert np.array_equal(read.run_to(0.1).result().rows, unread.run_to(0.1).result().rows)
+
+
+def test_moment_of_a_support_is_in_global_axes():
+    """An arm turned by 0.7 rad about the vertical and held there bears the weight at its end.
+
+    About the base ``r x m g`` upwards, with r turned: across the arm, in the horizontal plane.
+    """
+    mass, length, angle = 2.0, 1.5, 0.7
+    model = Model()
+    model.gravity((0.0, 0.0, -9.81))
+    base = model.node("base", (0, 0, 0))
+    model.rigid_body("arm", base, mass, (0.1, 0.2, 0.3), centre=(length, 0.0, 0.0))
+    model.fix(base, "position")
+    model.move(base, (0.0, 0.0, 1.0), [(0.0, 0.0), (1.0, angle)], "rotation")
+    # a second body, since something has to move
+    model.point_mass("ball", model.node("ball", (9, 9, 9), keeps="translation"), 1.0)
+    result = simulate(model, 0.01, 1.5)
+    expected = mass * 9.81 * length * np.array([np.sin(angle), -np.cos(angle), 0.0])
+    assert result["base.reaction_moment"][-1] == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert result["base.reaction"][-1] == pytest.approx([0.0, 0.0, mass * 9.81], abs=1e-9)

@@ -140,6 +140,7 @@ def test_matrix_is_linear_in_its_coefficients(name):
     parts = [states.evaluate(case, 1, c)[1] for c in ((1, 0, 0, 1, 1), (0, 1, 0, 1, 1),
                                                      (0, 0, 1, 1, 1))]
     J = states.evaluate(case, 1, (2.0, -0.3, 1.7, 1, 1))[1]
+    # three sums of 15 products, relative to the largest
     assert states.difference(J, 2.0 * parts[0] - 0.3 * parts[1] + 1.7 * parts[2]) <= 1e-14
 
 
@@ -155,6 +156,7 @@ def test_paper_tangent_lacks_a_term_that_falls_with_the_deformation(name):
         terms.append(superelements.geometric_term(case))
         K = states.evaluate(case, 1, (0, 0, 1, 0, 1))[1]
         symmetric = not module.FRAME.endswith("_small")
+        # two orders of the same sums, of up to 24 x 24 products
         assert not symmetric or states.difference(K, K.T) <= 1e-13
     assert 1e-3 < terms[0] < 1 and terms[1] < terms[0] / 3
 
@@ -182,6 +184,7 @@ def test_planar_kernel_equals_the_spatial_one_on_planar_states():
     for coefficients in ((1.0, 0.3, 2.0, 1, 1), (0, 0, 1, 0, 1)):
         forces, matrices = zip(*[states.evaluate(c, 1, coefficients)[:2] for c in (flat, case)],
                                strict=True)
+        # stiff axial forces of small stretches: EPS times some thousand
         assert states.difference(forces[0], forces[1][keep]) <= 1e-12
         assert states.difference(matrices[0], matrices[1][np.ix_(keep, keep)]) <= 1e-12
 

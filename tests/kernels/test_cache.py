@@ -1,0 +1,178 @@
+"""Compiled functions kept on disk: where, what damage does, and what must not be found there.
+
+Every run is a new process of a small program with a function that calls another.
+"""
+
+import os
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import pytest
+from numba import config
+
+from sebody.kernels import store
+
+PROGRAM = '''
+import sys
+from sebody.kernels.pipeline import compiled
+
+@compiled
+def double(x):
+    return 2 * x
+
+@compiled
+def with_one(x):
+    return double(x) + 1
+
+number = {"int": int, "float": float}[sys.argv[1]](3)
+print(with_one(number), sum(with_one.stats.cache_hits.values()))
+'''
+
+
+@pytest.fixture
+def program(tmp_path) -> Path:
+    """The program, alone in a folder."""
+    path = tmp_path / "code" / "program.py"
+    path.parent.mkdir()
+    path.write_text(PROGRAM)
+    return path
+
+
+def start(program: Path, number: str = "int", home: Path | None = None, cache: str = ""):
+    """A process with a home of its own, and a folder for Numba if given."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": cache, "PYTHONDONTWRITEBYTECODE": "1",
+                   "HOME": str(home or program.parents[1] / "home")}
+    environment.pop("XDG_CACHE_HOME", None)
+    return subprocess.Popen([sys.executable, program, number], env=environment, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def run(*arguments, **options) -> tuple[str, str]:
+    """What a process prints: result and hits, then warnings."""
+    process = start(*arguments, **options)
+    out, errors = process.communicate(timeout=100)
+    assert process.returncode == 0, errors
+    return out.strip(), errors
+
+
+def kept(folder: Path) -> list[str]:
+    """Names in a folder of the cache, of this version of Python."""
+    tag = sys.implementation.cache_tag
+    return sorted(path.name.replace(f".{tag}.", ".") for path in folder.rglob("*")
+                  if path.is_file())
+
+
+def not_writable(path: Path) -> Path:
+    """A file where a folder should be: even root cannot write below it."""
+    path.write_text("")
+    return path
+
+
+FILES = ["program.double.sebody", "program.sources", "program.with_one.sebody"]
+
+
+def test_beside_the_source(program):
+    assert run(program) == ("7 0", "")
+    assert kept(program.parent / "__pycache__") == FILES
+    assert run(program) == ("7 1", "")
+    assert run(program, "float") == ("7.0 0", "")       # the other signature is added
+    assert run(program, "float") == ("7.0 1", "")
+    assert run(program) == ("7 1", "")
+
+
+def test_folder_of_the_environment_comes_first(program, tmp_path):
+    assert run(program, cache=str(tmp_path / "mine")) == ("7 0", "")
+    assert kept(tmp_path / "mine") == FILES
+    assert not (program.parent / "__pycache__").exists()
+    assert run(program, cache=str(tmp_path / "mine")) == ("7 1", "")
+
+
+def test_the_users_cache_where_the_source_is_not_writable(program, tmp_path):
+    not_writable(program.parent / "__pycache__")
+    assert run(program) == ("7 0", "")
+    assert kept(tmp_path / "home") == FILES
+    assert run(program) == ("7 1", "")
+
+
+def test_an_image_serves_users_who_can_write_nowhere(program, tmp_path):
+    """Compiled once beside the source; then used without a place of one's own."""
+    run(program)
+    nobody = {"home": not_writable(tmp_path / "nobody"), "cache": str(tmp_path / "nobody/cache")}
+    before = {path: path.stat().st_mtime_ns for path in program.parent.rglob("*")}
+    assert run(program, **nobody) == ("7 1", "")
+    assert {path: path.stat().st_mtime_ns for path in program.parent.rglob("*")} == before
+    # and what the image lacks goes to the user's cache
+    assert run(program, "float", home=tmp_path / "other", cache=nobody["cache"])[0] == "7.0 0"
+
+
+def test_without_any_folder_it_runs_and_says_so_once(program, tmp_path):
+    beside = not_writable(program.parent / "__pycache__")
+    out, errors = run(program, home=not_writable(tmp_path / "home"))
+    assert out == "7 0"
+    assert errors.count("compiled code cannot be kept") == 1
+    assert f"no folder of {beside}, {tmp_path / 'home'}" in errors
+    assert "can be written; set NUMBA_CACHE_DIR to one that can" in errors
+
+
+DAMAGES = {"empty": lambda data: b"", "truncated": lambda data: data[:len(data) // 2],
+           "garbage": lambda data: data[:9] + b"garbage" + data[16:]}
+
+
+@pytest.mark.parametrize("name, damage", list(zip(FILES, DAMAGES.values(), strict=True)))
+def test_a_damaged_file_counts_as_absent(program, name, damage):
+    run(program)
+    name = name.replace(".sebody", f".{sys.implementation.cache_tag}.sebody")
+    path = program.parent / "__pycache__" / name
+    path.write_bytes(damage(path.read_bytes()))
+    out, errors = run(program, "float")
+    assert out == "7.0 0"
+    assert errors.count(f"{path} is damaged and not used") == 1
+    assert run(program, "float") == ("7.0 1", "")       # written anew
+
+
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+def test_damage_is_said_once_with_the_name_of_the_file(tmp_path, monkeypatch, damage):
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
+    source = tmp_path / "code" / "module.py"
+    assert store.write(source, "name", "hash", b"content of a file")
+    path, = tmp_path.rglob("name")
+    path.write_bytes(damage(path.read_bytes()))
+    with pytest.warns(RuntimeWarning, match=f"{path} is damaged and not used: it is written anew"):
+        assert not list(store.read(source, "name", "hash"))
+    with warnings.catch_warnings(action="error"):
+        assert not list(store.read(source, "name", "hash"))
+    assert store.write(source, "name", "hash", b"content of a file")
+    assert list(store.read(source, "name", "hash")) == [b"content of a file"]
+
+
+def test_two_cold_processes_share_a_folder(program):
+    """With the same signature and with another; neither reads half of a file of the other."""
+    processes = [start(program, number) for number in ("int", "int", "float", "float")]
+    outputs = [process.communicate(timeout=100) for process in processes]
+    assert [out.split()[0] for out, _ in outputs] == ["7", "7", "7.0", "7.0"]
+    assert [errors for _, errors in outputs] == [""] * 4
+    assert kept(program.parent / "__pycache__") == FILES
+    assert "7.0 1" in [run(program, "float")[0] for _ in range(2)]
+
+
+def test_an_edited_function_is_compiled_again_a_comment_is_not(program):
+    run(program)
+    program.write_text('"""A title."""\n# a remark\n' + PROGRAM)
+    assert run(program) == ("7 1", "")
+    program.write_text(PROGRAM.replace("2 * x", "4 * x"))
+    assert run(program) == ("13 0", "")
+
+
+def test_files_made_from_something_else_are_passed_over(tmp_path, monkeypatch):
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path / "first"))
+    source = tmp_path / "code" / "module.py"
+    first, second, _ = store.folders(source)
+    assert second == source.parent / "__pycache__"
+    store.write(source, "name", "old", b"1")
+    (second).mkdir(parents=True)
+    (first / "name").rename(second / "name")
+    store.write(source, "name", "new", b"2")
+    assert list(store.read(source, "name", "old")) == [b"1"]
+    assert list(store.read(source, "name", "new")) == [b"2"]

@@ -1,0 +1,67 @@
+"""Names and files of kernels: found without compiling them, and refused where they are outdated."""
+
+import sys
+
+import pytest
+
+from sebody import InputError
+from sebody.kernels import loader
+from sebody.kernels.sources import room_hash
+
+KERNEL = '''LAYOUT = "planar-f9"
+FRAME = "mean"
+INERTIA = "a"
+ROOM = "{room}"     # of today
+TOUCHED = True
+'''
+NAME = "superelement_planar_f9_mean_a"
+
+
+@pytest.fixture
+def mine(tmp_path, monkeypatch):
+    """An empty directory of the user."""
+    monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
+    monkeypatch.setattr(loader, "load", loader.load.__wrapped__)
+    yield tmp_path
+    sys.modules.pop(f"sebody_user_kernels.{NAME}", None)
+
+
+@pytest.mark.parametrize("layout, modes, damped, name", [
+    ("planar-f2", 4, False, "superelement_planar_f2m4_converged_mean_b"),
+    ("planar-f2", 3, False, "superelement_planar_f2_converged_mean_b"),
+    ("f2", 8, True, "superelement_f2d_converged_mean_b")])
+def test_a_kernel_for_the_number_of_modes_or_for_any(layout, modes, damped, name):
+    assert loader.superelement_kernel_name(layout, "converged_mean", "b", modes, damped) == name
+
+
+def test_names_are_found_without_import(monkeypatch):
+    monkeypatch.setattr(loader, "import_module", None)
+    assert loader.superelement_kernel_name("t8", "positions", "b", 0)
+    for kind in ("planar_on_line", "user_force"):
+        assert loader.element_kernel_name(kind) == f"element_{kind}"
+
+
+def test_missing_kernels(mine):
+    with pytest.raises(InputError, match="there is no kernel for layout 'f9d', frame 'mean', "
+                       "inertia 'a': make it with\n    python -m sebody.derive f9d:mean:a"):
+        loader.superelement_kernel_name("f9", "mean", "a", 0, True)
+    with pytest.raises(InputError, match="there is no kernel for element 'sail': reinstall"):
+        loader.element_kernel_name("sail")
+    assert loader.load("element_sail") is None
+
+
+def test_kernel_of_the_user(mine):
+    (mine / f"{NAME}.py").write_text(KERNEL.format(room=room_hash("kernels")))
+    assert loader.superelement_kernel_name("planar-f9", "mean", "a", 2) == NAME
+    assert loader.load(NAME).TOUCHED
+
+
+@pytest.mark.parametrize("text", [KERNEL.format(room="of 0.0.1"),
+                                  KERNEL.replace("ROOM", "LEAVES")])
+def test_kernel_of_another_version_is_refused(mine, text):
+    (mine / f"{NAME}.py").write_text(text)
+    for act in (loader.find, loader.load):
+        with pytest.raises(InputError, match=f"{NAME}.py was made by another version of sebody: "
+                           "make it again with\n    python -m sebody.derive planar-f9:mean:a"):
+            act(NAME)
+    assert f"sebody_user_kernels.{NAME}" not in sys.modules
