@@ -1,11 +1,14 @@
-"""Derivation of the kernels: from symbols to text.
+"""Derivation of the kernels: from symbols to text. `README.md` says how to add to it.
 
-The pipeline is the list of modules, each reading only from those before it:
+Folders read only from those before them:
 
-1. `rotations`, `variation`: the maps of SO(3), the chain rule on the manifold, `check_same`
-2. `layouts`, `stages`, `quantities`: what a body keeps, named quantities, stages and differentials
-3. `kinematics`, `frames`, `elastic`, `inertia`, `elements`: formulas, from kinematics and energies
-4. `superelement`: the stages of a kernel in order, and their linearization
-5. `printer`, `templates`, `emit`, `emit_element`: text, a pure function of the description
-6. `manifest`, `__main__`: what is shipped, and the command that writes or checks it
+1. `symbolic`: the maps of SO(3), the chain rule on the manifold and its proofs, named quantities,
+   steps and their differentials
+2. `formulas`: frames, kinematics, elastic forces, inertia, damping, gravity; joints, rigid bodies
+   and loads
+3. `kernels`: what a kernel is: layouts, its steps in order and their linearization, what it uses,
+   and which kernels are shipped
+4. `printing`: text, a pure function of the description; everything that knows the target
+
+`compiler.compile_kernel` runs them, `__main__` is the command that writes or checks the files.
 """

@@ -9,51 +9,49 @@ import argparse
 import difflib
 import os
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import sebody.generated
-from sebody.derive.formulas import frames, inertia
-from sebody.derive.formulas.frames import FRAMES
-from sebody.derive.formulas.inertia import OPTIONS
-from sebody.derive.kernels.catalogue import ELEMENTS
-from sebody.derive.kernels.layouts import Layout, LayoutError
-from sebody.derive.kernels.manifest import ELEMENTS as SHIPPED_ELEMENTS
-from sebody.derive.kernels.manifest import SUPERELEMENTS
-from sebody.derive.kernels.superelement import superelement
-from sebody.derive.printing.emit import superelement_text
-from sebody.derive.printing.emit_element import element_text
-from sebody.derive.printing.emit_options import options_text
+from sebody.derive.compiler import Variant, compile_kernel, file_name
+from sebody.derive.kernels.layouts import Layout, LayoutError, fits
+from sebody.derive.kernels.manifest import ELEMENTS, SUPERELEMENTS
+from sebody.derive.kernels.options import (
+    FRAMES,
+    INERTIA_OPTIONS,
+    frame_traits,
+    inertia_traits,
+)
+from sebody.derive.printing.options import options_text
 from sebody.kernels.loader import user_directory
-from sebody.kernels.names import PREFIXES, element_name
+from sebody.kernels.names import PREFIXES
+
+DEFAULT_INERTIA = "b"
 
 
 def shipped() -> dict[str, str]:
     """File name and text of every kernel of the manifest, and of the options' traits."""
-    files = {"options.py": options_text(frames.TRAITS, inertia.TRAITS)}
-    for layout, frame, option in SUPERELEMENTS:
-        files |= variant_file(layout, frame, option)
-    for name in SHIPPED_ELEMENTS:
-        files[f"{element_name(name)}.py"] = element_text(ELEMENTS[name]())
-    return files
+    return {"options.py": options_text(frame_traits(), inertia_traits())} | files(
+        [*(Variant(*row) for row in SUPERELEMENTS), *ELEMENTS])
 
 
-def variant_file(layout: str, frame: str, inertia: str) -> dict[str, str]:
-    """File name and text of one superelement kernel."""
-    kernel = superelement(Layout.parse(layout), frame, inertia)
-    return {f"{kernel.name}.py": superelement_text(kernel)}
+def files(kernels: Iterable[Variant | str]) -> dict[str, str]:
+    """File name and text of some kernels."""
+    return {file_name(kernel): compile_kernel(kernel) for kernel in kernels}
 
 
-def parse_variant(text: str) -> tuple[str, str, str]:
+def parse_variant(text: str) -> Variant:
     """``LAYOUT[:FRAME[:INERTIA]]`` with the defaults filled in."""
     parts = text.split(":")
     layout = Layout.parse(parts[0])
-    default = "converged_mean" if layout.rotations else "positions"
-    frame = parts[1] if len(parts) > 1 else default
-    inertia = parts[2] if len(parts) > 2 else "b"
-    for value, known, what in ((frame, FRAMES, "frame"), (inertia, OPTIONS, "inertia option")):
+    carried = [name for name, frame in frame_traits().items() if fits(layout, frame)]
+    frame = parts[1] if len(parts) > 1 else (carried or list(FRAMES))[0]
+    inertia = parts[2] if len(parts) > 2 else DEFAULT_INERTIA
+    for value, known, what in ((frame, FRAMES, "frame"),
+                               (inertia, INERTIA_OPTIONS, "inertia option")):
         if value not in known:
             raise LayoutError(f"{what} {value!r} is unknown: use one of {', '.join(known)}")
-    return layout.name, frame, inertia
+    return Variant(layout.name, frame, inertia)
 
 
 def write(directory: Path, files: dict[str, str]) -> list[str]:
@@ -81,7 +79,8 @@ def differences(directory: Path, files: dict[str, str], orphans: bool = True) ->
                                         f"generated/{name}", f"derived/{name}", lineterm="", n=1)
     for path in sorted(directory.glob("*.py")) if orphans else ():
         if path.name.startswith(PREFIXES) and path.name not in files:
-            out.append(f"orphaned: {path.name} is not in derive/manifest.py: add it or delete it")
+            out.append(f"orphaned: {path.name} is not in derive/kernels/manifest.py: "
+                       "add it or delete it")
     return out
 
 
@@ -95,22 +94,21 @@ def main(arguments: list[str] | None = None) -> int:
     directory = Path(sebody.generated.__file__).parent
     try:
         if options.layouts:
-            files = {}
-            for text in options.layouts:
-                files |= variant_file(*parse_variant(text))
+            texts = files(map(parse_variant, options.layouts))
             directory = directory if os.access(directory, os.W_OK) and not os.environ.get(
                 "SEBODY_KERNELS") else user_directory()
         else:
-            files = shipped()
+            texts = shipped()
     except LayoutError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    count = sum(name.startswith(PREFIXES) for name in texts)
     if options.check:
-        found = differences(directory, files, orphans=not options.layouts)
-        print("\n".join(found) if found else f"{len(files)} kernels are up to date")
+        found = differences(directory, texts, orphans=not options.layouts)
+        print("\n".join(found) if found else f"{count} kernels are up to date")
         return 1 if found else 0
-    changed = write(directory, files)
-    print(f"{len(files)} kernels derived, {len(changed)} written to {directory}")
+    changed = write(directory, texts)
+    print(f"{count} kernels derived, {len(changed)} written to {directory}")
     return 0
 
 

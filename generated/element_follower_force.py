@@ -61,7 +61,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Ra_zx = R[9*nodes[0] + 6]
         Ra_zy = R[9*nodes[0] + 7]
         Ra_zz = R[9*nodes[0] + 8]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         g[0] = -amplitude*(Ra_xx*d_x + Ra_xy*d_y + Ra_xz*d_z)
         g[1] = -amplitude*(Ra_yx*d_x + Ra_yy*d_y + Ra_yz*d_z)
         g[2] = -amplitude*(Ra_zx*d_x + Ra_zy*d_y + Ra_zz*d_z)

@@ -42,7 +42,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_x = v[unknowns[0]]
         Oma_y = v[unknowns[1]]
         Oma_z = v[unknowns[2]]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         g[0] = -amplitude*d_x
         g[1] = -amplitude*d_y
         g[2] = -amplitude*d_z

@@ -54,7 +54,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         va_y = v[unknowns[1]]
         Ra_cos = cos(q[unknowns[2]])
         Ra_sin = sin(q[unknowns[2]])
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         g[0] = -amplitude*(Ra_cos*d_x - Ra_sin*d_y)
         g[1] = -amplitude*(Ra_cos*d_y + Ra_sin*d_x)
         g[2] = 0.0

@@ -40,7 +40,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         d_y = constant[1]
         va_x = v[unknowns[0]]
         va_y = v[unknowns[1]]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         g[0] = -amplitude*d_x
         g[1] = -amplitude*d_y
         if task == ENERGY:

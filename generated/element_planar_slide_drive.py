@@ -72,7 +72,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_z = v[unknowns[4]]
         Aa_z = a[unknowns[4]]
         lam_1 = q[unknowns[5]]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
         amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
         t0 = Ra_cos*e_x - Ra_sin*e_y

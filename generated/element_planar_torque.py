@@ -38,7 +38,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g = at(forces, element*WIDTH)
         d_z = constant[0]
         Oma_z = v[unknowns[0]]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         g[0] = -amplitude*d_z
         if task == ENERGY:
             energies[POWERS + index[first + AT_ITEM]] = Oma_z*amplitude*d_z

@@ -52,7 +52,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Omb_z = v[unknowns[1]]
         Ab_z = a[unknowns[1]]
         lam_1 = q[unknowns[2]]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
         amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
         g[0] = lam_1

@@ -88,7 +88,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Aa_y = a[unknowns[7]]
         Aa_z = a[unknowns[8]]
         lam_1 = q[unknowns[9]]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
         amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
         t0 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z

@@ -61,7 +61,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_x = v[unknowns[0]]
         Oma_y = v[unknowns[1]]
         Oma_z = v[unknowns[2]]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         g[0] = -amplitude*(Ra_xx*d_x + Ra_yx*d_y + Ra_zx*d_z)
         g[1] = -amplitude*(Ra_xy*d_x + Ra_yy*d_y + Ra_zy*d_z)
         g[2] = -amplitude*(Ra_xz*d_x + Ra_yz*d_y + Ra_zz*d_z)

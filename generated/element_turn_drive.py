@@ -89,7 +89,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Ab_y = a[unknowns[4]]
         Ab_z = a[unknowns[5]]
         lam_1 = q[unknowns[6]]
-        amplitude = loads[3*index[first + AT_ITEM] + 0]
+        amplitude = loads[3*index[first + AT_ITEM]]
         amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
         amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
         t0 = cos(amplitude)

@@ -62,32 +62,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     ve = at(work, 1*row)
     ae = at(work, 2*row)
     y = at(work, 3*row)
-    yd = at(work, 4*row)
-    ydd = at(work, 5*row)
-    acc = at(work, 6*row)
-    s = at(work, 7*row)
-    p = at(work, 8*row)
-    pd = at(work, 9*row)
-    h = at(work, 10*row)
-    e0s = at(work, 11*row)
-    e1s = at(work, 12*row)
-    gamma = at(work, 13*row)
-    d = at(work, 14*row)
-    weight = at(work, 15*row)
+    e0s = at(work, 4*row)
+    e1s = at(work, 5*row)
+    yd = at(work, 6*row)
+    acc = at(work, 7*row)
+    ydd = at(work, 8*row)
+    gamma = at(work, 9*row)
+    d = at(work, 10*row)
+    s = at(work, 11*row)
+    weight = at(work, 12*row)
+    p = at(work, 13*row)
+    pd = at(work, 14*row)
+    h = at(work, 15*row)
     dqe = at(work, 16*row)
     dve = at(work, 17*row)
     dae = at(work, 18*row)
     dy = at(work, 19*row)
-    dyd = at(work, 20*row)
-    dydd = at(work, 21*row)
-    dacc = at(work, 22*row)
-    ds = at(work, 23*row)
-    dp = at(work, 24*row)
-    dpd = at(work, 25*row)
-    dh = at(work, 26*row)
-    dgamma = at(work, 27*row)
-    dd = at(work, 28*row)
-    dweight = at(work, 29*row)
+    ds = at(work, 20*row)
+    dgamma = at(work, 21*row)
+    dd = at(work, 22*row)
+    dweight = at(work, 23*row)
+    dyd = at(work, 24*row)
+    dacc = at(work, 25*row)
+    dydd = at(work, 26*row)
+    dp = at(work, 27*row)
+    dpd = at(work, 28*row)
+    dh = at(work, 29*row)
     dg = at(work, 30*row)
     for element in range(count):
         first = element*stride
@@ -214,8 +214,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # local accelerations of the nodes, (46), (58)
         for i in range(N_POSITIONS):
             i3 = 3*i
-            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
             ydd[i3] = -Om0_y*vs_z + Om0_z*vs_y + acc_x
             ydd[i3 + 1] = Om0_x*vs_z - Om0_z*vs_x + acc_y
             ydd[i3 + 2] = -Om0_x*vs_y + Om0_y*vs_x + acc_z
@@ -259,12 +259,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+            alpha = alphas[i]
+            px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             mass = masses[0]
-            alpha = alphas[i]
             t15 = alpha*mass
             t16 = X_z + u_z
             t17 = X_y + u_y
@@ -320,10 +320,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
+            alpha = alphas[i]
             px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             pxd_x, pxd_y, pxd_z = pd[i3], pd[i3 + 1], pd[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            alpha = alphas[i]
             t30 = fit*wp_z
             t31 = X_z*fit
             h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t30 + f_x + pxd_x - t31*wp_y
@@ -527,8 +527,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
-                    acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
                     vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+                    acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
                     dv_x, dv_y, dv_z = dve[i3], dve[i3 + 1], dve[i3 + 2]
                     da_x, da_y, da_z = dae[i3], dae[i3 + 1], dae[i3 + 2]
                     dyd[i3] = -dth0_y*vs_z + dth0_z*vs_y + dv_x
@@ -605,11 +605,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                     vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+                    alpha = alphas[i]
+                    px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     mass = masses[0]
-                    alpha = alphas[i]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
@@ -701,8 +701,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                     alpha = alphas[i]
+                    px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
                     dpxd_x, dpxd_y, dpxd_z = dpd[i3], dpd[i3 + 1], dpd[i3 + 2]

@@ -62,29 +62,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     ae = at(work, 2*row)
     y = at(work, 3*row)
     yd = at(work, 4*row)
-    ydd = at(work, 5*row)
-    acc = at(work, 6*row)
-    s = at(work, 7*row)
-    p = at(work, 8*row)
-    pd = at(work, 9*row)
-    h = at(work, 10*row)
-    gamma = at(work, 11*row)
-    d = at(work, 12*row)
-    weight = at(work, 13*row)
+    acc = at(work, 5*row)
+    ydd = at(work, 6*row)
+    gamma = at(work, 7*row)
+    d = at(work, 8*row)
+    s = at(work, 9*row)
+    weight = at(work, 10*row)
+    p = at(work, 11*row)
+    pd = at(work, 12*row)
+    h = at(work, 13*row)
     dqe = at(work, 14*row)
     dve = at(work, 15*row)
     dae = at(work, 16*row)
     dy = at(work, 17*row)
-    dyd = at(work, 18*row)
-    dydd = at(work, 19*row)
-    dacc = at(work, 20*row)
-    ds = at(work, 21*row)
-    dp = at(work, 22*row)
-    dpd = at(work, 23*row)
-    dh = at(work, 24*row)
-    dgamma = at(work, 25*row)
-    dd = at(work, 26*row)
-    dweight = at(work, 27*row)
+    ds = at(work, 18*row)
+    dgamma = at(work, 19*row)
+    dd = at(work, 20*row)
+    dweight = at(work, 21*row)
+    dyd = at(work, 22*row)
+    dacc = at(work, 23*row)
+    dydd = at(work, 24*row)
+    dp = at(work, 25*row)
+    dpd = at(work, 26*row)
+    dh = at(work, 27*row)
     dg = at(work, 28*row)
     for element in range(count):
         first = element*stride
@@ -171,8 +171,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # local accelerations of the nodes, (46), (58)
         for i in range(N_POSITIONS):
             i3 = 2*i
-            acc_x, acc_y = acc[i3], acc[i3 + 1]
             vs_x, vs_y = yd[i3], yd[i3 + 1]
+            acc_x, acc_y = acc[i3], acc[i3 + 1]
             ydd[i3] = Om0_z*vs_y + acc_x
             ydd[i3 + 1] = -Om0_z*vs_x + acc_y
         # their rates, (58)
@@ -212,12 +212,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             X_x, X_y = X[i3], X[i3 + 1]
             u_x, u_y = y[i3], y[i3 + 1]
-            px_x, px_y = p[i3], p[i3 + 1]
             vs_x, vs_y = yd[i3], yd[i3 + 1]
+            alpha = alphas[i]
+            px_x, px_y = p[i3], p[i3 + 1]
             f_x, f_y = s[i3], s[i3 + 1]
             gamma_x, gamma_y = gamma[0], gamma[1]
             mass = masses[0]
-            alpha = alphas[i]
             t2 = alpha*mass
             F_x += -f_x - gamma_x*t2
             F_y += -f_y - gamma_y*t2
@@ -248,10 +248,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             fit = fits[i]
             X_x, X_y = X[i3], X[i3 + 1]
+            alpha = alphas[i]
             px_x, px_y = p[i3], p[i3 + 1]
             pxd_x, pxd_y = pd[i3], pd[i3 + 1]
             f_x, f_y = s[i3], s[i3 + 1]
-            alpha = alphas[i]
             t4 = fit*wp_z
             h[i3] = F_x*alpha - Om0_z*px_y + X_y*t4 + f_x + pxd_x
             h[i3 + 1] = F_y*alpha + Om0_z*px_x - X_x*t4 + f_y + pxd_y
@@ -374,8 +374,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # differential: velocity and acceleration of the nodes in frame axes, (33)
                 for i in range(N_POSITIONS):
                     i3 = 2*i
-                    acc_x, acc_y = acc[i3], acc[i3 + 1]
                     vs_x, vs_y = yd[i3], yd[i3 + 1]
+                    acc_x, acc_y = acc[i3], acc[i3 + 1]
                     dv_x, dv_y = dve[i3], dve[i3 + 1]
                     da_x, da_y = dae[i3], dae[i3 + 1]
                     dyd[i3] = dth0_z*vs_y + dv_x
@@ -438,11 +438,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 2*i
                     X_x, X_y = X[i3], X[i3 + 1]
                     u_x, u_y = y[i3], y[i3 + 1]
-                    px_x, px_y = p[i3], p[i3 + 1]
                     vs_x, vs_y = yd[i3], yd[i3 + 1]
+                    alpha = alphas[i]
+                    px_x, px_y = p[i3], p[i3 + 1]
                     f_x, f_y = s[i3], s[i3 + 1]
                     mass = masses[0]
-                    alpha = alphas[i]
                     du_x, du_y = dy[i3], dy[i3 + 1]
                     dgamma_x, dgamma_y = dgamma[0], dgamma[1]
                     df_x, df_y = ds[i3], ds[i3 + 1]
@@ -487,8 +487,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 2*i
                     fit = fits[i]
                     X_x, X_y = X[i3], X[i3 + 1]
-                    px_x, px_y = p[i3], p[i3 + 1]
                     alpha = alphas[i]
+                    px_x, px_y = p[i3], p[i3 + 1]
                     df_x, df_y = ds[i3], ds[i3 + 1]
                     dpx_x, dpx_y = dp[i3], dp[i3 + 1]
                     dpxd_x, dpxd_y = dpd[i3], dpd[i3 + 1]

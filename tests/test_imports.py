@@ -26,8 +26,8 @@ ROOMS = {
     "analysis": {"kernels", "engine", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "results"},
-    "studies": {"kernels", "engine", "fem", "reduction", "model", "assembly", "results",
-                "analysis", "scenes"},
+    "studies": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly",
+                "results", "analysis", "scenes"},
     "cli": {"kernels", "results", "analysis", "scenes", "studies"},
     "derive": {"kernels"},
 }

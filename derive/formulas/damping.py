@@ -5,24 +5,26 @@ rigid motion has no such rates, however fast, and is not damped. (The ``ydot`` o
 options is another thing: velocities, not rates of deformation.)
 """
 
-from sebody.derive.formulas.frames import origin_stage
+from sebody.derive.formulas.frames.frame import origin_stage
 from sebody.derive.formulas.kinematics import elastic_rotation_variation, local_displacement
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.steps import Damping, Linearizer, Product, Stage, Step, Text
+from sebody.derive.symbolic.linearize import Linearizer
+from sebody.derive.symbolic.steps import Damping, Product, Shift, Stage, Step
 
 FRICTION = Product("damping force, friction = Cbar eta", "C", "eta", "friction")
+ADDED = Shift("forces conjugate to y, damping included", "s", "friction", "+")
 
 
 def damping(q: Quantities) -> Damping:
     """Rates of deformation and the damping forces, added to the elastic ones."""
-    return Damping("structural damping", (*_rates(q), FRICTION, _added("")))
+    return Damping("structural damping", (*_rates(q), FRICTION, ADDED))
 
 
 def linearized_damping(q: Quantities, chain: Linearizer) -> Damping:
     """Their differentials; velocities must have been moved before."""
     steps: list[Step] = [chain.stage(step) for step in _rates(q)]
     return Damping("differential: structural damping",
-                   (*steps, FRICTION.differential(), _added("d")))
+                   (*steps, FRICTION.differential(), ADDED.differential()))
 
 
 def _rates(q: Quantities) -> tuple[Stage, ...]:
@@ -35,7 +37,3 @@ def _rates(q: Quantities) -> tuple[Stage, ...]:
                   sets=((q.ep, elastic_rotation_variation(q).xreplace(in_time)),)),
             Stage("rates of the internal modes", "mode", sets=((q.em, q.vm.symbols),)))
 
-
-def _added(d: str) -> Text:
-    return Text("forces conjugate to y, damping included",
-                ("for i in range(n):", f"    {d}s[i] += {d}friction[i]"))

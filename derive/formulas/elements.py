@@ -60,12 +60,23 @@ class Element(NamedTuple):
     blocks: tuple[Block, ...]           # positions first
     multipliers: tuple[sp.Symbol, ...]
     residual: tuple[sp.Expr, ...]       # force on the coordinates, then phi
-    linear: tuple[sp.Expr, ...]         # a column of the matrix
-    on_multipliers: sp.Matrix           # derivative of the force by the multipliers
     velocity: tuple[sp.Expr, ...]       # phi differentiated in time, once
     second: tuple[sp.Expr, ...]         # and twice
     sums: dict[str, sp.Expr]            # what it adds to the energies, by name
     power: sp.Expr | None               # of loads, dampers and drives on the system
+    linear: tuple[sp.Expr, ...] = ()    # a column of the matrix
+    on_multipliers: sp.Matrix = sp.zeros(0, 0)  # derivative of the force by the multipliers
+
+    @property
+    def coordinates(self) -> int:
+        """Number of unknowns that are no multipliers."""
+        return len(self.residual) - len(self.multipliers)
+
+    @property
+    def printed(self) -> list[sp.Expr]:
+        """Every expression the kernel evaluates, the multipliers' columns apart."""
+        return [*self.residual, *self.linear, *self.velocity, *self.second, *self.sums.values(),
+                *([] if self.power is None else [self.power])]
 
 
 def constant(space: Space, name: str, kind: str, meaning: str) -> Constant:
@@ -132,15 +143,23 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
     force = [entry for block in blocks for entry in space.components(
         block.direction.kind, _of(work, block.direction.symbols)
         + _of(dissipation, block.rate.symbols) + _inertia(kinetic, block, vary, time))]
-    gradient = sp.Matrix(force).jacobian(sp.Matrix(lam)) if lam else sp.zeros(len(force), 0)
-    _check_gradient(blocks, lam, constraints, gradient, vary)
     velocity = [differential(phi, time) for phi in constraints]
     return Element(
         name, ("planar " if space.planar else "") + summary, space, tuple(constants),
-        tuple(blocks), lam, (*force, *constraints), _column(blocks, force, constraints, vary),
-        gradient, tuple(velocity), tuple(differential(v, time) for v in velocity),
+        tuple(blocks), lam, (*force, *constraints), tuple(velocity),
+        tuple(differential(v, time) for v in velocity),
         _sums(blocks, kinetic, strain, potential),
         _power(blocks, lam, constraints, dissipation, load))
+
+
+def linearized(given: Element) -> Element:
+    """The element with the columns of its matrix."""
+    force, constraints = given.residual[:given.coordinates], given.residual[given.coordinates:]
+    lam, vary = given.multipliers, varied(given.blocks)
+    gradient = sp.Matrix(force).jacobian(sp.Matrix(lam)) if lam else sp.zeros(len(force), 0)
+    _check_gradient(given.blocks, lam, constraints, gradient, vary)
+    return given._replace(linear=_column(given.blocks, force, constraints, vary),
+                          on_multipliers=gradient)
 
 
 def _inertia(kinetic: sp.Expr, block: Block, vary: Rules, time: Rules) -> sp.Matrix:

@@ -16,8 +16,11 @@ from typing import NamedTuple
 import sympy as sp
 
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.steps import Linearizer, Product, Stage, Step, Text, cross
+from sebody.derive.symbolic.linearize import Linearizer
+from sebody.derive.symbolic.steps import Product, Shift, Stage, Step, cross
 from sebody.derive.symbolic.variation import along, check_same, differential, turning
+
+TAKEN_OFF = Shift("force conjugate to y, elastic and gravity", "s", "weight", "-")
 
 
 class Gravity(NamedTuple):
@@ -68,8 +71,3 @@ def linearized(q: Quantities, gravity: Gravity, chain: Linearizer) -> tuple[Step
     chain.move(q.d)
     return (*steps, *(p.differential() for p in gravity.products))
 
-
-def taken_off(d: str) -> Text:
-    """The forces conjugate to y: elastic ones less the weight."""
-    return Text("force conjugate to y, elastic and gravity",
-                ("for i in range(n):", f"    {d}s[i] -= {d}weight[i]"))

@@ -1,12 +1,14 @@
 """Layouts: which triplets each boundary node of a superelement keeps (23), (39)."""
 
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
-from sebody.kernels.layout import LETTERS, layout_name
+from sebody.kernels.layout import LETTERS, FrameTraits, layout_name
 from sebody.kernels.names import layout_variant
 
 PATTERN = re.compile(r"(planar-)?(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?(d)?")
+NUMBERS = "no", "one", "two", "three", "four", "five", "six"
 
 
 class LayoutError(ValueError):
@@ -80,3 +82,33 @@ class Layout(NamedTuple):
     def first_mode(self) -> int:
         """Index in ``y`` of the first internal mode."""
         return self.first_rotation + self.rotation_size * self.rotations
+
+
+def fits(layout: Layout, frame: FrameTraits) -> bool:
+    """Whether a layout can carry a frame."""
+    return ((layout.rotations > 0 or not frame.needs_rotations)
+            and layout.positions >= frame.fewest_positions[layout.planar]
+            and (frame.planar or not layout.planar))
+
+
+def check_frame(layout: Layout, frame: str, frames: Mapping[str, FrameTraits]) -> None:
+    """Refuse a frame that a layout cannot carry.
+
+    Raises
+    ------
+    LayoutError
+        With the frames that it can carry.
+    """
+    traits = frames[frame]
+    able = [name for name, other in frames.items() if fits(layout, other)]
+    others = " or ".join(map(repr, able)) or "a layout with more nodes"
+    if traits.needs_rotations and not layout.rotations:
+        raise LayoutError(f"layout {layout.name} keeps no rotation, so the frame {frame!r} has "
+                          f"nothing to average: use the frame {others}")
+    if not fits(layout, traits._replace(planar=True)):
+        spatial, planar = (NUMBERS[count] for count in traits.fewest_positions)
+        raise LayoutError(f"layout {layout.name} has too few positions for the frame {frame!r}, "
+                          f"which needs {spatial} nodes ({planar} in a plane): use {others}")
+    if not fits(layout, traits):
+        same = next(name for name in able if frames[name].needs_rotations)
+        raise LayoutError(f"in a plane the frame {frame!r} coincides with {same!r}: use that one")

@@ -5,10 +5,10 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
+from sebody.derive.printing.expressions import WIDTH
 from sebody.kernels import layout
 
 MODULES = "layout", "abi", "dense", "frame_search", "pipeline", "rotations"
-WIDTH = 100
 
 
 @cache

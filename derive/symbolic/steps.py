@@ -1,16 +1,44 @@
-"""Named quantities and the stages that compute one from another: what a kernel is made of.
+"""Named quantities and the steps that compute one from another: what a kernel is made of.
 
-A kernel is a list of stages in the order of computation. Its linearization is the differential
-of each stage, by the chain rule over the *named* quantities, in the same order.
+A kernel is a list of steps in the order of computation. Its linearization is the differential
+of each, by the chain rule over the *named* quantities, in the same order. Titles are comments of
+the kernel and nothing else. Every step reports the arrays and the runtime's functions it uses.
 """
 
+from collections.abc import Iterable
+from enum import Enum, auto
 from typing import NamedTuple
 
 import sympy as sp
 
 from sebody.derive.symbolic.rotations import skew, stumpff, tangent_inverse
 from sebody.derive.symbolic.spaces import Quantity, Space
-from sebody.derive.symbolic.variation import Rules, along, check_same, differential
+
+Names = dict[sp.Expr, sp.Symbol]    # opaque functions -> symbols that hold their values
+
+
+class Role(Enum):
+    """How the linearization treats a stage."""
+
+    PLAIN = auto()          # by the chain rule
+    BY_RULE = auto()        # its differential is among the rules: nothing to compute
+    NODE_FORCE = auto()     # its differential stays in the axes of the frame
+
+
+class Uses(NamedTuple):
+    """Arrays, in the order of use, and functions of the runtime."""
+
+    arrays: tuple[str, ...]
+    calls: tuple[str, ...] = ()
+
+
+class Entry(NamedTuple):
+    """One component that is set or added to."""
+
+    quantity: Quantity
+    symbol: sp.Symbol
+    adds: bool
+    value: sp.Expr
 
 
 class Stage(NamedTuple):
@@ -22,6 +50,21 @@ class Stage(NamedTuple):
     adds: tuple[tuple[Quantity, sp.Matrix], ...] = ()
     short: tuple[sp.Matrix, ...] = ()           # hand-shortened differentials of `sets`, proved
     continues: bool = False                     # `adds` goes on with the sum of an earlier stage
+    role: Role = Role.PLAIN
+
+    def entries(self, space: Space) -> list[Entry]:
+        """Its formulas component by component."""
+        return [Entry(quantity, symbol, adds, value)
+                for group, adds in ((self.sets, False), (self.adds, True))
+                for quantity, values in group
+                for symbol, value in zip(quantity.kept, space.components(quantity.kind, values),
+                                         strict=True)]
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """Arrays of what it reads and writes."""
+        entries = named(self.entries(space), names)
+        written = dict.fromkeys(e.quantity.array for e in entries)
+        return Uses((*_arrays(space, (e.value for e in entries)), *written))
 
 
 class Product(NamedTuple):
@@ -38,6 +81,10 @@ class Product(NamedTuple):
         return self._replace(title="differential: " + self.title, vector="d" + self.vector,
                              out="d" + self.out)
 
+    def uses(self, space: Space, names: Names) -> Uses:
+        """The matrix and both vectors."""
+        return Uses((self.matrix, self.vector, self.out), ("columns_times",))
+
 
 class Solve(NamedTuple):
     """A linear 3-vector equation ``sum_j summand_j(unknown) + constant = 0`` over `over` nodes.
@@ -53,16 +100,104 @@ class Solve(NamedTuple):
     inverse: str
     transposed: bool = False
     invert: bool = False
+    weight: sp.Symbol | None = None     # of a node, adding up to one over the nodes
+    role: Role = Role.PLAIN
+
+    def matrix(self, space: Space) -> sp.Matrix:
+        """Matrix of one summand, without the axes that a plane drops."""
+        matrix = solve_matrix(self)
+        return matrix[2:, 2:] if space.planar else matrix
+
+    def known_matrix(self, space: Space) -> sp.Matrix | None:
+        """The sum over the nodes, where it is known beforehand: weights add up to one."""
+        if self.weight is None:
+            return None
+        value = (self.matrix(space) / self.weight).applyfunc(sp.cancel)
+        return None if value.free_symbols else value
+
+    def right_side(self, space: Space) -> list[sp.Expr]:
+        """What the nodes add to the right-hand side."""
+        zero = {s: 0 for s in self.unknown.kept}
+        return [-e for e in space.components("axial", self.summand.subs(zero))]
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """Arrays of what is summed, and the inversion where there is one to be done."""
+        inverted = self.invert and self.known_matrix(space) is None
+        values = [*self.right_side(space), *space.components("axial", self.constant),
+                  *(self.matrix(space) if inverted else ())]
+        return Uses(_arrays(space, (name_functions(sp.sympify(v), names) for v in values)),
+                    ("inverse_3",) * (inverted and not space.planar))
 
 
-class Text(NamedTuple):
-    """Kernel text that calls an algorithm of the runtime (a root search, a logarithm)."""
+class Tail(NamedTuple):
+    """An array from a place on, as an argument of a search."""
+
+    array: str
+    first: str
+
+
+class Search(NamedTuple):
+    """A call of a search of the runtime that may fail: then its status is the kernel's."""
 
     title: str
-    lines: tuple[str, ...]
-    calls: tuple[str, ...] = ()
-    over: str = "element"
-    operations: int = 0         # arithmetic of one pass, for the operation count
+    function: str
+    arguments: tuple[str | Tail, ...]
+    operations: int                     # arithmetic, for the operation count
+    finds: Quantity | None = None       # the rotation it leaves in the array of the frame
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """The function and the arrays among its arguments."""
+        return Uses(tuple(a.array if isinstance(a, Tail) else a for a in self.arguments),
+                    (self.function,))
+
+
+class Values(NamedTuple):
+    """Values of a function of the runtime of the square of a vector."""
+
+    title: str
+    outputs: tuple[Quantity, ...]
+    function: str
+    of: Quantity
+    operations: int                     # arithmetic of one evaluation, for the operation count
+
+    @property
+    def over(self) -> str:
+        """Where there is one value each."""
+        return self.of.home
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """The function, the vector and the values."""
+        return Uses((self.of.array, *(q.array for q in self.outputs)), (self.function,))
+
+
+class Shift(NamedTuple):
+    """``to += what`` of whole rows of local coordinates, or ``to -= what``."""
+
+    title: str
+    to: str
+    what: str
+    sign: str
+
+    def differential(self) -> "Shift":
+        """The same of the differentials."""
+        return self._replace(to="d" + self.to, what="d" + self.what)
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """Both rows."""
+        return Uses((self.to, self.what))
+
+
+class Scaling(NamedTuple):
+    """Rows of local coordinates, and quantities of the element, times a factor."""
+
+    title: str
+    rows: tuple[str, ...]
+    quantities: tuple[Quantity, ...]
+    factor: str
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """The rows."""
+        return Uses(self.rows)
 
 
 class Damping(NamedTuple):
@@ -71,61 +206,31 @@ class Damping(NamedTuple):
     title: str
     steps: tuple
 
-
-Step = Stage | Product | Solve | Text | Damping
-
-
-class Linearizer:
-    """Differentiates stages by the chain rule over named quantities.
-
-    Parameters
-    ----------
-    space : Space
-    rules : dict
-        Differentials of the quantities the stages start from.
-    """
-
-    def __init__(self, space: Space, rules: Rules):
-        self.space = space
-        self.rules = dict(rules)
-
-    def move(self, quantity: Quantity) -> None:
-        """Let a quantity vary from here on, along its own differential."""
-        self.rules |= along_own(self.space, quantity)
-
-    def stage(self, step: Stage) -> Stage:
-        """The differential of a stage; a short form is proved against the chain rule first."""
-        chains = [differential(expression, self.rules) for _, expression in step.sets]
-        results = self._proved(step, chains) if step.short else chains
-        d = self.space.d
-        sets = tuple((d(q), e) for (q, _), e in zip(step.sets, results, strict=True))
-        adds = tuple((d(q), differential(e, self.rules)) for q, e in step.adds)
-        for quantity, _ in (*step.sets, *step.adds):
-            self.move(quantity)
-        return Stage("differential: " + step.title, step.over, sets, adds,
-                     continues=step.continues)
-
-    def _proved(self, step, chains):
-        frames = [q.symbols for q in self.space.known.values() if q.kind == "rotation"]
-        meaning = {s: e for q, value in step.sets
-                   for s, e in zip(q.symbols, value, strict=True) if isinstance(s, sp.Symbol)}
-        for (quantity, _), short, chain in zip(step.sets, step.short, chains, strict=True):
-            check_same(f"differential of {quantity.name}", short.subs(meaning), chain, frames)
-        return step.short
-
-    def solve(self, step: Solve) -> Solve:
-        """``B du = - d(equation) at fixed u``: the same matrix, a new right-hand side."""
-        d_unknown = self.space.d(step.unknown)
-        summand = solve_matrix(step) * d_unknown.symbols + differential(step.summand, self.rules)
-        constant = differential(step.constant, self.rules)
-        self.move(step.unknown)
-        return Solve("differential: " + step.title, d_unknown, step.over, summand, constant,
-                     step.inverse, step.transposed)
+    def uses(self, space: Space, names: Names) -> Uses:
+        """What its steps use."""
+        return united(step.uses(space, names) for step in self.steps)
 
 
-def along_own(space: Space, quantity: Quantity) -> Rules:
-    """Rules that move a quantity along its own differential."""
-    return along(quantity.symbols, space.d(quantity).symbols)
+Step = Stage | Product | Solve | Search | Values | Shift | Scaling | Damping
+
+
+def united(uses: Iterable[Uses]) -> Uses:
+    """Everything that some steps use, each thing once and in the order of first use."""
+    found = list(uses)
+    return Uses(tuple(dict.fromkeys(a for u in found for a in u.arrays if a)),
+                tuple(dict.fromkeys(c for u in found for c in u.calls)))
+
+
+def named(entries: Iterable[Entry], names: Names) -> list[Entry]:
+    """Entries with named functions, without those that add nothing."""
+    found = [e._replace(value=name_functions(sp.sympify(e.value), names)) for e in entries]
+    return [e for e in found if not (e.adds and e.value == 0)]
+
+
+def _arrays(space: Space, values: Iterable[sp.Expr]) -> tuple[str, ...]:
+    """Arrays of the quantities in some expressions, in the order of the quantities."""
+    used = set().union(*(value.free_symbols for value in values))
+    return tuple(q.array for q in space.known.values() if q.array and used & set(q.kept))
 
 
 def solve_matrix(step: Solve) -> sp.Matrix:
@@ -135,7 +240,7 @@ def solve_matrix(step: Solve) -> sp.Matrix:
     return sp.Matrix.hstack(*columns)
 
 
-def name_functions(expression: sp.Expr, names: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
+def name_functions(expression: sp.Expr, names: Names) -> sp.Expr:
     """Replace evaluated opaque functions by the quantities that hold their values."""
     found = {f: names[f] for f in expression.atoms(stumpff, tangent_inverse) if f in names}
     return expression.xreplace(found)

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.build import work_size
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.engine.newton import SLOWEST
 from sebody.engine.state import (
     AUX_STEP,
     CLOCKS,
@@ -20,8 +21,6 @@ from sebody.engine.system import System
 from sebody.kernels.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
 from sebody.model.mechanism import Mechanism
 from sebody.results.recording import record_counts
-
-SLOW_CONTRACTION = 0.95     # what Newton's iteration is taken to contract by before it was seen
 
 
 def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
@@ -42,7 +41,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     zeros = np.zeros
     clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
     clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
-    clock[CONTRACTION] = SLOW_CONTRACTION
+    clock[CONTRACTION] = SLOWEST
     control[WANTED] = RENEWED
     coefficients = zeros(COEFFICIENTS.size(counts))
     coefficients[FIELD:FIELD + model.dimension] = model.gravity_field

@@ -1,38 +1,38 @@
 """Rigid links of a model as arrays, see `sebody.engine.links`."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.batches import Batch
 from sebody.assembly.numbering import Numbering
 from sebody.engine.links import Links
 from sebody.model.mechanism import Mechanism
 
 
-def link_arrays(model: Mechanism, numbering: Numbering, batches: list,
+class _Ends(NamedTuple):
+    """The ends of all links, and what positions are solved for in."""
+
+    hanging: list[tuple[int, int, int, int]]    # rows of `Links.hanging`
+    arms: list[tuple[int, int]]                 # and of `Links.arms`
+    vectors: list[NDArray]
+    number: dict[int, int]                      # first coordinate -> row of hanging
+    frame_of: dict[int, int]                    # first coordinate -> frame it is solved for in
+    sizes: tuple[int, int]                      # coordinates of a position and of a rotation
+
+
+def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
                 turned: NDArray) -> tuple[Links, NDArray, NDArray]:
     """Links without their matrix entries, and rows and columns of these."""
-    d = model.dimension
-    hanging, arms, vectors = [], [], []
-    for triplet in numbering.hanging:
-        first = len(arms)
-        for rotation, arm in triplet.arms:
-            arms.append((numbering.rotations.get(id(rotation), 0),
-                         numbering.triplets[id(rotation)]))
-            vectors.append(arm)
-        hanging.append((numbering.triplets[id(triplet)], numbering.triplets[id(triplet.root)],
-                        first, len(arms)))
-    which = {row[0]: k for k, row in enumerate(hanging)}
-    frame_of = dict(turned.tolist())
+    ends = _ends(model, numbering, turned)
     elements, maps, blocks, rows, columns = [], [], [], [], []
     start = 0
     for batch in batches:
         for unknowns in batch.unknowns:
-            if any(u in which for u in unknowns):
-                element = _expanded(unknowns, which, hanging, arms, frame_of, d,
-                                    model.rotation_size, len(maps))
-                wide, own_map, own_blocks = element
+            if any(u in ends.number for u in unknowns):
+                wide, own_map, own_blocks = _expanded(unknowns, ends, len(maps))
                 elements.append((start, batch.width, len(wide), len(maps), len(rows),
                                  len(blocks), len(blocks) + len(own_blocks)))
                 maps += own_map
@@ -40,19 +40,16 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list,
                 rows += np.repeat(wide, len(wide)).tolist()
                 columns += wide * len(wide)
             start += batch.width ** 2
-    size = model.rotation_size
-    for _, first in arms:
-        own = list(range(first, first + size))
-        rows += np.repeat(own, size).tolist()
-        columns += own * size
-
-    def table(values, width):
-        return np.array(values, dtype=np.int64).reshape(-1, width)
+    d, turning = ends.sizes
+    for _, first in ends.arms:
+        own = list(range(first, first + turning))
+        rows += np.repeat(own, turning).tolist()
+        columns += own * turning
     none = np.zeros(0, dtype=np.int64)
-    links = Links(table(hanging, 4), table(arms, 2),
-                  np.array(vectors, dtype=float).reshape(-1, d), table(elements, 7),
-                  table(maps, 1).ravel(), table(blocks, 4), none, none)
-    return links, table(rows, 1).ravel(), table(columns, 1).ravel()
+    links = Links(_table(ends.hanging, 4), _table(ends.arms, 2),
+                  np.array(ends.vectors, dtype=float).reshape(-1, d), _table(elements, 7),
+                  _table(maps, 1).ravel(), _table(blocks, 4), none, none)
+    return links, _table(rows, 1).ravel(), _table(columns, 1).ravel()
 
 
 def with_entries(links: Links, entries: NDArray) -> Links:
@@ -62,12 +59,28 @@ def with_entries(links: Links, entries: NDArray) -> Links:
     return replace(links, entries=own, arm_entries=of_arms)
 
 
-def _expanded(unknowns, which, hanging, arms, frame_of, d, turning, at_map):
-    """Unknowns of an element with links replaced; see `link_arrays` for map and blocks."""
-    inner = {u + k for u in unknowns if u in which for k in range(d)}
+def _ends(model: Mechanism, numbering: Numbering, turned: NDArray) -> _Ends:
+    hanging, arms, vectors = [], [], []
+    for triplet in numbering.hanging:
+        first = len(arms)
+        for rotation, arm in triplet.arms:
+            arms.append((numbering.rotations.get(id(rotation), 0),
+                         numbering.triplets[id(rotation)]))
+            vectors.append(arm)
+        hanging.append((numbering.triplets[id(triplet)], numbering.triplets[id(triplet.root)],
+                        first, len(arms)))
+    return _Ends(hanging, arms, vectors, {row[0]: k for k, row in enumerate(hanging)},
+                 dict(turned.tolist()), (model.dimension, model.rotation_size))
+
+
+def _expanded(unknowns: list[int], ends: _Ends,
+              at_map: int) -> tuple[list[int], list[int], list[tuple[int, int, int, int]]]:
+    """Unknowns of an element with links replaced; see `sebody.engine.links` for map and blocks."""
+    d, turning = ends.sizes
+    inner = {u + k for u in unknowns if u in ends.number for k in range(d)}
     wide = [u for u in dict.fromkeys(unknowns) if u not in inner]
 
-    def first_of(unknown, count):
+    def first_of(unknown: int, count: int) -> int:
         for k in range(count):
             if unknown + k not in wide:
                 wide.append(unknown + k)
@@ -75,9 +88,13 @@ def _expanded(unknowns, which, hanging, arms, frame_of, d, turning, at_map):
     local = [-1 if u in inner else wide.index(u) for u in unknowns]
     blocks = []
     for i, u in enumerate(unknowns):
-        if u in which:
-            _, root, first, last = hanging[which[u]]
-            blocks.append((i, which[u], at_map + len(local), frame_of.get(root, -1)))
+        if u in ends.number:
+            _, root, first, last = ends.hanging[ends.number[u]]
+            blocks.append((i, ends.number[u], at_map + len(local), ends.frame_of.get(root, -1)))
             local.append(first_of(root, d))
-            local += [first_of(arms[k][1], turning) for k in range(first, last)]
+            local += [first_of(ends.arms[k][1], turning) for k in range(first, last)]
     return wide, local, blocks
+
+
+def _table(values: list, width: int) -> NDArray:
+    return np.array(values, dtype=np.int64).reshape(-1, width)

@@ -2,6 +2,7 @@
 
 import argparse
 
+from sebody.kernels.names import ELEMENT
 from sebody.studies.catalogue import kernels, scenes
 
 
@@ -24,5 +25,5 @@ def run(options: argparse.Namespace) -> int:
           "  inertia a: angular velocities in frame axes, b: material\n"
           "  other layouts: python -m sebody.derive LAYOUT")
     print("\njoints and loads")
-    print("  " + ", ".join(k.name.removeprefix("element_") for k in found if not k.layout))
+    print("  " + ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout))
     return 0

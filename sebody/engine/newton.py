@@ -38,6 +38,8 @@ from sebody.kernels.layout import C_MASS, C_RATE
 from sebody.kernels.pipeline import compiled
 
 MAX_ITERATIONS = 12
+SLOWEST = 0.95          # contraction that is assumed where nothing is known, and believed at most
+FASTEST = 1e-3          # and at least
 YOUNG = 3               # steps with new matrices that tell how fast the iteration can be
 WORTH = 30.0            # new matrices cost about so many iterations,
 TURNED_WORTH = 4.0      # and one of the bodies' old ones
@@ -113,7 +115,7 @@ def _verdict(system, state, norm, left_norm, target):
     control[ITERATION] = iteration + 1
     control[ITERATIONS] += 1
     clock[LAST_NORM] = left_norm
-    rate = min(max(rate, 1e-3), 0.95)
+    rate = min(max(rate, FASTEST), SLOWEST)
     if rate / (1.0 - rate) * left_norm <= target:
         return CONVERGED
     left = MAX_ITERATIONS - iteration - 1
@@ -203,7 +205,7 @@ def watch_age(state):
     if control[ITERATION] < 2:
         return
     if control[AGE] <= YOUNG:
-        clock[YOUNG_RATE] = min(clock[YOUNG_RATE], max(clock[CONTRACTION], 1e-3))
+        clock[YOUNG_RATE] = min(clock[YOUNG_RATE], max(clock[CONTRACTION], FASTEST))
         return
     needed = 1.0 + max(clock[SPAN], 0.0) / -np.log(clock[YOUNG_RATE])
     clock[EXCESS] += max(control[ITERATION] - np.ceil(needed), 0.0)

@@ -113,12 +113,12 @@ class State(Arrays):
 # belong to, CHOSEN the one the error asks for
 (TIME, STEP, CURRENT_STEP, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, SPAN, YOUNG_RATE,
  EXCESS, BEND, AUX_STEP, CHOSEN, LARGEST_ERROR, TARGET) = range(15)
-CLOCKS = 15
+CLOCKS = TARGET + 1
 # State.control; SECANT where the last correction belongs to this step and its matrix
 (PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
  RECORDED, AGE, PIVOTED, EAGER, EAGER_LEFT, ADAPTIVE, CORNER, HELD, REJECTED,
  SECANT) = range(22)
-CONTROLS = 22
+CONTROLS = SECANT + 1
 
 
 @dataclass(frozen=True, eq=False)

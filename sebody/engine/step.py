@@ -4,7 +4,7 @@ The unknowns of a step are the increments dq (rotations: R exp(dTheta)) and the 
 """
 
 from sebody.engine.evaluate import move_prescribed, set_loads, set_powers, turn_rotations
-from sebody.engine.newton import watch_age
+from sebody.engine.newton import SLOWEST, watch_age
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
@@ -185,7 +185,7 @@ def back(state):
         state.frames[i] = state.frames_old[i]
     state.control[PHASE] = BEGIN
     state.control[WANTED] = RENEWED
-    state.clock[CONTRACTION] = 0.95     # nothing is known of the next attempt
+    state.clock[CONTRACTION] = SLOWEST      # nothing is known of the next attempt
 
 
 @compiled

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from sebody.errors import InputError
 from sebody.kernels.loader import user_directory
+from sebody.kernels.names import PREFIXES
 
 
 class Kernel(NamedTuple):
@@ -50,8 +51,7 @@ def kernel_files() -> dict[str, Path]:
     """Files of the kernels by name: in the user's directory and, before them, in the package."""
     found = {path.stem: path for folder in (sorted(user_directory().glob("*.py")),
                                             _files("sebody.generated")) for path in folder}
-    return {name: found[name] for name in sorted(found)
-            if name.startswith(("superelement_", "element_"))}
+    return {name: found[name] for name in sorted(found) if name.startswith(PREFIXES)}
 
 
 def kernels() -> list[Kernel]:

@@ -1,10 +1,13 @@
-"""The estimated error of a run against the true one."""
+"""The estimated error of a run against the true one, and the difference of two runs."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from sebody import Model
-from sebody.analysis.accuracy import simulate_within
+from sebody import Model, simulate
+from sebody.analysis.accuracy import difference, simulate_within
 from sebody.analysis.tolerance import Tolerance
 
 
@@ -26,3 +29,22 @@ def test_the_estimated_error_is_the_true_one(allowed):
     exact = 1.0 + amplitude * np.sin(omega * result.t)
     true = np.sqrt(np.mean((result["ball.position"][:, 0] - exact)**2)) / allowed
     assert result.error == pytest.approx(true, rel=0.05)
+
+
+def test_difference_of_rotations_is_their_angle():
+    """Two runs alike, but for matrices turned by a small angle against each other."""
+    model = Model()
+    model.rigid_body("body", model.node("centre", (0, 0, 0)), 1.0, (1.0, 2.0, 2.5))
+    model.initial_velocity("centre", angular=(0.3, -0.2, 0.5))
+    one = simulate(model, 0.01, 0.5)
+    other = replace(one, rows=one.rows.copy())
+    angle = 3e-4 * np.sin(7.0 * one.t)
+    axis = np.array([2.0, -1.0, 2.0]) / 3
+    turned = (Rotation.from_matrix(one["centre.rotation"])
+              * Rotation.from_rotvec(np.outer(angle, axis))).as_matrix()
+    other.recorded("R")[:] = turned.reshape(-1, 9)
+    assert np.shares_memory(other.recorded("R"), other.rows)
+    expected = np.sqrt(np.mean(angle**2)) / (1e-3 + 2e-3)
+    allowed = Tolerance(1e-3, 1.0, 2e-3)
+    assert difference(one, other, allowed) == pytest.approx(expected, rel=1e-6)
+    assert difference(one, one, allowed) == 0.0

@@ -9,10 +9,9 @@ from helpers import order
 from scipy.spatial.transform import Rotation
 
 from sebody import Simulation, generalized_alpha
-from sebody.derive.formulas import inertia
-from sebody.derive.kernels import superelement
-from sebody.derive.kernels.layouts import Layout
-from sebody.derive.printing.emit import superelement_text
+from sebody.derive.compiler import Variant, compile_kernel
+from sebody.derive.formulas.inertia import option_b
+from sebody.derive.kernels import linearize, superelement
 from sebody.kernels.loader import load
 from sebody.scenes.hinged_beam import build
 from sebody.studies.check import states, superelements
@@ -35,10 +34,10 @@ class PaperMatrices:
 
     def __init__(self, case, option="b"):
         n = case.n
-        alpha = case.constants[4:6]
-        self.M = superelements.Constants(case).M
+        constants = states.constants_of(case)
+        alpha, self.M = constants["alpha_rs"], constants["M"]
         nodes = Rotation.from_matrix(case.R.reshape(2, 3, 3))
-        R0 = superelements._mean_rotation(case).reshape(3, 3)
+        R0 = superelements.mean_rotation(case).reshape(3, 3)
         psi = (Rotation.from_matrix(R0).inv() * nodes).as_rotvec()
         parts = [a * np.linalg.inv(tangent(p)) for a, p in zip(alpha, psi, strict=True)]
         B = sum(part.T for part in parts)
@@ -118,19 +117,23 @@ def test_mass_48_60(state):
 @pytest.fixture(scope="module")
 def printed_kernel(tmp_path_factory):
     """The kernel of option B with the frame term of (57) as printed, with a plus."""
-    right = inertia.position_part
+    right = option_b.position_part
 
     def printed(q):
         stage, force, on_frame = right(q)
         return stage, force, -on_frame
 
-    superelement._derived.cache_clear()
+    def forget():
+        superelement.node_formulas.cache_clear()
+        linearize.node_tangent.cache_clear()
+
+    forget()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(inertia, "position_part", printed)
-        kernel = superelement.superelement(Layout.parse("f2"), "converged_mean", "b")
-    superelement._derived.cache_clear()
+        patch.setattr(option_b, "position_part", printed)
+        text = compile_kernel(Variant("f2", "converged_mean", "b"))
+    forget()
     folder = tmp_path_factory.mktemp("kernels")
-    (folder / "printed_sign.py").write_text(superelement_text(kernel))
+    (folder / "printed_sign.py").write_text(text)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SEBODY_KERNELS", str(folder))
         return load("printed_sign")

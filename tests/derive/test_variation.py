@@ -3,13 +3,16 @@
 import pytest
 import sympy as sp
 
-from sebody.derive.formulas import elastic, elements, forces, frames, inertia, joints, kinematics
+from sebody.derive.formulas import elastic, elements, forces, joints, kinematics
+from sebody.derive.formulas.frames import positions
+from sebody.derive.formulas.inertia import option, option_a, option_b
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.kernels import superelement
+from sebody.derive.kernels import linearize, superelement
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.symbolic import rotations, variation
+from sebody.derive.symbolic.linearize import Linearizer
 from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Linearizer, Stage, cross
+from sebody.derive.symbolic.steps import Stage, cross
 from sebody.derive.symbolic.variation import (
     DerivationError,
     along,
@@ -127,13 +130,17 @@ def test_proof_does_not_depend_on_the_run():
 @pytest.fixture
 def fresh():
     """No derivation remembered, before and after."""
-    superelement._derived.cache_clear()
+    remembered = superelement.node_formulas, linearize.node_tangent
+    for function in remembered:
+        function.cache_clear()
     yield
-    superelement._derived.cache_clear()
+    for function in remembered:
+        function.cache_clear()
 
 
 def derive(inertia_option="b", frame="converged_mean", layout="f2"):
-    return superelement.superelement(Layout.parse(layout), frame, inertia_option)
+    return linearize.linearized(
+        superelement.superelement(Layout.parse(layout), frame, inertia_option))
 
 
 def with_short(stage, change):
@@ -172,27 +179,27 @@ def test_wrong_variation_of_the_elastic_rotation(monkeypatch, fresh):
 
 def test_wrong_acceleration_of_the_nodes(monkeypatch, fresh):
     """A cross product of the wrong sense in the inertia options."""
-    monkeypatch.setattr(inertia, "cross", lambda a, b: -cross(a, b))
+    monkeypatch.setattr(option, "cross", lambda a, b: -cross(a, b))
     with pytest.raises(DerivationError, match=r"rate of xdot\* \(46\), \(58\)"):
         derive()
 
 
-@pytest.mark.parametrize("option, name", [("b", r"moment of option B \(57\)"),
-                                          ("a", r"variation of Omega\* \(42\)")])
-def test_wrong_variation_of_angular_velocities(monkeypatch, fresh, option, name):
+@pytest.mark.parametrize("module, option, name", [
+    (option_b, "b", r"moment of option B \(57\)"), (option_a, "a", r"variation of Omega\* \(42\)")])
+def test_wrong_variation_of_angular_velocities(monkeypatch, fresh, module, option, name):
     """The sign of Omega x dTheta in (56) decides that of the moment."""
-    right = inertia.angular_velocity_variation
+    right = kinematics.angular_velocity_variation
 
     def wrong(space):
         q = Quantities(space)
         return right(space) - 2 * cross(q.Om.symbols, q.dth.symbols)
-    monkeypatch.setattr(inertia, "angular_velocity_variation", wrong)
+    monkeypatch.setattr(module, "angular_velocity_variation", wrong)
     with pytest.raises(DerivationError, match=name):
         derive(option)
 
 
 def test_wrong_variation_of_the_best_fit(monkeypatch, fresh):
-    monkeypatch.setattr(frames, "cross", lambda a, b: -cross(a, b))
+    monkeypatch.setattr(positions, "cross", lambda a, b: -cross(a, b))
     with pytest.raises(DerivationError, match="variation of the rotation of best fit"):
         derive(frame="positions", layout="f3")
 
@@ -201,12 +208,12 @@ def test_wrong_gradient_of_a_constraint(monkeypatch):
     """The matrix of a joint must have the constraint force as its column and as its row."""
     monkeypatch.setattr(elements, "_of", lambda form, variables: -2 * elastic._of(form, variables))
     with pytest.raises(DerivationError, match="constraint force is the gradient"):
-        joints.parallel(False)
+        elements.linearized(joints.parallel(False))
 
 
 def test_dead_torque_turns_in_material_axes():
     """``d(R^T m) = (R^T m) x dTheta``: what the second-order term of a dead torque must be."""
-    torque = forces.torque(False, False)
+    torque = elements.linearized(forces.torque(False, False))
     block, = torque.blocks
     R, m = block.state.symbols, torque.constants[0].symbols
     amplitude, c_place = sp.symbols("amplitude c_place")

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sebody import Model, Simulation
-from sebody.engine.loop import ORTHOGONAL
+from sebody.engine.step import ORTHOGONAL
 
 
 def test_rotations_are_made_orthogonal_again():

@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 
 from sebody import InputError, Model, Simulation, simulate
 from sebody.engine import evaluate
-from sebody.model.histories import History, history
+from sebody.model.histories import History, history, with_corners
 from sebody.scenes.hinged_beam import build
 
 TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]
@@ -204,3 +204,16 @@ def test_a_dead_torque_stays_in_space_while_its_node_turns():
     assert result["torque on centre.rotation.work"] == pytest.approx(work, abs=1e-4)
     turned = np.trace(result["centre.rotation"], axis1=1, axis2=2).min()
     assert turned < -0.9        # it has turned by half a turn on the way
+
+
+def test_a_function_keeps_the_corners_it_is_given():
+    found = with_corners(ramps, [0.05, 0.15])
+    assert found.corners == (0.05, 0.15) and found.addresses[0] != 0
+    assert history(ramps).corners == ()
+    model = two_nodes()
+    model.fix("base")
+    model.rigid_body("body", "tip", 1.0, (1.0, 1.0, 1.0))
+    model.force("tip", (0, 0, 1), found)
+    assert Simulation(model, 0.01).system.corners.tolist() == [0.05, 0.15]
+    with pytest.raises(InputError, match="corners are .*: give a list of times"):
+        with_corners(ramps, [[0.05]])

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from sebody import InputError, simulate
+from sebody import InputError, Model, simulate
 from sebody.cli.entry import main
+from sebody.kernels.loader import element_kernel
 from sebody.scenes import hinged_beam
 from sebody.studies import bench
 from sebody.studies.bench import own, peer
@@ -67,3 +68,20 @@ def test_missing_peer_is_named(alone):
 def test_the_peer_computes_the_same_beam():
     found = [m for m in peer.measure("planar-hinged-beam") if m.h == 0.01]
     assert min(m.tip_error for m in found) < 1e-3
+
+
+def test_operations_are_those_of_all_elements():
+    """Of a body and a spring in a plane: counts of their kernels, and the product with an inverse.
+
+    Two unknowns take four multiplications and four additions.
+    """
+    model = Model(planar=True)
+    model.fix(model.node("wall", (0.0, 0.0), keeps="translation"), "position")
+    model.point_mass("ball", model.node("ball", (1.0, 0.0), keeps="translation"), 1.0)
+    model.spring("ball", "wall", 4.0, length=0.9)
+    result = simulate(model, 0.01, 0.1)
+    counts = [element_kernel(name).OPERATIONS["residual"][0]
+              for name in ("planar_point_mass", "planar_spring")]
+    assert min(counts) > 0
+    assert own.flops_per_step(result) == pytest.approx(
+        result.iterations_per_step * (sum(counts) + 8))

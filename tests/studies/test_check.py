@@ -38,7 +38,7 @@ def test_spin_of_small_increments_differs_to_second_order():
     errors, sizes = [], (0.2, 0.1, 0.05)
     for psi in sizes:
         case = superelements.without(superelements.superelement_case(exact, 3, psi), "stiffness")
-        case = case._replace(reference=superelements._mean_rotation(case))
+        case = case._replace(reference=superelements.mean_rotation(case))
         forces = [states.evaluate(case._replace(module=m), 0)[0] for m in (small, exact)]
         errors.append(np.abs(forces[0] - forces[1]).max())
     assert 1.8 < order(sizes, errors) < 2.2
@@ -128,8 +128,9 @@ def test_check_notices_a_kernel_that_is_not_what_it_says(name, claim):
 
 def test_asymmetric_stiffness_has_no_potential():
     case = superelements.superelement_case(load("superelement_f2_converged_mean_b"), 0)
-    first = superelements.constant_ends(case)[3]
-    case.constants[first + 1] *= 1.01
+    S = states.constants_of(case)["S"].copy()
+    S[1, 0] *= 1.01
+    case = states.changed(case, S=S)
     assert superelements.elastic_force(case) > states.LIMIT
     assert superelements.asymmetry(case) > states.LIMIT
 
@@ -167,20 +168,21 @@ def test_planar_kernel_equals_the_spatial_one_on_planar_states():
     spatial = load("superelement_f2_converged_mean_b")
     flat = superelements.superelement_case(planar, 5, gravity=1.0)
     keep = [0, 1, 3, 4, 8, 11, 12, 13, 14]      # of x, y, z; x, y, z; rotations; modes
-    n, given = 15, superelements.Constants(flat)
+    n, given = 15, states.constants_of(flat)
     S, M, of_translations = np.eye(15), np.eye(15), np.zeros((15, 3))
-    S[np.ix_(keep, keep)], M[np.ix_(keep, keep)] = given.S, given.M
-    of_translations[keep, :2] = given.of_translations
+    S[np.ix_(keep, keep)], M[np.ix_(keep, keep)] = given["S"], given["M"]
+    of_translations[keep, :2] = given["mass_columns"]
     X = np.zeros((2, 3))
-    X[:, :2] = given.X
-    constants = superelements.constants_row(given.alpha, given.fit, given.alpha_r, X, S, M,
-                                    of_translations, [*given.moment, 0.0], given.mass)
+    X[:, :2] = given["X"]
     q, v, a = np.zeros((3, n))
     q[keep], v[keep], a[keep] = flat.q, flat.v, flat.a
     R = np.concatenate([[np.cos(t), -np.sin(t), 0, np.sin(t), np.cos(t), 0, 0, 0, 1]
                         for t in flat.q[4:6]])
-    case = states.Case(spatial, n, np.array([0, 0, 0, 0, 1, *range(n)]), constants, q, R, v, a,
-                      flat.reference, flat.frames, flat.field * [1, 1, 0])
+    case = states.with_constants(
+        states.Case(spatial, n, states.index_row(spatial, n), np.zeros(0), q, R, v, a,
+                    flat.reference, flat.frames, flat.field * [1, 1, 0]),
+        given | {"X": X, "S": S, "M": M, "mass_columns": of_translations,
+                 "mass_rows": of_translations.T, "mc": [*given["mc"], 0.0]})
     for coefficients in ((1.0, 0.3, 2.0, 1, 1), (0, 0, 1, 0, 1)):
         forces, matrices = zip(*[states.evaluate(c, 1, coefficients)[:2] for c in (flat, case)],
                                strict=True)

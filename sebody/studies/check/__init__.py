@@ -8,6 +8,7 @@ from collections.abc import Iterable
 
 from sebody.errors import InputError
 from sebody.kernels.loader import load
+from sebody.kernels.names import SUPERELEMENT
 from sebody.studies.catalogue import kernel_files
 from sebody.studies.check.elements import check_element
 from sebody.studies.check.report import summary, table, verdict
@@ -29,7 +30,6 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
     for name in names or known:
         if name not in known:
             raise InputError(f"kernel {name!r} is unknown: there are {', '.join(known)}")
-        module = load(name)
-        rows += (check_superelement if name.startswith("superelement_") else check_element)(
-            name, module)
+        check = check_superelement if name.startswith(SUPERELEMENT) else check_element
+        rows += check(name, load(name))
     return rows

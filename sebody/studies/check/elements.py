@@ -9,9 +9,12 @@ from scipy.spatial.transform import Rotation
 from sebody.kernels.layout import (
     ACCELERATION,
     ENERGY,
+    KINETIC,
+    MOMENTUM,
     POTENTIAL,
     POWERS,
     RESIDUAL,
+    STRAIN,
     TANGENT,
     VELOCITY,
     Row,
@@ -26,6 +29,7 @@ from sebody.studies.check.states import (
     difference,
     evaluate,
     gradient,
+    index_row,
     momenta,
     tangent_mass,
     tangent_rate,
@@ -43,7 +47,7 @@ def element_case(module: ModuleType, seed: int) -> Case:
                   for r in random.normal(size=(nrot, 3))])
     q = random.normal(size=n)
     size = Row(module.__name__, module.CONSTANTS).size({})
-    return Case(module, n, np.array([0, 0, 0, *range(nrot), *range(n)]),
+    return Case(module, n, index_row(module, n),
                 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
                 random.normal(size=n), random.normal(size=n), np.zeros(9), np.zeros(9),
                 random.normal(size=3), AMPLITUDES)
@@ -101,7 +105,7 @@ def element_tangent(case: Case) -> float:
 
 
 def _potential_force(case: Case) -> NDArray:
-    return gradient(case, lambda c: evaluate(c, ENERGY)[2][[1, POTENTIAL]].sum(), 0.005)
+    return gradient(case, lambda c: evaluate(c, ENERGY)[2][[STRAIN, POTENTIAL]].sum(), 0.005)
 
 
 def power(case: Case) -> float:
@@ -122,7 +126,7 @@ def force_at_rest(case: Case) -> float:
 def hamilton(case: Case) -> float:
     """Force against Hamilton's principle: rate of dT/dv, d(T - V)/dq, Hamel's term."""
     force = derivative(lambda t: momenta(along_path(case, t)), 0.003)
-    force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][0], 0.01)
+    force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][KINETIC], 0.01)
     force += _potential_force(case)
     p = momenta(case)
     for at in case.turning:
@@ -132,14 +136,14 @@ def hamilton(case: Case) -> float:
 
 def body_momentum(case: Case) -> float:
     """Momentum and its moment against ``dT/dv`` along rigid velocities (Noether)."""
-    p, d = momenta(case), 2 if case.planar else 3
+    p, d = momenta(case), case.dimension
     x = np.r_[case.q[:d], np.zeros(3 - d)]
     linear, moment = np.r_[p[:d], np.zeros(3 - d)], np.cross(x, np.r_[p[:d], np.zeros(3 - d)])
     if case.planar:
         moment[2] += p[d:].sum()
     for j, at in enumerate(case.turning):
         moment += case.R[9 * j:9 * j + 9].reshape(3, 3) @ p[at:at + 3]
-    return difference(evaluate(case, ENERGY)[2][2:8], np.r_[linear, moment])
+    return difference(evaluate(case, ENERGY)[2][MOMENTUM:POTENTIAL], np.r_[linear, moment])
 
 
 def criteria(module: ModuleType) -> dict:

@@ -3,17 +3,26 @@
 Differences are of sixth order, since axial stiffness makes central ones lose the digits asked for.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
 from sebody.kernels.abi import Arguments, call_kernel, padded
-from sebody.kernels.layout import ENERGY, POWERS, RESIDUAL, TANGENT
+from sebody.kernels.layout import (
+    ENERGY,
+    INDEX,
+    KINETIC,
+    POWERS,
+    RESIDUAL,
+    TANGENT,
+    Row,
+    superelement_counts,
+)
 from sebody.kernels.pipeline import compiled
 
 STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))      # sixth-order central differences
@@ -56,14 +65,51 @@ class Case(NamedTuple):
     @property
     def planar(self) -> bool:
         """Motion in a plane: angles among q in place of rotation matrices."""
-        return getattr(self.module, "PLANAR", getattr(self.module, "LAYOUT", "").startswith(
-            "planar"))
+        return self.module.PLANAR
+
+    @property
+    def dimension(self) -> int:
+        """Coordinates of a position."""
+        return 2 if self.planar else 3
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """What sizes of the constants are products of."""
+        module = self.module
+        return superelement_counts(module.N_POSITIONS, module.N_ROTATIONS, module.PLANAR, self.n)
+
+    @property
+    def row(self) -> Row:
+        """The constants its kernel reads."""
+        return Row(self.module.__name__, self.module.CONSTANTS)
 
     @property
     def turning(self) -> list[int]:
         """First unknown of each rotation triplet."""
-        first = getattr(self.module, "ROTATIONS", 0)
+        first = self.module.ROTATIONS
         return [] if not self.R.size else [first + 3 * j for j in range(self.module.N_ROTATIONS)]
+
+
+def index_row(module: ModuleType, n: int) -> NDArray:
+    """The index row of a kernel's only element."""
+    values = {"constants": 0, "frame": 0, "item": 0, "nodes": range(module.N_ROTATIONS),
+              "unknowns": range(n)}
+    return INDEX.pack({"N_ROTATIONS": module.N_ROTATIONS, "n": n}, values).astype(np.int64)
+
+
+def constants_of(case: Case) -> dict[str, NDArray]:
+    """The constants of a case by name."""
+    return case.row.unpack(case.counts, case.constants)
+
+
+def with_constants(case: Case, values: Mapping[str, ArrayLike]) -> Case:
+    """The case with constants given by name."""
+    return case._replace(constants=case.row.pack(case.counts, values))
+
+
+def changed(case: Case, **values: ArrayLike) -> Case:
+    """The case with some of its constants replaced."""
+    return with_constants(case, constants_of(case) | values)
 
 
 @compiled
@@ -97,9 +143,9 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
 
 def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:
     """Matrix with positions in global axes: superelements leave them in those of the frame."""
-    if not hasattr(module, "FRAME"):
+    if not hasattr(module, "FRAME"):        # a joint, rigid body or load
         return J
-    turn, d = np.eye(len(J)), 2 if "planar" in getattr(module, "LAYOUT", "") else 3
+    turn, d = np.eye(len(J)), 2 if module.PLANAR else 3
     R0 = frame.reshape(3, 3)[:d, :d]
     for i in range(0, module.ROTATIONS, d):
         turn[i:i + d, i:i + d] = R0
@@ -148,7 +194,7 @@ def tangent_mass(case: Case) -> float:
 def momenta(case: Case) -> NDArray:
     """``dT/dv`` by central differences, exact since T is quadratic."""
     def kinetic(v):
-        return evaluate(case._replace(v=v), ENERGY)[2][0]
+        return evaluate(case._replace(v=v), ENERGY)[2][KINETIC]
     return np.array([(kinetic(case.v + d) - kinetic(case.v - d)) / 2 for d in np.eye(case.n)])
 
 

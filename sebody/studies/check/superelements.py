@@ -6,21 +6,35 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.kernels.abi import padded
-from sebody.kernels.layout import ENERGY, POTENTIAL, POWERS, RESIDUAL, TANGENT, padded_columns
+from sebody.generated.options import FRAMES, INERTIA_OPTIONS
+from sebody.kernels.layout import (
+    ENERGY,
+    KINETIC,
+    MOMENTUM,
+    POTENTIAL,
+    POWERS,
+    RESIDUAL,
+    STRAIN,
+    TANGENT,
+    FrameTraits,
+)
 from sebody.studies.check.states import (
     LIMIT,
     STATES,
     Case,
     CheckRow,
     along_path,
+    changed,
+    constants_of,
     derivative,
     difference,
     evaluate,
     gradient,
+    index_row,
     momenta,
     tangent_mass,
     tangent_rate,
+    with_constants,
 )
 
 SIZE = "geometric term, its size"       # shown, not judged
@@ -32,7 +46,7 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
                       gravity: float = 0.0, damping: float = 0.0) -> Case:
     """A generic state of a superelement kernel."""
     random = np.random.default_rng(seed)
-    planar = module.LAYOUT.startswith("planar")
+    planar = module.PLANAR
     d, npos, nrot, modes = (2 if planar else 3), module.N_POSITIONS, module.N_ROTATIONS, (
         3 if module.N_MODES is None else module.N_MODES)
     n = module.MODES + modes
@@ -55,37 +69,36 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     q = np.concatenate([x.ravel(), rotations, random.normal(size=modes)])
     about = np.array([0.0, 0.0, beta]) if planar else beta * random.normal(size=3) / 1.8
     frame = (base * Rotation.from_rotvec(about)).as_matrix().ravel()
-    index = np.array([0, 0, 0, *range(nrot), *range(n)])
     v, a = random.normal(size=n), random.normal(size=n)
     of_translations, moment = random.normal(size=(n, d)), random.normal(size=d)
-    C = damping * M @ M     # any positive matrix
-    constants = constants_row(alpha, np.full(npos, 1 / npos), alpha_r, X, S, M, of_translations,
-                              moment, 1.3, C)
-    return Case(module, n, index, constants, q, R, v, a, frame, frame.copy(),
+    values = {"alphas": alpha, "fits": np.full(npos, 1 / npos), "alpha_rs": alpha_r, "X": X, "S": S,
+              "M": M, "mass_columns": of_translations, "mass_rows": of_translations.T,
+              "mc": moment, "masses": [1.3]}
+    if module.DAMPED:
+        values["C"] = damping * M @ M     # any positive matrix
+    case = Case(module, n, index_row(module, n), np.zeros(0), q, R, v, a, frame, frame.copy(),
                 gravity * random.normal(size=3))
+    return with_constants(case, values | _declared(case, values, random))
 
 
-def constants_row(alpha, fit, alpha_r, X, S, M, of_translations, moment, mass,
-                  C=None) -> NDArray:
-    """Constants of a superelement as its kernel reads them; see `Constants`."""
-    return np.concatenate([alpha, fit, alpha_r, X.ravel(), padded_columns(S), padded_columns(M),
-                           padded_columns(of_translations), padded_columns(of_translations.T),
-                           moment, [mass], padded_columns(np.zeros_like(S) if C is None else C)])
+def _declared(case: Case, values: dict, random: np.random.Generator) -> dict[str, NDArray]:
+    """Generic values of what the kernel's frame and inertia option read in addition."""
+    counts = case.counts
+    return {part.name: random.normal(size=[counts.get(s, s) for s in part.shape])
+            for part in case.module.CONSTANTS if part.name not in values}
 
 
 def without(case: Case, what: str) -> Case:
     """The case with no stiffness and no gravity, or no inertia."""
-    constants, size = case.constants.copy(), case.n * padded(case.n)
-    first = constant_ends(case)[3] + (0 if what == "stiffness" else size)
-    constants[first:first + size] = 0.0
-    return case._replace(constants=constants,
-                         field=0 * case.field if what == "stiffness" else case.field)
+    name = {"stiffness": "S", "inertia": "M"}[what]
+    without_it = changed(case, **{name: np.zeros((case.n, case.n))})
+    return without_it._replace(field=0 * case.field) if what == "stiffness" else without_it
 
 
 def elastic_force(case: Case) -> float:
     """Force at rest against the derivative of the strain energy and the potential of gravity."""
     rest = case._replace(v=0 * case.v, a=0 * case.a)
-    exact = gradient(rest, lambda c: evaluate(c, ENERGY)[2][[1, POTENTIAL]].sum(), 0.01)
+    exact = gradient(rest, lambda c: evaluate(c, ENERGY)[2][[STRAIN, POTENTIAL]].sum(), 0.01)
     return difference(evaluate(rest, RESIDUAL)[0], exact)
 
 
@@ -99,7 +112,7 @@ def inertia_force(case: Case) -> float:
     """Force without stiffness against Hamilton's principle: rate of dT/dv, dT/dq, Hamel's term."""
     case = without(case, "stiffness")
     force = derivative(lambda t: momenta(along_path(case, t)), 0.003)
-    force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][0], 0.01)
+    force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][KINETIC], 0.01)
     p = momenta(case)
     for at in case.turning:
         force[at:at + 3] += np.cross(case.v[at:at + 3], p[at:at + 3])
@@ -119,10 +132,10 @@ def asymmetry(case: Case) -> float:
 
 def local_coordinates(case: Case) -> NDArray:
     """``y``, (11), by other means than the kernels: SciPy's rotations, an SVD for the best fit."""
-    module, weights = case.module, Constants(case)
+    module, constants = case.module, constants_of(case)
     x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
     R0 = frame_rotation(case).as_matrix()[:x.shape[1], :x.shape[1]]
-    u = (x - weights.alpha @ x) @ R0 - weights.X
+    u = (x - constants["alphas"] @ x) @ R0 - constants["X"]
     if case.planar:
         psi = case.q[module.ROTATIONS:module.MODES] - np.arctan2(R0[1, 0], R0[0, 0])
         psi = (psi + np.pi) % (2 * np.pi) - np.pi
@@ -134,70 +147,54 @@ def local_coordinates(case: Case) -> NDArray:
 
 
 def local_velocities(case: Case) -> NDArray:
-    """``ydot`` of option A or B, (33) and (36) or (52)."""
+    """``ydot`` of the inertia option, (33) and (36) or (52)."""
     module, v = case.module, case.v.copy()
-    d = 2 if case.planar else 3
+    d = case.dimension
     R0 = frame_rotation(case).as_matrix()
     positions = v[:module.ROTATIONS].reshape(-1, d) @ R0[:d, :d]
     v[:module.ROTATIONS] = positions.ravel()
-    if module.INERTIA == "a":
+    if not INERTIA_OPTIONS[module.INERTIA].material:
         for j, at in enumerate(case.turning):
             v[at:at + 3] = R0.T @ case.R[9 * j:9 * j + 9].reshape(3, 3) @ v[at:at + 3]
     return v
 
 
-def constant_ends(case: Case) -> NDArray:
-    """Where the constants of a superelement end: weights, nodes, matrices, first moments, mass."""
-    module, n, d = case.module, case.n, 2 if case.planar else 3
-    npos, matrix = module.N_POSITIONS, n * padded(n)
-    return np.cumsum([npos, npos, module.N_ROTATIONS, module.ROTATIONS, matrix, matrix,
-                      d * padded(n), n * padded(d), d, 1, matrix])
-
-
-class Constants:
-    """What the constants of a superelement mean."""
-
-    def __init__(self, case: Case):
-        n, column = case.n, padded(case.n)
-        (self.alpha, self.fit, self.alpha_r, X, S, M, of_translations, _, self.moment, mass,
-         *_) = np.split(case.constants, constant_ends(case)[:-1])
-        self.X = X.reshape(case.module.N_POSITIONS, -1)
-        self.S, self.M, self.of_translations = (A.reshape(-1, column)[:, :n].T
-                                                for A in (S, M, of_translations))
-        self.mass = mass[0]
+def frame_traits(module: ModuleType) -> FrameTraits:
+    """What the frame of a kernel declares."""
+    return FRAMES[module.FRAME]
 
 
 def frame_rotation(case: Case) -> Rotation:
     """``R0`` from its definition, (14)-(16) or the best fit, without the search of the kernels."""
-    module, weights = case.module, Constants(case)
-    if module.FRAME == "positions":
+    module, constants, traits = case.module, constants_of(case), frame_traits(case.module)
+    if not traits.needs_rotations:
         x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
-        arms = x - weights.alpha @ x
+        arms, X, fits = x - constants["alphas"] @ x, constants["X"], constants["fits"]
         if not case.planar:
-            return Rotation.align_vectors(arms, weights.X, weights.fit)[0]
-        turns = (arms @ [1, 1j]) * (weights.X @ [1, -1j])
-        return Rotation.from_rotvec([0, 0, np.angle(weights.fit @ turns)])
+            return Rotation.align_vectors(arms, X, fits)[0]
+        turns = (arms @ [1, 1j]) * (X @ [1, -1j])
+        return Rotation.from_rotvec([0, 0, np.angle(fits @ turns)])
     if case.planar:
         angles = case.q[module.ROTATIONS:module.MODES]
-        return Rotation.from_rotvec([0, 0, weights.alpha_r @ angles])
-    if module.FRAME == "converged_mean":
-        return Rotation.from_matrix(_mean_rotation(case).reshape(3, 3))
+        return Rotation.from_rotvec([0, 0, constants["alpha_rs"] @ angles])
+    if not traits.incremental:
+        return Rotation.from_matrix(mean_rotation(case).reshape(3, 3))
     last = Rotation.from_matrix(case.reference.reshape(3, 3))
     increments = (last.inv() * Rotation.from_matrix(case.R.reshape(-1, 3, 3))).as_rotvec()
-    return last * Rotation.from_rotvec(weights.alpha_r @ increments)
+    return last * Rotation.from_rotvec(constants["alpha_rs"] @ increments)
 
 
 def energies(case: Case) -> float:
     """Strain (24), kinetic energy (34) and potential against coordinates found by other means."""
-    weights, y, yd = Constants(case), local_coordinates(case), local_velocities(case)
+    constants, y, yd = constants_of(case), local_coordinates(case), local_velocities(case)
     computed = evaluate(case, ENERGY)[2]
-    d = 2 if case.planar else 3
-    moment = weights.moment + weights.of_translations.T @ y
+    d = case.dimension
+    moment = constants["mc"] + constants["mass_columns"].T @ y
     x = case.q[:case.module.ROTATIONS].reshape(-1, d)
-    place = weights.mass * weights.alpha @ x + frame_rotation(case).as_matrix()[:d, :d] @ moment
-    potential = -(case.field[:d] @ place)
-    return max(abs(computed[0] / (yd @ weights.M @ yd / 2) - 1),
-               abs(computed[1] / (y @ weights.S @ y / 2) - 1),
+    origin, R0 = constants["alphas"] @ x, frame_rotation(case).as_matrix()[:d, :d]
+    potential = -(case.field[:d] @ (constants["masses"][0] * origin + R0 @ moment))
+    return max(abs(computed[KINETIC] / (yd @ constants["M"] @ yd / 2) - 1),
+               abs(computed[STRAIN] / (y @ constants["S"] @ y / 2) - 1),
                abs(computed[POTENTIAL] - potential) / max(abs(potential), 1e-300))
 
 
@@ -208,7 +205,7 @@ def damping_power(case: Case) -> float:
 
 def damping_of_rigid_motion(case: Case) -> float:
     """Force of the structural damping in a rigid motion, which must be none."""
-    d, x = 2 if case.planar else 3, case.q[:case.module.ROTATIONS]
+    d, x = case.dimension, case.q[:case.module.ROTATIONS]
     spin, v = np.array([0.3, -0.5, 0.7]), 0 * case.v
     if case.planar:
         spin[:2] = 0.0
@@ -224,15 +221,13 @@ def damping_of_rigid_motion(case: Case) -> float:
 
 def _damping_force(case: Case) -> NDArray:
     """The force less that without the damping matrix."""
-    constants = case.constants.copy()
-    constants[constant_ends(case)[9]:] = 0.0
-    return (evaluate(case, RESIDUAL)[0]
-            - evaluate(case._replace(constants=constants), RESIDUAL)[0])
+    undamped = changed(case, C=np.zeros((case.n, case.n)))
+    return evaluate(case, RESIDUAL)[0] - evaluate(undamped, RESIDUAL)[0]
 
 
 def total_momentum(case: Case) -> float:
     """Momentum and its moment against ``dT/dv`` along rigid velocities (Noether)."""
-    p, d = momenta(case), 2 if case.planar else 3
+    p, d = momenta(case), case.dimension
     x = np.zeros((case.module.N_POSITIONS, 3))
     x[:, :d] = case.q[:case.module.ROTATIONS].reshape(-1, d)
     rigid = np.zeros((6, case.n))
@@ -244,7 +239,7 @@ def total_momentum(case: Case) -> float:
     if case.planar:
         rigid[2:5] = 0.0
         rigid[5, case.module.ROTATIONS:case.module.MODES] = 1.0
-    return difference(evaluate(case, ENERGY)[2][2:8], rigid @ p)
+    return difference(evaluate(case, ENERGY)[2][MOMENTUM:POTENTIAL], rigid @ p)
 
 
 def paper_tangent(case: Case) -> float:
@@ -252,7 +247,7 @@ def paper_tangent(case: Case) -> float:
     rest = case._replace(v=0 * case.v, a=0 * case.a)
     upsilon = gradient(rest, local_coordinates, 0.01)
     paper = evaluate(rest, TANGENT, (0, 0, 1, 0, 1))[1]
-    return difference(paper, upsilon.T @ Constants(case).S @ upsilon)
+    return difference(paper, upsilon.T @ constants_of(case)["S"] @ upsilon)
 
 
 def geometric_term(case: Case) -> float:
@@ -276,14 +271,14 @@ def small_increment_slope(module: ModuleType, seed: int) -> tuple[float, float]:
     for psi in sizes:
         case = superelement_case(module, seed, psi)
         case = case._replace(v=0 * case.v, a=0 * case.a)
-        case = case._replace(reference=_mean_rotation(case))
+        case = case._replace(reference=mean_rotation(case))
         errors.append(elastic_force(case))
     return errors[0], float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
-def _mean_rotation(case: Case) -> NDArray:
+def mean_rotation(case: Case) -> NDArray:
     """Frame in which the weighted rotation vectors of the nodes vanish, by fixed-point search."""
-    weights = Constants(case).alpha_r
+    weights = constants_of(case)["alpha_rs"]
     nodes = Rotation.from_matrix(case.R.reshape(-1, 3, 3))
     frame = nodes[0]
     for _ in range(60):
@@ -297,15 +292,16 @@ def _mean_rotation(case: Case) -> NDArray:
 def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
     """All criteria of a superelement kernel."""
     rows = []
-    small = module.FRAME.endswith("_small")
+    traits = frame_traits(module)
+    small = not traits.exact
     for seed in range(STATES):
         case = superelement_case(module, seed, gravity=1.0)
         damped = superelement_case(module, seed, gravity=1.0, damping=0.1 * module.DAMPED)
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
         if module.DAMPED and not small:
             criteria |= DAMPING
-        if module.FRAME == "mean" and module.DAMPED:    # its increments are no rigid rotation
-            del criteria["damping of rigid motion"]
+        if traits.incremental:      # increments turn otherwise than the body in a rigid motion
+            criteria.pop("damping of rigid motion", None)
         for criterion, measure in criteria.items():
             error = measure(damped if measure in (*DAMPING.values(), *TANGENTS.values(), energies)
                             else case)

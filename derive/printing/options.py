@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from sebody.derive.printing.emit import VERSION, constants_text
+from sebody.derive.printing import parts
+from sebody.derive.printing.templates import VERSION
 from sebody.kernels.layout import FrameTraits, InertiaTraits
 
 TEXT = '''"""Frames and inertia options of superelements, and what they need.
@@ -24,8 +25,8 @@ INERTIA_OPTIONS = {{
 
 def options_text(frames: Mapping[str, FrameTraits], options: Mapping[str, InertiaTraits]) -> str:
     """The file of the traits of all frames and inertia options."""
-    parts = any(t.constants for t in (*frames.values(), *options.values()))
-    return TEXT.format(version=VERSION, names="FrameTraits, InertiaTraits" + ", Part" * parts,
+    declared = any(t.constants for t in (*frames.values(), *options.values()))
+    return TEXT.format(version=VERSION, names="FrameTraits, InertiaTraits" + ", Part" * declared,
                        frames="\n".join(map(_entry, frames, frames.values())),
                        options="\n".join(map(_entry, options, options.values())))
 
@@ -36,6 +37,6 @@ def _entry(name: str, traits: FrameTraits | InertiaTraits) -> str:
     for field in traits._fields[1:]:
         value = getattr(traits, field)
         if field not in traits._field_defaults or value != traits._field_defaults[field]:
-            text = constants_text(value, 2) if field == "constants" else repr(value)
+            text = parts.table(value, 2) if field == "constants" else repr(value)
             lines.append(f"        {field}={text},")
     return "\n".join([*lines, "    ),"])

@@ -1,0 +1,1 @@
+"""Floating frames, one file each; `sebody.derive.kernels.options` lists them."""

@@ -1,0 +1,66 @@
+"""The frame in which the weighted elastic rotations vanish: ``sum alpha_j psi_j = 0``."""
+
+import sympy as sp
+
+from sebody.derive.formulas.elastic import _of, virtual_work
+from sebody.derive.formulas.frames.frame import (
+    Frame,
+    FrameOption,
+    inverse_tangent_values,
+    pulled_back,
+)
+from sebody.derive.formulas.kinematics import elastic_rotation_variation
+from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.symbolic.rotations import (
+    inverse_tangent_times,
+    inverse_tangent_transposed_times,
+)
+from sebody.derive.symbolic.spaces import Quantity
+from sebody.derive.symbolic.steps import Search, Solve, Tail
+from sebody.derive.symbolic.variation import check_same
+from sebody.kernels.layout import FrameTraits
+
+
+def converged_mean(q: Quantities) -> Frame:
+    """Derive the frame."""
+    alpha, psi = q.alpha_r.symbols[0], q.psi.symbols
+    variation = elastic_rotation_variation(q)
+
+    def equation(rate: Quantity, of: Quantity) -> sp.Matrix:
+        short = alpha * (inverse_tangent_transposed_times(psi, rate.symbols)
+                         - inverse_tangent_times(psi, of.symbols))
+        swap = dict(zip([*q.dth.symbols, *q.dth0.symbols], [*of.symbols, *rate.symbols],
+                        strict=True))
+        check_same("variation of the converged mean", short, -alpha * variation.subs(swap))
+        return short
+
+    def angular_rate(rate: Quantity, of: Quantity, invert: bool) -> Solve:
+        return Solve("B rate = sum alpha_j T^-1(psi_j) rate_j", rate, "rotation",
+                     equation(rate, of), sp.zeros(3, 1), "B", invert=invert, weight=alpha)
+
+    wp = q.wp.symbols
+    back = alpha * inverse_tangent_transposed_times(psi, wp)
+    check_same("moment pulled back by the converged mean",
+               back, -_of(wp.dot(equation(q.dth0, q.dth)), q.dth.symbols))
+    return Frame(
+        locate=(mean_search(q, 200), *inverse_tangent_values(q, q.psi, (q.e0, q.e1))),
+        velocity=(angular_rate(q.Om0, q.Om, True),),
+        variation=(angular_rate(q.dth0, q.dth, False),),
+        pull=(pulled_back(q, alpha * inverse_tangent_times(psi, wp), equation(q.wp, q.dth),
+                          "rotation", alpha),),
+        work=virtual_work, position=sp.zeros(3, 1), origin=sp.zeros(3, 1), rotation=back)
+
+
+def mean_search(q: Quantities, operations: int) -> Search:
+    """The search for the frame; in a plane the mean of the angles."""
+    psi = Tail(q.psi.array, "ROTATIONS")
+    title = "rotation of the frame: sum alpha_j psi_j = 0"
+    if q.space.planar:
+        return Search(title, "planar_mean", ("N_ROTATIONS", "alpha_rs", Tail("qe", "ROTATIONS"),
+                                             "frame", psi), operations, q.R0)
+    return Search(title, "converged_mean", ("N_ROTATIONS", "nodes", "alpha_rs", "R", "frame", psi),
+                  operations, q.R0)
+
+
+FRAME = FrameOption(
+    FrameTraits("weighted mean of the node rotations, iterated until it is one"), converged_mean)

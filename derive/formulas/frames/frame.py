@@ -1,0 +1,63 @@
+"""Floating frames: where the frame is, how it varies, and what it returns to the unknowns.
+
+Each frame is a condition on the nodes. Its variation is the differential of that condition, and
+the force on an unknown is the moment ``W`` on the frame pulled back through the same variation.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import sympy as sp
+
+from sebody.derive.formulas.elastic import VirtualWork
+from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.symbolic.spaces import Quantity
+from sebody.derive.symbolic.steps import Solve, Stage, Step, Values
+from sebody.derive.symbolic.variation import check_same
+from sebody.kernels.layout import FrameTraits
+
+
+class Frame(NamedTuple):
+    """A floating frame derived for one space."""
+
+    locate: tuple[Step, ...]        # R0, and psi_j with it
+    velocity: tuple[Step, ...]      # Om0 from the velocities of the nodes
+    variation: tuple[Step, ...]     # dth0 from their variations
+    pull: tuple[Step, ...]          # W -> wp
+    work: Callable[[Quantities], VirtualWork]   # of the elastic forces, as rotations vary with it
+    position: sp.Matrix             # force of wp on R0^T delta x_i
+    origin: sp.Matrix               # force of wp on R0^T delta x_0, summed over positions
+    rotation: sp.Matrix             # force of wp on delta Theta_j
+    differentials: tuple[Stage, ...] = ()   # of what `locate` computes, once dth0 is known
+
+
+class FrameOption(NamedTuple):
+    """A choice of floating frame: what it needs, and its derivation."""
+
+    traits: FrameTraits
+    derive: Callable[[Quantities], Frame]
+
+
+def origin_stage(q: Quantities, result: Quantity, of: Quantity) -> Stage:
+    """Weighted mean (14), (18) of positions, or of their variations or velocities."""
+    return Stage("origin of the frame, (14)", "position",
+                 adds=((result, q.alpha.symbols[0] * of.symbols),))
+
+
+def inverse_tangent_values(q: Quantities, of: Quantity,
+                           outputs: tuple[Quantity, Quantity]) -> tuple[Step, ...]:
+    """Coefficients of ``T^-1`` and their derivatives, once per node; none in a plane."""
+    if q.space.planar:
+        return ()
+    return (Values("coefficients of T^-1", outputs, "inverse_tangent_coefficients", of, 30),)
+
+
+def pulled_back(q: Quantities, short: sp.Matrix, equation: sp.Matrix, over: str,
+                weight: sp.Symbol | None = None) -> Solve:
+    """``B^T wp = W`` where ``B`` is the matrix of the frame's equation in its rate."""
+    unknown = q.wp.symbols
+    matrix = sp.Matrix.hstack(*[equation.diff(u) if isinstance(u, sp.Symbol) else sp.zeros(3, 1)
+                                for u in unknown])
+    check_same("transposed equation of the frame", short, matrix.T * unknown)
+    return Solve("B^T wp = W", q.wp, over, short, -q.W.symbols, "B", transposed=True,
+                 weight=weight)

@@ -1,0 +1,1 @@
+"""Inertia options, one file each; `sebody.derive.kernels.options` lists them."""

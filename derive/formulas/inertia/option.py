@@ -1,0 +1,67 @@
+"""Inertia forces by Hamilton's principle from ``T = ydot^T Mbar ydot / 2``, (32)-(63).
+
+``Mbar`` is constant, so ``delta T = p . delta ydot`` with ``p = Mbar ydot``: only the variation of
+the velocities that enter T is needed. The part with the rate of a variation is integrated by
+parts. Positions are common to all options.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import sympy as sp
+
+from sebody.derive.formulas.elastic import _of
+from sebody.derive.formulas.kinematics import unknown_rules
+from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.symbolic.steps import Product, Stage, cross
+from sebody.derive.symbolic.variation import Rules, along, check_same, differential, turning
+from sebody.kernels.layout import InertiaTraits
+
+PRODUCTS = (Product("momentum, p = Mbar ydot", "M", "yd", "p"),
+            Product("inertia force, pd = Mbar yddot", "M", "ydd", "pd"))
+
+
+class Inertia(NamedTuple):
+    """What an inertia option contributes to a kernel."""
+
+    velocity: tuple[Stage, ...]     # w_j of (36) or (52), and what it needs
+    acceleration: tuple[Stage, ...]  # ydd of (46) or (58)
+    position: sp.Matrix             # generalized force on R0^T delta x_i
+    rotation: sp.Matrix             # on delta Theta_j
+    frame_positions: sp.Matrix      # on delta Theta_0, summed over positions
+    frame_rotations: sp.Matrix      # summed over rotations
+    spin: sp.Matrix                 # conjugate to Omega_j: material angular momentum of the node
+    rules: Rules                    # differentials of its own quantities
+    products: tuple[Product, ...]   # momenta and inertia forces
+    kinetic: tuple[str, str]        # rows whose product is twice the kinetic energy
+
+
+class InertiaOption(NamedTuple):
+    """A choice of inertia forces: what it needs, and its derivation."""
+
+    traits: InertiaTraits
+    derive: Callable[[Quantities], Inertia]
+
+
+def position_part(q: Quantities) -> tuple[Stage, sp.Matrix, sp.Matrix]:
+    """Positions: local acceleration and the forces on ``delta x_i`` and ``delta Theta_0``."""
+    R0, Om0, p, pd = q.R0.symbols, q.Om0.symbols, q.px.symbols, q.pxd.symbols
+    in_time = turning(R0, Om0) | along(p, pd) | along(q.v.symbols, q.a.symbols)
+    frames = [R0]
+    short = q.acc.symbols + cross(q.vs.symbols, Om0)
+    meaning = dict(zip(q.vs.symbols, R0.T * q.v.symbols, strict=True)) | dict(
+        zip(q.acc.symbols, R0.T * q.a.symbols, strict=True))
+    meaning.pop(sp.S.Zero, None)
+    chain = differential(R0.T * q.v.symbols, in_time)
+    check_same("rate of xdot* (46), (58)", short.subs(meaning), chain, frames)
+    # delta xdot* = R0^T d(delta x)/dt + xdot* x dTheta0; by parts: -d/dt (R0 p) . delta x
+    force = pd + cross(Om0, p)
+    check_same("by parts, positions (57)", R0 * force, differential(R0 * p, in_time), frames)
+    rules = unknown_rules(q)
+    varied = differential(R0.T * q.v.symbols, rules)
+    check_same("variation of xdot* (42), (56)",
+               (q.dv.symbols + cross(q.vs.symbols, q.dth0.symbols)).subs(meaning), varied, frames)
+    on_frame = -_of(p.dot(cross(q.vs.symbols, q.dth0.symbols)), q.dth0.symbols)
+    stage = Stage("local accelerations of the nodes, (46), (58)", "position",
+                  sets=((q.vsd, short),))
+    return stage, force, on_frame

@@ -1,0 +1,36 @@
+"""Option B, (52)-(59): T in the material angular velocities."""
+
+import sympy as sp
+
+from sebody.derive.formulas.elastic import _of
+from sebody.derive.formulas.inertia.option import (
+    PRODUCTS,
+    Inertia,
+    InertiaOption,
+    position_part,
+)
+from sebody.derive.formulas.kinematics import angular_velocity_variation
+from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.symbolic.steps import Stage, cross
+from sebody.derive.symbolic.variation import along, check_same, differential
+from sebody.kernels.layout import InertiaTraits
+
+
+def option_b(q: Quantities) -> Inertia:
+    """Derive the option."""
+    accelerate, force, on_frame = position_part(q)
+    Om, p, pd, dth = q.Om.symbols, q.pw.symbols, q.pwd.symbols, q.dth.symbols
+    variation = angular_velocity_variation(q.space)
+    rate = q.space.quantity("dthd", "axial", "rotation").symbols
+    conjugate = _of(p.dot(variation), rate)
+    moment = differential(conjugate, along(p, pd)) - _of(p.dot(variation), dth)
+    short = pd + cross(Om, p)
+    check_same("moment of option B (57)", short, moment)
+    return Inertia(
+        (Stage("material angular velocities, (52)", "rotation", sets=((q.w, q.Om.symbols),)),),
+        (accelerate, Stage("their rates, (58)", "rotation", sets=((q.wd, q.A.symbols),))),
+        force, short, on_frame, sp.zeros(3, 1), conjugate, {}, PRODUCTS, ("yd", "p"))
+
+
+INERTIA = InertiaOption(
+    InertiaTraits("material angular velocities (option B)", material=True), option_b)

@@ -1,0 +1,26 @@
+"""Frames and inertia options by name: a kernel combines one of each."""
+
+from sebody.derive.formulas.frames import converged_mean, mean, mean_small, positions
+from sebody.derive.formulas.inertia import option_a, option_b
+from sebody.kernels.layout import FrameTraits, InertiaTraits
+
+FRAMES = {
+    "converged_mean": converged_mean.FRAME,     # the first that a layout can carry is its default
+    "mean": mean.FRAME,
+    "mean_small": mean_small.FRAME,
+    "positions": positions.FRAME,
+}
+INERTIA_OPTIONS = {
+    "a": option_a.INERTIA,
+    "b": option_b.INERTIA,
+}
+
+
+def frame_traits() -> dict[str, FrameTraits]:
+    """What each frame needs."""
+    return {name: option.traits for name, option in FRAMES.items()}
+
+
+def inertia_traits() -> dict[str, InertiaTraits]:
+    """What each inertia option needs."""
+    return {name: option.traits for name, option in INERTIA_OPTIONS.items()}

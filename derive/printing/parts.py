@@ -1,0 +1,29 @@
+"""Constants of a kernel: the table it publishes, and where it finds them."""
+
+from collections.abc import Iterable
+
+from sebody.derive.printing.expressions import indented
+from sebody.kernels.layout import Part
+
+
+def table(parts: Iterable[Part], levels: int = 0) -> str:
+    """A tuple of parts, written out over lines."""
+    lines = [_part(part) + "," for part in parts]
+    return "\n".join(["(", indented(lines, levels + 1), indented([")"], levels)]) if lines else "()"
+
+
+def _part(part: Part) -> str:
+    """A part as the call that makes it, what is default left out."""
+    given = [repr(part.name)]
+    given += [repr(part.shape)] if part.shape or part.meaning else []
+    given += [repr(part.meaning)] if part.meaning else []
+    given += ["columns=True"] if part.columns else []
+    return f"Part({', '.join(given)})".replace("'", '"')
+
+
+def chain(parts: tuple[Part, ...], planar: bool) -> list[str]:
+    """Pointers to the constants of a superelement, one after the other."""
+    known = {"D": 2 if planar else 3}
+    starts = ["constants, index[first + AT_CONSTANTS]"]
+    starts += [f"{part.name}, {part.expression(known)}" for part in parts[:-1]]
+    return [f"{part.name} = at({start})" for part, start in zip(parts, starts, strict=True)]

@@ -1,0 +1,70 @@
+"""Files of superelement kernels: the steps of a derivation set into the frame of a file."""
+
+import sympy
+
+from sebody.derive.kernels.resources import Resources
+from sebody.derive.kernels.superelement import Superelement
+from sebody.derive.printing import parts, templates
+from sebody.derive.printing.expressions import indented
+from sebody.derive.printing.imports import import_lines
+from sebody.derive.printing.step_printer import StepPrinter
+from sebody.kernels.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS
+from sebody.kernels.sources import room_hash
+
+
+def superelement_text(kernel: Superelement, uses: Resources) -> str:
+    """The file of a superelement kernel."""
+    layout, planar = kernel.layout, kernel.layout.planar
+    printer = StepPrinter(kernel.space, layout, kernel.names)
+    residual = printer.lines(kernel.residual)
+    counted = printer.operations, printer.products
+    energy = [*printer.lines(kernel.energy), *templates.ENERGY_OUTPUTS[planar]]
+    printer.operations = printer.products = 0
+    tangent = printer.lines(kernel.tangent)
+    return templates.SUPERELEMENT.format(
+        **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
+        width="width" if layout.modes is None else layout.first_mode + layout.modes,
+        work_rows=len(uses.rows), rows=indented(_rows(uses.rows), 1),
+        residual_operations=counted[0], residual_products=counted[1],
+        column_operations=printer.operations, column_products=printer.products,
+        residual=indented(residual, 2), kinetic="0.5*{}[i]*{}[i]".format(
+            *kernel.formulas.inertia.kinetic),
+        friction="\n" * layout.damped + indented(templates.FRICTION * layout.damped, 3),
+        energy=indented(energy, 3), seeds=indented(templates.SEEDS[planar], 4),
+        tangent=indented(tangent, 4))
+
+
+def _head(kernel: Superelement) -> dict[str, object]:
+    """What the file says of itself."""
+    layout, (frame, inertia) = kernel.layout, kernel.options
+    return {"layout": layout.name, "frame": kernel.frame, "inertia": kernel.inertia,
+            "frame_summary": frame.traits.summary, "inertia_summary": inertia.traits.summary,
+            "planar": layout.planar, "positions": layout.positions,
+            "rotations": layout.rotations, "first_rotation": layout.first_rotation,
+            "first_mode": layout.first_mode, "damped": layout.damped, "n_modes": layout.modes,
+            "space": "motion in a plane" if layout.planar else "motion in space",
+            "modes": "any number of" if layout.modes is None else layout.modes,
+            "version": templates.VERSION, "sympy": sympy.__version__,
+            "room": room_hash("kernels")}
+
+
+def _constants(kernel: Superelement) -> dict[str, str]:
+    """The table of the constants, and the pointers to them."""
+    damped = kernel.layout.damped
+    row = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS * damped + kernel.declared
+    table = "SUPERELEMENT_CONSTANTS" + " + DAMPING_CONSTANTS" * damped
+    table += f" + {parts.table(kernel.declared)}" if kernel.declared else ""
+    return {"constants": table, "chain": indented(parts.chain(row, kernel.layout.planar), 2)}
+
+
+def _names(kernel: Superelement, uses: Resources) -> set[str]:
+    """Names of the runtime in the file."""
+    names = {*templates.SUPERELEMENT_NAMES, *uses.calls}
+    names |= set(templates.DAMPING_NAMES) if kernel.layout.damped else set()
+    return names | ({"Part"} if kernel.declared else set())
+
+
+def _rows(names: tuple[str, ...]) -> list[str]:
+    """Scratch memory: a row of local coordinates each, or of rotations of the nodes."""
+    return ["row = padded(max(n, 9*N_ROTATIONS))",
+            *(f"{name} = at(work, {k}*row)" for k, name in enumerate(names))]
