@@ -24,6 +24,6 @@ def test_rounding_does_not_depend_on_the_first_caller():
     assert remainder(a, a, a * a) == 0.0
 
 
-def test_rooms_round_like_their_first_caller_did():
+def test_functions_of_kernels_round_like_kernels():
     assert converged_mean.targetoptions["fastmath"] == {"contract"}
     assert eliminate.targetoptions["fastmath"] is False
