@@ -1,7 +1,8 @@
-"""The workflow of changing a formula, rehearsed in copies of the tree.
+"""The workflow of changing a formula or a compiled function, rehearsed in copies of the tree.
 
 A copy has the folders as they are installed, sebody/derive inside sebody and so on, is the only
-one a new process finds, and ships few small kernels, so that a derivation takes seconds.
+one a new process finds, and ships few small kernels, so that a derivation takes seconds. What is
+compiled lies beside the sources, so that a copy begins with that of the original.
 """
 
 import os
@@ -16,11 +17,11 @@ ROOT = Path(__file__).parents[2]
 FOLDERS = {"sebody": "", "derive": "derive", "generated": "generated", "examples": "scenes"}
 MANIFEST = '''"""A small manifest."""
 
-SUPERELEMENTS = (("planar-f2", "converged_mean", "b"),)
+SUPERELEMENTS = (("planar-f2", "positions", "b"),)
 ELEMENTS = ("force", "torque", "planar_force", "planar_torque")
 '''
 SHIPPED = ["element_force.py", "element_planar_force.py", "element_planar_torque.py",
-           "element_torque.py", "superelement_planar_f2_converged_mean_b.py"]
+           "element_torque.py", "superelement_planar_f2_positions_b.py"]
 
 # An editable installation would serve what a copy lacks from the checkout.
 ISOLATED = '''
@@ -35,7 +36,7 @@ DRIVER = '''
 import ctypes
 import numpy as np
 from sebody import Model
-from sebody.assembly import build
+from sebody.assembly.build import build
 from sebody.fem import Section, planar_beam
 from sebody.reduction import craig_bampton
 
@@ -47,7 +48,7 @@ kept = np.linspace(0, 4, count).round().astype(int)
 body = craig_bampton(fe_model, [(int(k), "full") for k in kept], 0)
 model = Model(planar=True)
 nodes = [model.node(f"n{k}", fe_model.coordinates[k, :2]) for k in kept]
-model.superelement("beam", body, nodes)
+model.superelement("beam", body, nodes, frame="positions")
 model.force(nodes[-1], (0.0, 1.0))
 system, numbering = build(model)
 q = np.zeros(numbering.total)
@@ -67,10 +68,65 @@ for k, address in enumerate(system.address):
     print(status, *g[:system.width[k]].round(9))
 '''
 
+# Compiled functions of the runtime, called one by one.
+CALLS = '''
+from dataclasses import dataclass
+from math import cos, sin
+import numpy as np
+from numba import njit
+from sebody.engine.arrays import Arrays
+from sebody.engine.elimination import eliminate
+from sebody.engine.state import CONTROLS, CLOCKS
+from sebody.engine.step import cut_step
+from sebody.kernels.abi import padded, pointer_to
+from sebody.kernels.frame_search import converged_mean
+from sebody.kernels.rotations import relative_rotations
+
+def turned_by(angle):
+    return [cos(angle), -sin(angle), 0.0, sin(angle), cos(angle), 0.0, 0.0, 0.0, 1.0]
+
+def search():
+    """Angles of three nodes against their mean, found by logarithms of relative rotations."""
+    R, psi = np.ravel([turned_by(a) for a in (0.0, 0.2, 0.7)]), np.zeros(9)
+    found = converged_mean(3, np.arange(3), np.full(3, 1 / 3), R, np.eye(3).ravel(), psi)
+    return found, *psi[2::3].round(6)
+
+def near_half_a_turn():
+    """Whether a relative rotation of 1.5 is refused."""
+    return relative_rotations(1, np.arange(1), np.array(turned_by(1.5)), np.eye(3).ravel(),
+                              np.zeros(3)),
+
+@njit
+def factors(starts, rows, diagonal, unknowns, matrix, column, scale):
+    return eliminate(2, pointer_to(starts), pointer_to(rows), pointer_to(diagonal),
+                     pointer_to(unknowns), pointer_to(matrix), pointer_to(column),
+                     pointer_to(scale))
+
+def elimination():
+    """The last inverted pivot of [[2, 1], [1, 2]]; each number stands for a diagonal block."""
+    matrix = np.concatenate([k * np.eye(4).ravel() for k in (2.0, 1.0, 1.0, 2.0)])
+    factors(np.array([0, 2, 4]), np.array([0, 1, 0, 1]), np.array([0, 3]), np.arange(8), matrix,
+            np.zeros(32), np.ones(8))
+    return matrix[48].round(6),
+
+@dataclass(frozen=True, eq=False)
+class Clock(Arrays):
+    clock: np.ndarray
+    control: np.ndarray
+
+def cut():
+    """Whether a step may be cut twice."""
+    state = Clock(np.ones(CLOCKS), np.zeros(CONTROLS, dtype=np.int64))
+    return cut_step(state), cut_step(state)
+
+print(*globals()[sys.argv[1]]() if sys.argv[1] != "column" else [padded(3)])
+'''
+
 
 def python(tree: Path, code: str, *arguments: str, **variables: str):
     """Run code on a copy, in a process that knows no other one."""
-    environment = {**os.environ, "PYTHONPATH": str(tree), "SEBODY_KERNELS": "", **variables}
+    environment = {**os.environ, "PYTHONPATH": str(tree), "SEBODY_KERNELS": "",
+                   "NUMBA_CACHE_DIR": "", **variables}
     return subprocess.run([sys.executable, "-c", ISOLATED + code, *arguments], cwd=tree,
                           env=environment, text=True, capture_output=True, timeout=200)
 
@@ -87,6 +143,13 @@ def residuals(tree: Path, nodes: int = 2, **variables: str) -> list[list[float]]
     return [[float(x) for x in line.split()[1:]] for line in done.stdout.splitlines()]
 
 
+def call(tree: Path, name: str) -> str:
+    """What one of `CALLS` gives."""
+    done = python(tree, CALLS, name)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
 def edit(path: Path, old: str, new: str) -> None:
     text = path.read_text()
     assert old in text, f"{path.name} has changed: adapt this test"
@@ -94,7 +157,7 @@ def edit(path: Path, old: str, new: str) -> None:
 
 
 def duplicate(tree: Path, target: Path) -> Path:
-    return shutil.copytree(tree, target / "tree", ignore=shutil.ignore_patterns("*.tmp*"))
+    return shutil.copytree(tree, target / "tree", ignore=shutil.ignore_patterns("*.part"))
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +167,7 @@ def original(tmp_path_factory) -> Path:
     for source, target in FOLDERS.items():
         shutil.copytree(ROOT / source, tree / "sebody" / target, dirs_exist_ok=True,
                         ignore=shutil.ignore_patterns("__pycache__"))
-    (tree / "sebody" / "derive" / "manifest.py").write_text(MANIFEST)
+    (tree / "sebody" / "derive" / "kernels" / "manifest.py").write_text(MANIFEST)
     for path in (tree / "sebody" / "generated").glob("*_*.py"):
         if path.name not in (*SHIPPED, "__init__.py"):
             path.unlink()
@@ -115,31 +178,91 @@ def original(tmp_path_factory) -> Path:
 @pytest.mark.parametrize("seed", ["1", "2"])
 def test_text_is_the_same_for_every_hash_seed(original, seed):
     done = derive(original, "--check", PYTHONHASHSEED=seed)
-    assert (done.returncode, done.stdout) == (0, "5 kernels are up to date\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "6 kernels are up to date\n"), done.stderr
 
 
-def test_change_a_formula_and_a_leaf(original, tmp_path):
+def stale(tree: Path) -> list[str]:
+    """Files that ``--check`` finds outdated."""
+    done = derive(tree, "--check")
+    found = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("stale:")]
+    assert done.returncode == bool(found), done.stderr
+    return sorted(found)
+
+
+def test_change_a_formula(original, tmp_path):
     tree = duplicate(original, tmp_path)
     package = tree / "sebody"
-    edit(package / "derive" / "forces.py", "load=AMPLITUDE[0] * direction.dot(x.",
+    edit(package / "derive" / "formulas" / "forces.py", "load=AMPLITUDE[0] * direction.dot(x.",
          "load=2 * AMPLITUDE[0] * direction.dot(x.")
-    edit(package / "dense.py", "_store(builder, result, out, row)",
-         "_store(builder, builder.fadd(result, result), out, row)")
-    done = derive(tree, "--check")
-    assert done.returncode == 1
-    changed = ["element_force.py", "element_planar_force.py",
-               "superelement_planar_f2_converged_mean_b.py"]
-    stale = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("stale:")]
-    assert sorted(stale) == changed
-    assert "-        g[1] = -amplitude*d_y" in done.stdout      # the diff shows the formula
-    assert '-    "_columns_times": ' in done.stdout          # and the leaf
+    assert stale(tree) == ["element_force.py", "element_planar_force.py"]
+    assert "-        g[1] = -amplitude*d_y" in derive(tree, "--check").stdout
     untouched = (package / "generated" / "element_torque.py").stat().st_mtime_ns
     done = derive(tree)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("5 kernels derived, 3 written")
+    assert done.stdout.startswith("6 kernels derived, 2 written")
     assert (package / "generated" / "element_torque.py").stat().st_mtime_ns == untouched
-    assert residuals(tree) == [[-20.0, 0.0, 20.0, 0.0, 0.0, 0.0], [0.0, -6.0]]
-    assert derive(tree, "--check").returncode == 0
+    assert residuals(tree) == [[-10.0, 0.0, 10.0, 0.0, 0.0, 0.0], [0.0, -6.0]]
+    assert stale(tree) == []
+
+
+def test_change_a_function_that_a_kernel_reaches_through_another(original, tmp_path):
+    """Both nodes seem turned by 0.01 more: as a beam bent by end moments 6 EI / l times that."""
+    tree = duplicate(original, tmp_path)
+    edit(tree / "sebody" / "kernels" / "frame_search.py", "return angle - 2.0 * math.pi",
+         "return 0.01 + angle - 2.0 * math.pi")
+    bent, push = residuals(tree)        # without deriving anything
+    assert bent[4] == pytest.approx(6 * 1e3 / 10 * 0.01, rel=0.02)
+    assert push == [0.0, -3.0]
+    assert stale(tree) == SHIPPED       # each names the room it was made for
+    assert derive(tree).returncode == 0
+    assert residuals(tree) == [bent, push]
+    assert stale(tree) == []
+
+
+@pytest.mark.parametrize("file, old, new, name, before, after", [
+    # half of every angle: the search reaches it through relative_rotations and relative_log
+    ("kernels/rotations.py", "return ratio * x, ratio * y, ratio * z, cosine",
+     "return ratio * x, ratio * y, 0.5 * ratio * z, cosine",
+     "search", "0 -0.3 -0.1 0.4", "0 -0.15 -0.05 0.2"),
+    # compiled into the elimination: 1/(2 - 1/2), and with all products doubled 1/(2 (2 - 1))
+    ("kernels/dense.py", "_store(builder, total, C, word(LANES * j))",
+     "_store(builder, builder.fadd(total, total), C, word(LANES * j))",
+     "elimination", "0.666667", "0.5"),
+    ("kernels/rotations.py", "NEAR_PI = -0.98", "NEAR_PI = 0.98", "near_half_a_turn", "0", "1"),
+    ("kernels/layout.py", "LANES = 4 ", "LANES = 8 ", "column", "4", "8"),
+    ("engine/state.py", "FINEST = 4096 ", "FINEST = 2 ", "cut", "True True", "True False"),
+], ids=["log_map", "subtract_product", "NEAR_PI", "LANES", "FINEST"])
+def test_compiled_functions_follow_what_they_call(original, tmp_path, file, old, new, name, before,
+                                                  after):
+    assert call(original, name) == before
+    tree = duplicate(original, tmp_path)
+    edit(tree / "sebody" / file, old, new)
+    assert call(tree, name) == after
+
+
+@pytest.mark.parametrize("file, old, new", [
+    ("kernels/rotations.py", "NEAR_PI = -0.98", "NEAR_PI = -0.97"),
+    ("kernels/layout.py", "LANES = 4 ", "LANES = 8 ")])
+def test_a_changed_constant_makes_every_kernel_stale(original, tmp_path, file, old, new):
+    tree = duplicate(original, tmp_path)
+    edit(tree / "sebody" / file, old, new)
+    assert stale(tree) == SHIPPED
+
+
+def test_comments_and_docstrings_compile_nothing(original, tmp_path):
+    tree = duplicate(original, tmp_path)
+    residuals(tree)
+    call(tree, "search")
+    compiled = {path: path.stat().st_mtime_ns for path in tree.rglob("*.sebody")}
+    assert {path.name.split(".")[1] for path in compiled} >= {"kernel", "converged_mean", "log_map"}
+    edit(tree / "sebody" / "kernels" / "rotations.py", '"""Rotation vector of a rotation matrix',
+         '"""A vector. Rotation vector of a rotation matrix')
+    edit(tree / "sebody" / "kernels" / "frame_search.py", "@compiled\ndef converged_mean",
+         "\n# a remark\n@compiled\ndef converged_mean")
+    assert residuals(tree) == residuals(original)
+    assert call(tree, "search") == call(original, "search")
+    assert {path: path.stat().st_mtime_ns for path in tree.rglob("*.sebody")} == compiled
+    assert stale(tree) == []
 
 
 def test_missing_and_orphaned_files_are_reported(original, tmp_path):
@@ -164,7 +287,7 @@ def test_a_layout_is_added_to_the_directory_of_the_user(original, tmp_path):
     before = python(original, DRIVER, "3", **mine)
     assert before.returncode == 1
     assert "there is no kernel for layout 'planar-f3'" in before.stderr
-    command = "python -m sebody.derive planar-f3:converged_mean:b"
+    command = "python -m sebody.derive planar-f3:positions:b"
     assert command in before.stderr
     done = derive(original, command.split()[-1], **mine)
     assert done.returncode == 0, done.stderr
@@ -172,4 +295,13 @@ def test_a_layout_is_added_to_the_directory_of_the_user(original, tmp_path):
     beam, force = residuals(original, nodes=3, **mine)
     assert beam == pytest.approx([0, 0, -20, 0, 20, 0, 0, 0, 0], abs=1e-9)
     assert force == [0.0, -3.0]
-    assert derive(original, "--check").returncode == 0      # the package is as it was
+    assert stale(original) == []        # the package is as it was
+
+    changed = duplicate(original, tmp_path)     # an upgrade
+    edit(changed / "sebody" / "kernels" / "rotations.py", "NEAR_PI = -0.98", "NEAR_PI = -0.97")
+    refused = python(changed, DRIVER, "3", **mine)
+    assert refused.returncode == 1
+    assert "was made by another version of sebody: make it again with\n    " + command in (
+        refused.stderr)
+    assert derive(changed, command.split()[-1], **mine).returncode == 0
+    assert residuals(changed, nodes=3, **mine) == [beam, force]
