@@ -51,16 +51,10 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
                       gravity: float = 0.0, damping: float = 0.0) -> Case:
     """A generic state of a superelement kernel."""
     random = np.random.default_rng(seed)
-    planar = module.PLANAR
-    d, npos, nrot, modes = (2 if planar else 3), module.N_POSITIONS, module.N_ROTATIONS, (
-        3 if module.N_MODES is None else module.N_MODES)
+    planar, npos, nrot = module.PLANAR, module.N_POSITIONS, module.N_ROTATIONS
+    d, modes = 2 if planar else 3, 3 if module.N_MODES is None else module.N_MODES
     n = module.MODES + modes
-    around = 2 * np.pi * np.arange(npos) / npos       # spread out: no frame is ill-conditioned
-    X = np.column_stack([np.cos(around), np.sin(around), 0 * around])[:, :d]
-    X = X + 0.2 * random.normal(size=(npos, d))
-    alpha, alpha_r = (np.ones(k) / max(k, 1) + 0.1 * random.normal(size=k) for k in (npos, nrot))
-    alpha, alpha_r = alpha + (1 - alpha.sum()) / npos, alpha_r + (1 - alpha_r.sum()) / max(nrot, 1)
-    X -= alpha @ X
+    X, alpha, alpha_r = _nodes(random, npos, nrot, d)
     S, M = (A @ A.T for A in random.normal(size=(2, n, n)))
     angle = random.normal()
     base = (Rotation.from_rotvec([0, 0, angle]) if planar
@@ -84,6 +78,19 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     case = Case(module, n, index_row(module, n), np.zeros(0), q, R, v, a, frame, frame.copy(),
                 gravity * random.normal(size=3))
     return with_constants(case, values | _declared(case, values, random))
+
+
+def _nodes(random: np.random.Generator, positions: int, rotations: int,
+           d: int) -> tuple[NDArray, NDArray, NDArray]:
+    """Nodes in the undeformed frame, and the weights of their positions and rotations."""
+    around = 2 * np.pi * np.arange(positions) / positions   # spread out: all frames are well placed
+    X = np.column_stack([np.cos(around), np.sin(around), 0 * around])[:, :d]
+    X = X + 0.2 * random.normal(size=(positions, d))
+    alpha, alpha_r = (np.ones(k) / max(k, 1) + 0.1 * random.normal(size=k)
+                      for k in (positions, rotations))
+    alpha += (1 - alpha.sum()) / positions
+    alpha_r += (1 - alpha_r.sum()) / max(rotations, 1)
+    return X - alpha @ X, alpha, alpha_r
 
 
 def _declared(case: Case, values: dict, random: np.random.Generator) -> dict[str, NDArray]:
