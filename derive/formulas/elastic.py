@@ -33,10 +33,10 @@ def virtual_work(q: Quantities) -> VirtualWork:
     return VirtualWork(
         *_of_positions(q),
         rotation=check_same("elastic moment (30)", inverse_tangent_transposed_times(psi, m),
-                            _of(of_rotation, q.dth.symbols)),
+                            conjugate_to(of_rotation, q.dth.symbols)),
         frame_rotations=check_same("elastic moment on the frame (30)",
                                    -inverse_tangent_times(psi, m),
-                                   _of(of_rotation, q.dth0.symbols)))
+                                   conjugate_to(of_rotation, q.dth0.symbols)))
 
 
 def virtual_work_small(q: Quantities) -> VirtualWork:
@@ -49,16 +49,16 @@ def virtual_work_small(q: Quantities) -> VirtualWork:
     varied = (q.dth.symbols + cross(psi, q.dth.symbols) / 2 - q.dth0.symbols
               + cross(psi, mean.symbols) / 2)
     work = m.dot(varied)
-    return VirtualWork(*_of_positions(q), rotation=_of(work, q.dth.symbols),
-                       frame_rotations=_of(work, q.dth0.symbols), mean=_of(work, mean.symbols))
+    rotation, frame, of_mean = (conjugate_to(work, d.symbols) for d in (q.dth, q.dth0, mean))
+    return VirtualWork(*_of_positions(q), rotation=rotation, frame_rotations=frame, mean=of_mean)
 
 
 def _of_positions(q: Quantities) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
     work = q.f.symbols.dot(local_displacement(q).short[0])
-    return tuple(_of(work, d.symbols) for d in (q.dx, q.dx0, q.dth0))
+    return tuple(conjugate_to(work, d.symbols) for d in (q.dx, q.dx0, q.dth0))
 
 
-def _of(form, variables):
+def conjugate_to(form, variables):
     """Coefficients where the space has a component, zero where a plane has none."""
     return sp.Matrix([coefficients(form, [v])[0] if isinstance(v, sp.Symbol) else 0
                       for v in variables])

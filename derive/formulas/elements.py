@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from sebody.derive.formulas.elastic import _of
+from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.symbolic.spaces import Quantity, Space
 from sebody.derive.symbolic.steps import cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, turning
@@ -141,8 +141,8 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
     work = sum(f * differential(phi, vary) for f, phi in zip(lam, constraints, strict=True))
     work += differential(strain + potential, vary) - load
     force = [entry for block in blocks for entry in space.components(
-        block.direction.kind, _of(work, block.direction.symbols)
-        + _of(dissipation, block.rate.symbols) + _inertia(kinetic, block, vary, time))]
+        block.direction.kind, conjugate_to(work, block.direction.symbols)
+        + conjugate_to(dissipation, block.rate.symbols) + _inertia(kinetic, block, vary, time))]
     velocity = [differential(phi, time) for phi in constraints]
     return Element(
         name, ("planar " if space.planar else "") + summary, space, tuple(constants),
@@ -163,8 +163,8 @@ def linearized(given: Element) -> Element:
 
 
 def _inertia(kinetic: sp.Expr, block: Block, vary: Rules, time: Rules) -> sp.Matrix:
-    momentum = _of(kinetic, block.rate.symbols)
-    force = differential(momentum, time) - _of(differential(kinetic, vary),
+    momentum = conjugate_to(kinetic, block.rate.symbols)
+    force = differential(momentum, time) - conjugate_to(differential(kinetic, vary),
                                                block.direction.symbols)
     return force + cross(block.rate.symbols, momentum) if block.turns else force
 
@@ -194,7 +194,7 @@ def _sums(blocks, kinetic, strain, potential) -> dict[str, sp.Expr]:
     if kinetic != 0:
         linear, moment = sp.zeros(3, 1), sp.zeros(3, 1)
         for block in blocks:
-            p = _of(kinetic, block.rate.symbols)
+            p = conjugate_to(kinetic, block.rate.symbols)
             if block.turns:
                 moment += block.state.symbols * p
             else:
@@ -210,7 +210,7 @@ def _power(blocks, lam, constraints, dissipation, load) -> sp.Expr | None:
                                                       strict=True) if isinstance(d, sp.Symbol)}
     power = sp.sympify(load).xreplace(rules)
     for block in blocks:
-        power -= block.rate.symbols.dot(_of(dissipation, block.rate.symbols))
+        power -= block.rate.symbols.dot(conjugate_to(dissipation, block.rate.symbols))
     if any(phi.has(AMPLITUDE[0]) for phi in constraints):   # a drive: what moves is not at rest
         moved = _moved(blocks, "rate")
         power -= sum(f * differential(phi, moved) for f, phi in zip(lam, constraints, strict=True))

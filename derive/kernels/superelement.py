@@ -10,7 +10,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from sebody.derive.formulas.damping import damping
-from sebody.derive.formulas.elastic import VirtualWork, _of
+from sebody.derive.formulas.elastic import VirtualWork, conjugate_to
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
 from sebody.derive.formulas.gravity import TAKEN_OFF, Gravity, gravity
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption
@@ -167,10 +167,10 @@ def _energy(q: Quantities, inertia: Inertia, weight: Gravity) -> tuple[Stage, ..
     return (Stage("energies", "element", sets=((q.potential, one[0]),), adds=((q.strain, one[1]),),
                   continues=True),
             Stage("momentum and its moment about the origin: positions", "position",
-                  adds=((q.P, _of(of_positions, push.symbols)),
-                        (q.H, _of(of_positions, e.symbols)))),
+                  adds=((q.P, conjugate_to(of_positions, push.symbols)),
+                        (q.H, conjugate_to(of_positions, e.symbols)))),
             Stage("moment of momentum: rotations", "rotation",
-                  adds=((q.H, _of(of_rotations, e.symbols)),), continues=True))
+                  adds=((q.H, conjugate_to(of_rotations, e.symbols)),), continues=True))
 
 
 def _names(q: Quantities) -> dict[sp.Expr, sp.Symbol]:

@@ -43,6 +43,7 @@ def _head(element: Element) -> dict[str, object]:
     return {"summary": element.summary, "coordinates": element.coordinates,
             "multipliers": len(element.multipliers), "width": len(element.residual),
             "version": templates.VERSION, "sympy": sp.__version__, "room": room_hash("kernels"),
+            "signature": templates.SIGNATURE,
             "planar": element.space.planar,
             "positions": sum(not b.turns for b in element.blocks),
             "rotations": _matrices(element), "first_rotation": _first_rotation(element),

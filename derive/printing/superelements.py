@@ -45,7 +45,7 @@ def _head(kernel: Superelement) -> dict[str, object]:
             "space": "motion in a plane" if layout.planar else "motion in space",
             "modes": "any number of" if layout.modes is None else layout.modes,
             "version": templates.VERSION, "sympy": sympy.__version__,
-            "room": room_hash("kernels")}
+            "signature": templates.SIGNATURE, "room": room_hash("kernels")}
 
 
 def _constants(kernel: Superelement) -> dict[str, str]:

@@ -1,6 +1,13 @@
 """The frame of a kernel file: arguments, gathering of the element's state, loop over elements."""
 
+from textwrap import fill
+
+from sebody.kernels.layout import ARGUMENTS
+
 VERSION = "1.0"     # of the generator, in the head of every file
+SIGNATURE = fill(", ".join(("def kernel(task", "count", "stride", "width",
+                            *(name for name, _, _ in ARGUMENTS))) + "):",
+                 100, subsequent_indent=" " * len("def kernel("))
 
 SUPERELEMENT = '''"""Superelement kernel: layout {layout}, frame {frame}, inertia option {inertia}.
 
@@ -34,8 +41,7 @@ ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of
 
 
 @kernel_function
-def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
-           coefficients, forces, matrices, work, energies):
+{signature}
     n = {width}
     field = at(coefficients, FIELD)
 {rows}
@@ -149,8 +155,7 @@ ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of
 
 
 @kernel_function
-def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
-           coefficients, forces, matrices, work, energies):
+{signature}
     for element in range(count):
         first = element*stride
         nodes = at(index, first + HEADER)

@@ -14,7 +14,7 @@ from sebody.derive.formulas.inertia import option_b
 from sebody.derive.kernels import linearize, superelement
 from sebody.kernels.loader import load
 from sebody.scenes.hinged_beam import build
-from sebody.studies.check import states, superelements
+from sebody.studies.check import definitions, states, superelements
 
 KERNEL = "superelement_f2_converged_mean_b"
 
@@ -37,7 +37,7 @@ class PaperMatrices:
         constants = states.constants_of(case)
         alpha, self.M = constants["alpha_rs"], constants["M"]
         nodes = Rotation.from_matrix(case.R.reshape(2, 3, 3))
-        R0 = superelements.mean_rotation(case).reshape(3, 3)
+        R0 = definitions.mean_rotation(case).reshape(3, 3)
         psi = (Rotation.from_matrix(R0).inv() * nodes).as_rotvec()
         parts = [a * np.linalg.inv(tangent(p)) for a, p in zip(alpha, psi, strict=True)]
         B = sum(part.T for part in parts)

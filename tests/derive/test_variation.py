@@ -206,7 +206,8 @@ def test_wrong_variation_of_the_best_fit(monkeypatch, fresh):
 
 def test_wrong_gradient_of_a_constraint(monkeypatch):
     """The matrix of a joint must have the constraint force as its column and as its row."""
-    monkeypatch.setattr(elements, "_of", lambda form, variables: -2 * elastic._of(form, variables))
+    monkeypatch.setattr(elements, "conjugate_to",
+                        lambda form, variables: -2 * elastic.conjugate_to(form, variables))
     with pytest.raises(DerivationError, match="constraint force is the gradient"):
         elements.linearized(joints.parallel(False))
 

@@ -13,7 +13,7 @@ from sebody.kernels.layout import ACCELERATION, POTENTIAL, POWERS, VELOCITY
 from sebody.kernels.loader import load
 from sebody.studies import check
 from sebody.studies.catalogue import kernel_files
-from sebody.studies.check import elements, states, superelements
+from sebody.studies.check import definitions, elements, states, superelements
 
 
 @pytest.mark.parametrize("name", kernel_files())
@@ -38,7 +38,7 @@ def test_spin_of_small_increments_differs_to_second_order():
     errors, sizes = [], (0.2, 0.1, 0.05)
     for psi in sizes:
         case = superelements.without(superelements.superelement_case(exact, 3, psi), "stiffness")
-        case = case._replace(reference=superelements.mean_rotation(case))
+        case = case._replace(reference=definitions.mean_rotation(case))
         forces = [states.evaluate(case._replace(module=m), 0)[0] for m in (small, exact)]
         errors.append(np.abs(forces[0] - forces[1]).max())
     assert 1.8 < order(sizes, errors) < 2.2

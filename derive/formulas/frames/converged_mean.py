@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from sebody.derive.formulas.elastic import _of, virtual_work
+from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
     Frame,
     FrameOption,
@@ -41,7 +41,7 @@ def converged_mean(q: Quantities) -> Frame:
     wp = q.wp.symbols
     back = alpha * inverse_tangent_transposed_times(psi, wp)
     check_same("moment pulled back by the converged mean",
-               back, -_of(wp.dot(equation(q.dth0, q.dth)), q.dth.symbols))
+               back, -conjugate_to(wp.dot(equation(q.dth0, q.dth)), q.dth.symbols))
     return Frame(
         locate=(mean_search(q, 200), *inverse_tangent_values(q, q.psi, (q.e0, q.e1))),
         velocity=(angular_rate(q.Om0, q.Om, True),),

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from sebody.derive.formulas.elastic import _of, virtual_work
+from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
     Frame,
     FrameOption,
@@ -49,8 +49,8 @@ def positions(q: Quantities) -> Frame:
         variation=(angular_rate(q.dth0, q.dx, q.dx0, False),),
         pull=(pulled_back(q, fit * cross(r, cross(X, q.wp.symbols)),
                           equation(q.wp, q.dx, q.dx0), "position"),),
-        work=virtual_work, position=-_of(work, q.dx.symbols),
-        origin=-_of(work, q.dx0.symbols), rotation=sp.zeros(3, 1))
+        work=virtual_work, position=-conjugate_to(work, q.dx.symbols),
+        origin=-conjugate_to(work, q.dx0.symbols), rotation=sp.zeros(3, 1))
 
 
 def _searches(q: Quantities) -> tuple[Search, Search]:

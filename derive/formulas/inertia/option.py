@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from sebody.derive.formulas.elastic import _of
+from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.formulas.kinematics import unknown_rules
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.steps import Product, Stage, cross
@@ -61,7 +61,7 @@ def position_part(q: Quantities) -> tuple[Stage, sp.Matrix, sp.Matrix]:
     varied = differential(R0.T * q.v.symbols, rules)
     check_same("variation of xdot* (42), (56)",
                (q.dv.symbols + cross(q.vs.symbols, q.dth0.symbols)).subs(meaning), varied, frames)
-    on_frame = -_of(p.dot(cross(q.vs.symbols, q.dth0.symbols)), q.dth0.symbols)
+    on_frame = -conjugate_to(p.dot(cross(q.vs.symbols, q.dth0.symbols)), q.dth0.symbols)
     stage = Stage("local accelerations of the nodes, (46), (58)", "position",
                   sets=((q.vsd, short),))
     return stage, force, on_frame

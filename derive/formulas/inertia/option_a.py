@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from sebody.derive.formulas.elastic import _of
+from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.formulas.inertia.option import (
     PRODUCTS,
     Inertia,
@@ -34,11 +34,12 @@ def option_a(q: Quantities) -> Inertia:
     check_same("variation of Omega* (42)", Q * rate + cross(w, dth0).subs(meaning), varied, frames)
     form = p.dot(varied)
     conjugate = Q.T * p
-    moment = differential(conjugate, in_time | along(p, pd)) - _of(form, dth)
+    moment = differential(conjugate, in_time | along(p, pd)) - conjugate_to(form, dth)
     short = Q.T * (pd + cross(Om0, p) - cross(w, p))
     check_same("moment of option A (45)", short.subs(meaning), moment, frames)
     on_frame_w = cross(w, p)
-    check_same("frame term of option A (45)", on_frame_w.subs(meaning), -_of(form, dth0), frames)
+    check_same("frame term of option A (45)", on_frame_w.subs(meaning),
+               -conjugate_to(form, dth0), frames)
     return Inertia(
         (_relative_rotation(q),
          Stage("angular velocities in frame axes, (36)", "rotation", sets=((q.w, Q * Om),))),

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from sebody.derive.formulas.elastic import _of
+from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.formulas.inertia.option import (
     PRODUCTS,
     Inertia,
@@ -22,8 +22,8 @@ def option_b(q: Quantities) -> Inertia:
     Om, p, pd, dth = q.Om.symbols, q.pw.symbols, q.pwd.symbols, q.dth.symbols
     variation = angular_velocity_variation(q.space)
     rate = q.space.quantity("dthd", "axial", "rotation").symbols
-    conjugate = _of(p.dot(variation), rate)
-    moment = differential(conjugate, along(p, pd)) - _of(p.dot(variation), dth)
+    conjugate = conjugate_to(p.dot(variation), rate)
+    moment = differential(conjugate, along(p, pd)) - conjugate_to(p.dot(variation), dth)
     short = pd + cross(Om, p)
     check_same("moment of option B (57)", short, moment)
     return Inertia(

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.generated.options import FRAMES, INERTIA_OPTIONS
 from sebody.kernels.layout import (
     ENERGY,
     KINETIC,
@@ -16,7 +15,13 @@ from sebody.kernels.layout import (
     RESIDUAL,
     STRAIN,
     TANGENT,
-    FrameTraits,
+)
+from sebody.studies.check.definitions import (
+    frame_rotation,
+    frame_traits,
+    local_coordinates,
+    local_velocities,
+    mean_rotation,
 )
 from sebody.studies.check.states import (
     LIMIT,
@@ -46,16 +51,10 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
                       gravity: float = 0.0, damping: float = 0.0) -> Case:
     """A generic state of a superelement kernel."""
     random = np.random.default_rng(seed)
-    planar = module.PLANAR
-    d, npos, nrot, modes = (2 if planar else 3), module.N_POSITIONS, module.N_ROTATIONS, (
-        3 if module.N_MODES is None else module.N_MODES)
+    planar, npos, nrot = module.PLANAR, module.N_POSITIONS, module.N_ROTATIONS
+    d, modes = 2 if planar else 3, 3 if module.N_MODES is None else module.N_MODES
     n = module.MODES + modes
-    around = 2 * np.pi * np.arange(npos) / npos       # spread out: no frame is ill-conditioned
-    X = np.column_stack([np.cos(around), np.sin(around), 0 * around])[:, :d]
-    X = X + 0.2 * random.normal(size=(npos, d))
-    alpha, alpha_r = (np.ones(k) / max(k, 1) + 0.1 * random.normal(size=k) for k in (npos, nrot))
-    alpha, alpha_r = alpha + (1 - alpha.sum()) / npos, alpha_r + (1 - alpha_r.sum()) / max(nrot, 1)
-    X -= alpha @ X
+    X, alpha, alpha_r = _nodes(random, npos, nrot, d)
     S, M = (A @ A.T for A in random.normal(size=(2, n, n)))
     angle = random.normal()
     base = (Rotation.from_rotvec([0, 0, angle]) if planar
@@ -79,6 +78,19 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     case = Case(module, n, index_row(module, n), np.zeros(0), q, R, v, a, frame, frame.copy(),
                 gravity * random.normal(size=3))
     return with_constants(case, values | _declared(case, values, random))
+
+
+def _nodes(random: np.random.Generator, positions: int, rotations: int,
+           d: int) -> tuple[NDArray, NDArray, NDArray]:
+    """Nodes in the undeformed frame, and the weights of their positions and rotations."""
+    around = 2 * np.pi * np.arange(positions) / positions   # spread out: all frames are well placed
+    X = np.column_stack([np.cos(around), np.sin(around), 0 * around])[:, :d]
+    X = X + 0.2 * random.normal(size=(positions, d))
+    alpha, alpha_r = (np.ones(k) / max(k, 1) + 0.1 * random.normal(size=k)
+                      for k in (positions, rotations))
+    alpha += (1 - alpha.sum()) / positions
+    alpha_r += (1 - alpha_r.sum()) / max(rotations, 1)
+    return X - alpha @ X, alpha, alpha_r
 
 
 def _declared(case: Case, values: dict, random: np.random.Generator) -> dict[str, NDArray]:
@@ -128,60 +140,6 @@ def asymmetry(case: Case) -> float:
         x, y, z = g[at:at + 3]
         expected[at:at + 3, at:at + 3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
     return float(np.abs(K - K.T - expected).max() / np.abs(K).max())
-
-
-def local_coordinates(case: Case) -> NDArray:
-    """``y``, (11), by other means than the kernels: SciPy's rotations, an SVD for the best fit."""
-    module, constants = case.module, constants_of(case)
-    x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
-    R0 = frame_rotation(case).as_matrix()[:x.shape[1], :x.shape[1]]
-    u = (x - constants["alphas"] @ x) @ R0 - constants["X"]
-    if case.planar:
-        psi = case.q[module.ROTATIONS:module.MODES] - np.arctan2(R0[1, 0], R0[0, 0])
-        psi = (psi + np.pi) % (2 * np.pi) - np.pi
-    elif module.N_ROTATIONS:
-        psi = Rotation.from_matrix(R0.T @ case.R.reshape(-1, 3, 3)).as_rotvec()
-    else:
-        psi = np.zeros(0)
-    return np.concatenate([u.ravel(), psi.ravel(), case.q[module.MODES:]])
-
-
-def local_velocities(case: Case) -> NDArray:
-    """``ydot`` of the inertia option, (33) and (36) or (52)."""
-    module, v = case.module, case.v.copy()
-    d = case.dimension
-    R0 = frame_rotation(case).as_matrix()
-    positions = v[:module.ROTATIONS].reshape(-1, d) @ R0[:d, :d]
-    v[:module.ROTATIONS] = positions.ravel()
-    if not INERTIA_OPTIONS[module.INERTIA].material:
-        for j, at in enumerate(case.turning):
-            v[at:at + 3] = R0.T @ case.R[9 * j:9 * j + 9].reshape(3, 3) @ v[at:at + 3]
-    return v
-
-
-def frame_traits(module: ModuleType) -> FrameTraits:
-    """What the frame of a kernel declares."""
-    return FRAMES[module.FRAME]
-
-
-def frame_rotation(case: Case) -> Rotation:
-    """``R0`` from its definition, (14)-(16) or the best fit, without the search of the kernels."""
-    module, constants, traits = case.module, constants_of(case), frame_traits(case.module)
-    if not traits.needs_rotations:
-        x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
-        arms, X, fits = x - constants["alphas"] @ x, constants["X"], constants["fits"]
-        if not case.planar:
-            return Rotation.align_vectors(arms, X, fits)[0]
-        turns = (arms @ [1, 1j]) * (X @ [1, -1j])
-        return Rotation.from_rotvec([0, 0, np.angle(fits @ turns)])
-    if case.planar:
-        angles = case.q[module.ROTATIONS:module.MODES]
-        return Rotation.from_rotvec([0, 0, constants["alpha_rs"] @ angles])
-    if not traits.incremental:
-        return Rotation.from_matrix(mean_rotation(case).reshape(3, 3))
-    last = Rotation.from_matrix(case.reference.reshape(3, 3))
-    increments = (last.inv() * Rotation.from_matrix(case.R.reshape(-1, 3, 3))).as_rotvec()
-    return last * Rotation.from_rotvec(constants["alpha_rs"] @ increments)
 
 
 def energies(case: Case) -> float:
@@ -274,19 +232,6 @@ def small_increment_slope(module: ModuleType, seed: int) -> tuple[float, float]:
         case = case._replace(reference=mean_rotation(case))
         errors.append(elastic_force(case))
     return errors[0], float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
-
-
-def mean_rotation(case: Case) -> NDArray:
-    """Frame in which the weighted rotation vectors of the nodes vanish, by fixed-point search."""
-    weights = constants_of(case)["alpha_rs"]
-    nodes = Rotation.from_matrix(case.R.reshape(-1, 3, 3))
-    frame = nodes[0]
-    for _ in range(60):
-        step = weights @ (frame.inv() * nodes).as_rotvec()
-        frame = frame * Rotation.from_rotvec(step)
-        if np.abs(step).max() < 1e-16:
-            break
-    return frame.as_matrix().ravel()
 
 
 def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
