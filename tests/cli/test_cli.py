@@ -135,7 +135,7 @@ def test_check_of_named_kernels_prints_all_criteria(capsys):
     assert main(["check", "element_force"]) == 0
     *lines, last = capsys.readouterr().out.splitlines()
     assert sum(line.startswith("element_force ") for line in lines) == len(lines) - 1 >= 4
-    assert last == f"{len(lines) - 1} criteria of 1 kernels hold"
+    assert last == f"{len(lines) - 1} criteria of 1 kernel hold"
 
 
 def test_check_of_all_kernels_prints_what_fails(capsys, monkeypatch):

@@ -35,7 +35,7 @@ def verdict(rows: list[CheckRow]) -> str:
     failed, kernels = [row for row in judged if not row.passed], {row.kernel for row in rows}
     if failed:
         return f"{len(failed)} of {len(judged)} criteria fail"
-    return f"{len(judged)} criteria of {len(kernels)} kernels hold"
+    return f"{len(judged)} criteria of {len(kernels)} kernel{'s' * (len(kernels) > 1)} hold"
 
 
 def _badness(row: CheckRow) -> float:
