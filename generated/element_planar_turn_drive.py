@@ -10,7 +10,7 @@ from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
-    AT_ITEM,
+    AT_PORT,
     C_CONSTRAINT,
     ENERGY,
     HEADER,
@@ -52,9 +52,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Omb_z = v[unknowns[1]]
         Ab_z = a[unknowns[1]]
         lam_1 = q[unknowns[2]]
-        amplitude = loads[3*index[first + AT_ITEM]]
-        amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
-        amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
+        amplitude = loads[3*index[first + AT_PORT]]
+        amplitude_rate = loads[3*index[first + AT_PORT] + 1]
+        amplitude_acceleration = loads[3*index[first + AT_PORT] + 2]
         g[0] = lam_1
         g[1] = -lam_1
         g[2] = -amplitude + tha - thb
@@ -63,7 +63,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         if task == ACCELERATION:
             g[2] = Aa_z - Ab_z - amplitude_acceleration
         if task == ENERGY:
-            energies[POWERS + index[first + AT_ITEM]] = -lam_1*(Oma_z - Omb_z)
+            energies[POWERS + index[first + AT_PORT]] = -lam_1*(Oma_z - Omb_z)
         if task == TANGENT:
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)

@@ -170,12 +170,13 @@ def _inertia(kinetic: sp.Expr, block: Block, vary: Rules, time: Rules) -> sp.Mat
 
 
 def _column(blocks, force, constraints, vary) -> tuple[sp.Expr, ...]:
-    c_mass, c_rate, c_place, c_constraint = sp.symbols("c_mass c_rate c_place c_constraint")
+    c_mass, c_damping, c_stiffness, c_constraint = sp.symbols(
+        "c_mass c_damping c_stiffness c_constraint")
     rates, accelerations = {}, {}
     for block in blocks:
         rates |= along(block.rate.symbols, block.unit.symbols)
         accelerations |= along(block.acceleration.symbols, block.unit.symbols)
-    on_force = [c_place * differential(f, vary) + c_rate * differential(f, rates)
+    on_force = [c_stiffness * differential(f, vary) + c_damping * differential(f, rates)
                 + c_mass * differential(f, accelerations) for f in force]
     return (*on_force, *(c_constraint * differential(phi, vary) for phi in constraints))
 

@@ -13,7 +13,7 @@ from sebody.kernels.sources import room_hash
 SUMS = {"kinetic": ("KINETIC", 0), "strain": ("STRAIN", 0), "potential": ("POTENTIAL", 0),
         "P_x": ("MOMENTUM", 0), "P_y": ("MOMENTUM", 1), "P_z": ("MOMENTUM", 2),
         "H_x": ("MOMENT", 0), "H_y": ("MOMENT", 1), "H_z": ("MOMENT", 2)}     # among the energies
-COEFFICIENTS = {"c_mass": "C_MASS", "c_rate": "C_RATE", "c_place": "C_PLACE",
+COEFFICIENTS = {"c_mass": "C_MASS", "c_damping": "C_DAMPING", "c_stiffness": "C_STIFFNESS",
                 "c_constraint": "C_CONSTRAINT"}
 
 
@@ -58,9 +58,9 @@ def _names(element: Element) -> set[str]:
     names |= {COEFFICIENTS[name] for name in _used_coefficients(element)}
     names |= {"VELOCITY", "ACCELERATION"} if element.multipliers else set()
     names |= {"ENERGY"} if element.sums or element.power is not None else set()
-    names |= {"AT_ITEM", "POWERS"} if element.power is not None else set()
+    names |= {"AT_PORT", "POWERS"} if element.power is not None else set()
     names |= {"Part"} if element.constants else set()
-    names |= {"AT_ITEM"} if set(AMPLITUDE) & _used(element.printed) else set()
+    names |= {"AT_PORT"} if set(AMPLITUDE) & _used(element.printed) else set()
     return names | ({"FIELD"} if set(_field(element)) & _used(element.printed) else set())
 
 
@@ -72,7 +72,7 @@ def _tasks(element: Element) -> list[str]:
     return [*_task("VELOCITY", element.velocity, constraints),
             *_task("ACCELERATION", element.second, constraints),
             *_task("ENERGY", list(element.sums.values()), sums),
-            *_task("ENERGY", power, ["energies[POWERS + index[first + AT_ITEM]] = "])]
+            *_task("ENERGY", power, ["energies[POWERS + index[first + AT_PORT]] = "])]
 
 
 def _part(constant: Constant) -> Part:
@@ -139,7 +139,7 @@ def _loads(element: Element) -> list[str]:
         matrix += block.turns
     lines += [f"{s} = q[unknowns[{element.coordinates + k}]]"
               for k, s in enumerate(element.multipliers)]
-    return lines + [f"{s} = loads[{offset('3*index[first + AT_ITEM]', k)}]"
+    return lines + [f"{s} = loads[{offset('3*index[first + AT_PORT]', k)}]"
                     for k, s in enumerate(AMPLITUDE) if s in used]
 
 

@@ -41,7 +41,7 @@ def matrix(system: System, state: State, what: str, *, mass: float, rate: float,
     InputError
         The state cannot be evaluated.
     """
-    state.set_coefficients(c_mass=mass, c_rate=rate, c_place=place, c_geo=1.0,
+    state.set_coefficients(c_mass=mass, c_damping=rate, c_stiffness=place, c_geo=1.0,
                            c_constraint=constraint)
     evaluate(system, state, TANGENT, TANGENT, what)
     sum_matrices(system, state, state.residual)

@@ -12,9 +12,9 @@ from sebody.engine.evaluate import (
     set_loads,
     set_powers,
     to_body_axes,
-    turn_rotations,
+    update_rotations,
 )
-from sebody.engine.links import place_hanging
+from sebody.engine.links import place_dependent
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -39,11 +39,11 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     set_loads(system, state.loads, 0.0)
     state.loads_old[:] = state.loads
     move_prescribed(system, state)
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
     multipliers = np.flatnonzero(system.is_multiplier)
     masses = _masses(system, state)
-    gaps = state.residual[multipliers]
-    _check(gaps, np.abs(state.q).max(), "position", multipliers, numbering,
+    residuals = state.residual[multipliers]
+    _check(residuals, np.abs(state.q).max(), "position", multipliers, numbering,
            "start from a state the joints allow")
     solver = Solver(masses, numbering, multipliers)
     changed = _fit_velocities(model, system, numbering, state, masses, multipliers)
@@ -60,14 +60,14 @@ def _accelerate(system: System, numbering: Numbering, state: State, solver: Solv
     moving = system.is_multiplier[:numbering.total] == 0
     solved = np.arange(numbering.total) < numbering.free
     state.a[solved & moving], state.q[~moving] = 0.0, 0.0
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
     evaluate(system, state, RESIDUAL, ACCELERATION, WHAT)
     to_body_axes(system, state.frames, state.residual, False)
     answer = np.zeros(numbering.total)
     answer[:numbering.free] = -solver(state.residual[:numbering.free].copy())
     to_body_axes(system, state.frames, answer, True)
     state.a[solved & moving], state.q[~moving] = answer[solved & moving], answer[~moving]
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
 
 
 def acceleration_rates(system: System, numbering: Numbering, state: State, dt: float) -> NDArray:
@@ -79,7 +79,7 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
     state.v[:] += dt * state.a
     set_loads(system, state.loads, dt)
     move_prescribed(system, state)
-    turn_rotations(system, state)
+    update_rotations(system, state)
     multipliers = np.flatnonzero(system.is_multiplier)
     _accelerate(system, numbering, state, Solver(_masses(system, state), numbering, multipliers))
     later = state.a.copy()
@@ -126,7 +126,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     answer[multipliers] = 0.0
     to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
     given = [t for t in triplets if t.given]
     for triplet in given:
         change = np.abs(answer[coordinates(numbering, triplet)]).max()

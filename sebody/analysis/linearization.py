@@ -16,7 +16,7 @@ from sebody.analysis.evaluation import matrix
 from sebody.analysis.simulation import Simulation
 from sebody.assembly.numbering import coordinates
 from sebody.engine.evaluate import to_body_axes
-from sebody.engine.state import RENEWED, WANTED
+from sebody.engine.state import EVALUATED, WANTED
 from sebody.errors import InputError
 from sebody.results.result import Result
 
@@ -43,8 +43,8 @@ class Spin:
             raise InputError(f"spin is {velocity}: give "
                              + ("a number" if planar else "three numbers"))
         spin = cls(given, planar)
-        if spin.turns and run.numbering.hanging:
-            raise InputError(f"{run.numbering.hanging[0].name} hangs on a rigid link, which the "
+        if spin.turns and run.numbering.dependent:
+            raise InputError(f"{run.numbering.dependent[0].name} hangs on a rigid link, which the "
                              "tangents of turning states leave out: give it a body of its own")
         return spin
 
@@ -119,7 +119,7 @@ def derivative(run: Simulation | Result, mass: float, rate: float, place: float)
     Constraints belong to the places: a turning state moves the columns of the others.
     """
     state = run.state
-    state.control[WANTED] = RENEWED     # a run that goes on needs its own matrix again
+    state.control[WANTED] = EVALUATED     # a run that goes on needs its own matrix again
     state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
     return matrix(run.system, state, "the state", mass=mass, rate=rate, place=place,
                   constraint=place)

@@ -166,8 +166,8 @@ class Simulation:
         """Steps by their error; the first one is short against what accelerations allow."""
         n, state = self.numbering.free, self.state
         turns = turning(self.model, self.numbering)[:n]
-        state.strictness[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], turns)
-        bend = np.abs(state.a[:n] * state.strictness[:n]).max()
+        state.error_weights[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], turns)
+        bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
         state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock[LARGEST_ERROR] = 0.0
         state.control[ADAPTIVE] = 1

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.analysis.linearization import Spin, rotating
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.sparse import Scaled
-from sebody.engine.evaluate import set_loads, to_body_axes, turn_rotations
+from sebody.engine.evaluate import set_loads, to_body_axes, update_rotations
 from sebody.errors import InputError, SimulationError
 from sebody.kernels.layout import FIELD, RECORD_T
 from sebody.model.model import Model
@@ -93,7 +93,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
             return False
         state.R_old[:], state.dq[:] = state.R, -correction
         state.q[:] -= correction
-        turn_rotations(system, state)
+        update_rotations(system, state)
         if change < tolerance:
             spin.move(run)
             return True

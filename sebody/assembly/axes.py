@@ -15,7 +15,7 @@ from sebody.model.mechanism import Mechanism
 
 
 def body_axes(model: Mechanism, numbering: Numbering, batches: Batches) -> dict[str, NDArray]:
-    """The members `turned`, `turned_blocks` and `linked` of `System`."""
+    """The members `rotated`, `rotated_blocks` and `linked` of `System`."""
     frame_of = _frames(model, numbering)
     blocks, start = [], 0
     for batch in batches.all:
@@ -28,9 +28,9 @@ def body_axes(model: Mechanism, numbering: Numbering, batches: Batches) -> dict[
     linked = (any(block[0] < first_load for block in blocks)
               or any(len(equation.triplets) > 1 for equation in model.constraints))
     return {"linked": np.array([int(linked)]),
-            "turned": np.array([item for item in frame_of.items() if item[1] >= 0],
+            "rotated": np.array([item for item in frame_of.items() if item[1] >= 0],
                                dtype=np.int64).reshape(-1, 2),
-            "turned_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
+            "rotated_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
 
 
 def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
@@ -40,16 +40,16 @@ def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
         for triplet in body.positions:
             if triplet.solved:
                 frame_of.setdefault(numbering.triplets[id(triplet)], k)
-    for triplet in numbering.hanging:
+    for triplet in numbering.dependent:
         frame_of[numbering.triplets[id(triplet)]] = -1
     return frame_of
 
 
-def summands(batches: Batches, turned: NDArray, links: Links) -> NDArray:
+def summands(batches: Batches, rotated: NDArray, links: Links) -> NDArray:
     """Element matrices, and what is done to them before they are summed."""
     width = np.repeat([b.width for b in batches.all], [len(b.rows) for b in batches.all])
     start = starts(width ** 2)
     linked = np.full(len(width), -1)
     linked[np.searchsorted(start, links.elements[:, 0])] = np.arange(len(links.elements))
-    return np.column_stack([start[:-1], width, np.searchsorted(turned[:, 0], start[:-1]),
-                            np.searchsorted(turned[:, 0], start[1:]), linked])
+    return np.column_stack([start[:-1], width, np.searchsorted(rotated[:, 0], start[:-1]),
+                            np.searchsorted(rotated[:, 0], start[1:]), linked])

@@ -88,7 +88,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         first = numbering.modes[body.name]
         unknowns += range(first, first + body.body.modes)
         row = index_row(body.name, kernel, unknowns, constants=row_of[key], frame=frame,
-                        item=numbering.items.get(id(body), 0),
+                        port=numbering.ports.get(id(body), 0),
                         nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations])
         _append(batches, kernel, frame, row.tolist(), unknowns, id(body))
     return list(batches.values())
@@ -103,7 +103,7 @@ def _element_batches(numbering: Numbering, constants: _Constants,
         row = index_row(element.name, kernel, unknowns, frame=0,
                         constants=constants.add(constants_row(element.name, kernel, {},
                                                               element.constants)),
-                        item=numbering.items.get(id(element), 0),
+                        port=numbering.ports.get(id(element), 0),
                         nodes=[numbering.rotations[id(t)] for t in element.triplets
                                if id(t) in numbering.rotations])
         function = [] if element.function is None else [element.function.address]

@@ -38,9 +38,9 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
         wrong.append("it has no history and the kernel reads one")
     if element.history is not None and not kernel.POWER:
         wrong.append("it has a history and the kernel reads none")
-    if kernel.POWER != (id(element) in numbering.items):
-        wrong.append("it is no item and the kernel writes the power of one" if kernel.POWER else
-                     "it is an item and the kernel writes no power")
+    if kernel.POWER != (id(element) in numbering.ports):
+        wrong.append("it has no power port and the kernel writes power" if kernel.POWER else
+                     "it has a power port and the kernel writes no power")
     if wrong:
         raise _misfit(element.name, kernel, wrong)
 

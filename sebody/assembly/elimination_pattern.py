@@ -25,9 +25,9 @@ class Pattern(NamedTuple):
 def best_slots(row: NDArray, column: NDArray, groups: NDArray, n: int) -> tuple[NDArray, Pattern]:
     """Slots of n unknowns: one after the other, or groups on whole blocks if that is less work."""
     groups = np.unique(groups[groups < n])
-    gaps = np.zeros(n, dtype=np.int64)
-    gaps[groups[1:]] = -np.diff(groups) % LANES
-    choices = [np.arange(n), np.arange(n) + np.cumsum(gaps)]
+    padding = np.zeros(n, dtype=np.int64)
+    padding[groups[1:]] = -np.diff(groups) % LANES
+    choices = [np.arange(n), np.arange(n) + np.cumsum(padding)]
     patterns = [block_pattern(slot[row], slot[column], slot[-1] + 1) for slot in choices]
     best = int(patterns[1].products < patterns[0].products)
     return choices[best], patterns[best]

@@ -15,18 +15,18 @@ from sebody.model.mechanism import Mechanism
 class _Ends(NamedTuple):
     """The ends of all links, and what positions are solved for in."""
 
-    hanging: list[tuple[int, int, int, int]]    # rows of `Links.hanging`
+    dependent: list[tuple[int, int, int, int]]    # rows of `Links.dependent`
     arms: list[tuple[int, int]]                 # and of `Links.arms`
     vectors: list[NDArray]
-    number: dict[int, int]                      # first coordinate -> row of hanging
+    number: dict[int, int]                      # first coordinate -> row of dependent
     frame_of: dict[int, int]                    # first coordinate -> frame it is solved for in
     sizes: tuple[int, int]                      # coordinates of a position and of a rotation
 
 
 def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
-                turned: NDArray) -> tuple[Links, NDArray, NDArray]:
+                rotated: NDArray) -> tuple[Links, NDArray, NDArray]:
     """Links without their matrix entries, and rows and columns of these."""
-    ends = _ends(model, numbering, turned)
+    ends = _ends(model, numbering, rotated)
     elements, maps, blocks, rows, columns = [], [], [], [], []
     start = 0
     for batch in batches:
@@ -46,7 +46,7 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
         rows += np.repeat(own, turning).tolist()
         columns += own * turning
     none = np.zeros(0, dtype=np.int64)
-    links = Links(_table(ends.hanging, 4), _table(ends.arms, 2),
+    links = Links(_table(ends.dependent, 4), _table(ends.arms, 2),
                   np.array(ends.vectors, dtype=float).reshape(-1, d), _table(elements, 7),
                   _table(maps, 1).ravel(), _table(blocks, 4), none, none)
     return links, _table(rows, 1).ravel(), _table(columns, 1).ravel()
@@ -59,18 +59,18 @@ def with_entries(links: Links, entries: NDArray) -> Links:
     return replace(links, entries=own, arm_entries=of_arms)
 
 
-def _ends(model: Mechanism, numbering: Numbering, turned: NDArray) -> _Ends:
-    hanging, arms, vectors = [], [], []
-    for triplet in numbering.hanging:
+def _ends(model: Mechanism, numbering: Numbering, rotated: NDArray) -> _Ends:
+    dependent, arms, vectors = [], [], []
+    for triplet in numbering.dependent:
         first = len(arms)
         for rotation, arm in triplet.arms:
             arms.append((numbering.rotations.get(id(rotation), 0),
                          numbering.triplets[id(rotation)]))
             vectors.append(arm)
-        hanging.append((numbering.triplets[id(triplet)], numbering.triplets[id(triplet.root)],
+        dependent.append((numbering.triplets[id(triplet)], numbering.triplets[id(triplet.root)],
                         first, len(arms)))
-    return _Ends(hanging, arms, vectors, {row[0]: k for k, row in enumerate(hanging)},
-                 dict(turned.tolist()), (model.dimension, model.rotation_size))
+    return _Ends(dependent, arms, vectors, {row[0]: k for k, row in enumerate(dependent)},
+                 dict(rotated.tolist()), (model.dimension, model.rotation_size))
 
 
 def _expanded(unknowns: list[int], ends: _Ends,
@@ -89,7 +89,7 @@ def _expanded(unknowns: list[int], ends: _Ends,
     blocks = []
     for i, u in enumerate(unknowns):
         if u in ends.number:
-            _, root, first, last = ends.hanging[ends.number[u]]
+            _, root, first, last = ends.dependent[ends.number[u]]
             blocks.append((i, ends.number[u], at_map + len(local), ends.frame_of.get(root, -1)))
             local.append(first_of(root, d))
             local += [first_of(ends.arms[k][1], turning) for k in range(first, last)]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.items import number_items
+from sebody.assembly.ports import number_ports
 from sebody.errors import InputError
 from sebody.model.histories import History
 from sebody.model.mechanism import Mechanism
@@ -24,11 +24,11 @@ class Numbering(NamedTuple):
     modes: dict[str, int]               # superelement -> first modal amplitude
     multipliers: dict[int, int]         # id(constraint) -> first multiplier
     names: list[str]                    # of every coordinate
-    hanging: list[Triplet]              # positions at the ends of rigid links
-    items: dict[int, int]               # id(constraint, load, spring, body) -> item
-    item_names: list[str]               # of what has a history or does work
-    histories: list[History]            # of every item
-    prescribed: list[tuple[int, int, int, float]]   # coordinate, item, 1 if it turns R, factor
+    dependent: list[Triplet]              # positions at the ends of rigid links
+    ports: dict[int, int]               # id(constraint, load, spring, body) -> power port
+    port_names: list[str]               # of every power port
+    histories: list[History]            # of every power port
+    prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
 
@@ -79,13 +79,13 @@ def number(model: Mechanism) -> Numbering:
     for triplet in used:
         if id(triplet) not in order.at and triplet.root is None:
             order.place(triplet, " (fixed)")
-    hanging = [t for t in used if t.root is not None]
-    for triplet in hanging:
+    dependent = [t for t in used if t.root is not None]
+    for triplet in dependent:
         order.place(triplet)
     turning = [] if model.planar else [t for t in used if t.turns]
     rotations = {id(t): k for k, t in enumerate(turning)}
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
-                     order.names, hanging, *number_items(model, order.at), np.array(groups))
+                     order.names, dependent, *number_ports(model, order.at), np.array(groups))
 
 
 class _Order:

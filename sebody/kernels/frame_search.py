@@ -1,6 +1,6 @@
 """Where a floating frame is: the searches for its rotation that superelement kernels call.
 
-Each returns a status: 0, HALF_TURN where a node is turned by nearly half a turn against the frame,
+Each returns a status: 0, HALF_TURN where a node is rotated by nearly half a turn against the frame,
 or NO_FRAME where the search does not end.
 """
 
@@ -14,8 +14,8 @@ from sebody.kernels.rotations import (
     inverse_tangent_coefficients,
     relative_log,
     relative_rotations,
+    rotated,
     turn,
-    turned,
 )
 
 
@@ -46,13 +46,13 @@ def _mean_of_two(nodes, alpha, R, frame, psi):
     """Mean of two rotations: a point of the shortest way between them, in closed form.
 
     False, and nothing done, for more than a quarter turn between them, or from the last frame: two
-    nodes may be turned against each other by more than half a turn.
+    nodes may be rotated against each other by more than half a turn.
     """
     x, y, z, cosine = relative_log(R, 9 * nodes[0], R, 9 * nodes[1])
     if not cosine > 0.0:
         return False
     p, q, r = alpha[1] * x, alpha[1] * y, alpha[1] * z
-    a, b, c, d, e, f, g, h, i = turned(R, 9 * nodes[0], p, q, r)
+    a, b, c, d, e, f, g, h, i = rotated(R, 9 * nodes[0], p, q, r)
     if (a * frame[0] + b * frame[1] + c * frame[2] + d * frame[3] + e * frame[4] + f * frame[5]
             + g * frame[6] + h * frame[7] + i * frame[8] < 1.0):     # a quarter turn away
         return False

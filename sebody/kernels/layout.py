@@ -22,8 +22,8 @@ LANES = 4           # columns of a body's matrices are padded to whole vectors o
 
 # what a kernel is asked for: constraints differentiated in time are VELOCITY and ACCELERATION
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
-# what a kernel answers: HALF_TURN where a node is turned by nearly half a turn against the frame of
-# its body, NO_FRAME where the search for that frame does not end
+# what a kernel answers: HALF_TURN where a node is rotated by nearly half a turn against the frame
+# of its body, NO_FRAME where the search for that frame does not end
 OK, HALF_TURN, NO_FRAME = range(3)
 
 Counts = Mapping[str, int]
@@ -152,7 +152,7 @@ ARGUMENTS = (
     ("references", "float64", "frames of the last converged step, nine numbers each"),
     ("frames", "float64", "frames of the current iterate; superelements write theirs"),
     ("T", "float64", "tangent operators of the step increments of rotations, nine numbers each"),
-    ("loads", "float64", "of every item its amplitude now, and the two rates of that"),
+    ("loads", "float64", "of every power port the amplitude now and its first two derivatives"),
     ("coefficients", "float64", "the row COEFFICIENTS"),
     ("forces", "float64", "written: forces of every element, (count, n)"),
     ("matrices", "float64", "written: matrices of every element, (count, n, n)"),
@@ -163,24 +163,24 @@ ARGUMENTS = (
 INDEX = Row("index row of an element", (
     Part("constants", (), "where its row of constants begins"),
     Part("frame", (), "number of its frame"),
-    Part("item", (), "number of the item it is: what does work, a load, damper or drive"),
+    Part("port", (), "number of its power port, if it does work: a load, damper or drive"),
     Part("nodes", ("N_ROTATIONS",), "numbers of its rotation matrices"),
     Part("unknowns", ("n",), "its coordinates, then its multipliers"),
 ))
-AT_CONSTANTS, AT_FRAME, AT_ITEM, HEADER = (
-    INDEX.first(name) for name in ("constants", "frame", "item", "nodes"))
+AT_CONSTANTS, AT_FRAME, AT_PORT, HEADER = (
+    INDEX.first(name) for name in ("constants", "frame", "port", "nodes"))
 
-# J = c_mass dG/da + c_rate dG/dv + c_place dG/dq T: rotations vary multiplicatively, and T turns
-# the variation of the step's increment into that of the rotation
+# J = c_mass dG/da + c_damping dG/dv + c_stiffness dG/dq T: rotations vary multiplicatively, and T
+# maps the variation of a rotation's increment in a step to the variation of the rotation
 COEFFICIENTS = Row("coefficients of the iteration matrix, and gravity", (
     Part("c_mass", (), "of the derivatives by accelerations"),
-    Part("c_rate", (), "of the derivatives by velocities"),
-    Part("c_place", (), "of the derivatives by positions and rotations"),
+    Part("c_damping", (), "of the derivatives by velocities"),
+    Part("c_stiffness", (), "of the derivatives by positions and rotations"),
     Part("c_geo", (), "1 for consistent tangents, 0 for the paper's"),
     Part("c_constraint", (), "of constraints and multipliers"),
     Part("field", (3,), "gravity [length/time^2]"),
 ))
-C_MASS, C_RATE, C_PLACE, C_GEO, C_CONSTRAINT, FIELD = (
+C_MASS, C_DAMPING, C_STIFFNESS, C_GEO, C_CONSTRAINT, FIELD = (
     COEFFICIENTS.first(part.name) for part in COEFFICIENTS.parts)
 
 ENERGIES = Row("sums over the elements, and powers", (
@@ -189,7 +189,7 @@ ENERGIES = Row("sums over the elements, and powers", (
     Part("momentum", (3,), "momentum in global axes"),
     Part("moment", (3,), "its moment about the origin"),
     Part("potential", (), "potential of gravity"),
-    Part("powers", ("items",), "rate of work of every item"),
+    Part("powers", ("ports",), "power of every power port"),
 ))
 KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS = (
     ENERGIES.first(part.name) for part in ENERGIES.parts)
@@ -197,7 +197,7 @@ KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS = (
 RECORD = Row("what is recorded of a state", (
     Part("t", (), "time"),
     Part("iterations", (), "Newton iterations since the start"),
-    Part("works", ("items",), "work of every item since the start"),
+    Part("works", ("ports",), "work of every power port since the start"),
     Part("q", ("coordinates",), "positions, modes, angles, multipliers; rotations' increments"),
     Part("R", ("rotations", 9), "rotation matrices"),
     Part("v", ("coordinates",), "velocities"),
@@ -242,7 +242,7 @@ class FrameTraits(NamedTuple):
     fewest_positions: tuple[int, int] = (1, 1)      # in space, in a plane
     planar: bool = True             # False: in a plane it is the same as another one
     exact: bool = True              # forces are derivatives of the energy
-    incremental: bool = False       # it averages what nodes turned since the last step
+    incremental: bool = False       # it averages what nodes rotated since the last step
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 
 

@@ -61,8 +61,8 @@ def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Nod
     position, rotation = (triplet(master, k) for k in ("position", "rotation"))
     root = position if position.root is None else position.root
     arms = (*position.arms, (rotation, point - master.point))
-    hanging = Triplet(f"{name}.position", point, np.zeros(model.dimension), root=root, arms=arms)
-    model.nodes[name] = Node(name, point, hanging, rotation)
+    dependent = Triplet(f"{name}.position", point, np.zeros(model.dimension), root=root, arms=arms)
+    model.nodes[name] = Node(name, point, dependent, rotation)
     return model.nodes[name]
 
 

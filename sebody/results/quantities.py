@@ -178,7 +178,7 @@ def _multipliers(recording: Recording, name: str) -> NDArray:
 
 
 def _work(recording: Recording, name: str) -> NDArray:
-    return recording.recorded("works")[:, recording.numbering.item_names.index(name)]
+    return recording.recorded("works")[:, recording.numbering.port_names.index(name)]
 
 
 OWNERS = (
@@ -189,6 +189,6 @@ OWNERS = (
     Owner("joint", "of joints {quantities}",
           lambda recording: [joint.name for joint in recording.model.joints],
           {"multipliers": _multipliers}),
-    Owner("load", "of {names} {quantities}", lambda recording: recording.numbering.item_names,
+    Owner("load", "of {names} {quantities}", lambda recording: recording.numbering.port_names,
           {"work": _work}),
 )

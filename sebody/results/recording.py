@@ -59,5 +59,5 @@ class Recording:
 
 def record_counts(numbering: Numbering) -> dict[str, int]:
     """What the sizes in `layout.RECORD` and `layout.ENERGIES` are for a model."""
-    return {"items": len(numbering.histories), "coordinates": numbering.total,
+    return {"ports": len(numbering.histories), "coordinates": numbering.total,
             "rotations": len(numbering.rotations), "bodies": len(numbering.modes)}

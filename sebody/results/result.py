@@ -101,7 +101,7 @@ class Result(Recording):
                          f"{self['constraints.position'].max():.1e}, their rates by "
                          f"{self['constraints.velocity'].max():.1e}")
         lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
-                  for k, name in enumerate(self.numbering.item_names)]
+                  for k, name in enumerate(self.numbering.port_names)]
         if self.error is not None:
             lines.insert(2, f"error                {self.error:.2f} of the tolerance, estimated; "
                             f"{1e3 * self.all_seconds:.3g} ms with the coarser runs before")

@@ -217,8 +217,8 @@ def test_dead_torque_turns_in_material_axes():
     torque = elements.linearized(forces.torque(False, False))
     block, = torque.blocks
     R, m = block.state.symbols, torque.constants[0].symbols
-    amplitude, c_place = sp.symbols("amplitude c_place")
-    expected = -amplitude * c_place * rotations.skew(R.T * m) * block.direction.symbols
+    amplitude, c_stiffness = sp.symbols("amplitude c_stiffness")
+    expected = -amplitude * c_stiffness * rotations.skew(R.T * m) * block.direction.symbols
     check_same("dead torque", sp.Matrix(torque.linear), expected, [R])
 
 

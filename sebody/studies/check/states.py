@@ -92,7 +92,7 @@ class Case(NamedTuple):
 
 def index_row(module: ModuleType, n: int) -> NDArray:
     """The index row of a kernel's only element."""
-    values = {"constants": 0, "frame": 0, "item": 0, "nodes": range(module.N_ROTATIONS),
+    values = {"constants": 0, "frame": 0, "port": 0, "nodes": range(module.N_ROTATIONS),
               "unknowns": range(n)}
     return INDEX.pack({"N_ROTATIONS": module.N_ROTATIONS, "n": n}, values).astype(np.int64)
 
