@@ -6,7 +6,7 @@ import numpy as np
 
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
-from sebody.assembly.numbering import turning
+from sebody.assembly.numbering import rotational
 from sebody.engine.state import Scheme
 from sebody.errors import SimulationError
 from sebody.model.model import Model
@@ -74,11 +74,11 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
 
 def difference(one: Result, other: Result, allowed: Tolerance) -> float:
     """Largest root mean square of the difference of two runs on one grid, in what is allowed."""
-    size, turns = one.system.magnitude, turning(one.model, one.numbering)
+    size, rotations = one.system.magnitude, rotational(one.model, one.numbering)
     if not one.model.planar:
-        size = np.where(turns, 0.0, size)       # these are in the matrices
+        size = np.where(rotations, 0.0, size)       # these are in the matrices
     q = one.recorded("q") - other.recorded("q")
-    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, turns)
+    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, rotations)
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
     return float(max(found.max(), (angles / allowed.allowed(1.0, True)).max(initial=0.0)))

@@ -91,7 +91,7 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
 
 def _masses(system: System, state: State) -> csc_matrix:
     """Masses and constraints; leaves the forces in `residual`."""
-    return matrix(system, state, WHAT, mass=1.0, rate=0.0, place=0.0, constraint=1.0)
+    return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0)
 
 
 def _check(values: NDArray, size: float, what: str, multipliers: NDArray, numbering: Numbering,

@@ -15,7 +15,7 @@ from sebody.analysis.limits import Watch
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance
 from sebody.assembly.build import build
-from sebody.assembly.numbering import turning
+from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
 from sebody.engine.state import (
     ADAPTIVE,
@@ -165,8 +165,8 @@ class Simulation:
     def _choose_steps(self, tolerance: Tolerance) -> None:
         """Steps by their error; the first one is short against what accelerations allow."""
         n, state = self.numbering.free, self.state
-        turns = turning(self.model, self.numbering)[:n]
-        state.error_weights[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], turns)
+        rotations = rotational(self.model, self.numbering)[:n]
+        state.error_weights[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], rotations)
         bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
         state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock[LARGEST_ERROR] = 0.0

@@ -50,7 +50,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         raise InputError(f"steps is {steps}: give a whole number >= 1")
     run = Simulation(model, 1.0)
     state, field = run.state, run.state.coefficients[FIELD:].copy()
-    turning = Spin.of(run, spin)
+    steady = Spin.of(run, spin)
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
     state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
     set_loads(run.system, state.loads, t)
@@ -61,7 +61,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         kept = state.now.copy()
         target = min(share + step, 1.0)
         state.loads[:], state.coefficients[FIELD:] = target * loads, target * field
-        if _balance(run, tolerance, turning.times(np.sqrt(target))):
+        if _balance(run, tolerance, steady.times(np.sqrt(target))):
             share = target
             state.now[RECORD_T] = share
             run.rows.append(state.now[None].copy())

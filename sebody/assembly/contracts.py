@@ -27,9 +27,9 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
     InputError
         What it has is not what its kernel reads; the message names both.
     """
-    turning = sum(t.turns for t in element.triplets)
+    rotations = sum(t.rotational for t in element.triplets)
     matrices = sum(id(t) in numbering.rotations for t in element.triplets)
-    others = len(element.triplets) - turning + (element.mode is not None)
+    others = len(element.triplets) - rotations + (element.mode is not None)
     wrong = _different((("unknowns", unknowns, kernel.WIDTH),
                         ("multipliers", element.multipliers, kernel.MULTIPLIERS),
                         ("positions", others, kernel.N_POSITIONS),

@@ -40,11 +40,11 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
                 rows += np.repeat(wide, len(wide)).tolist()
                 columns += wide * len(wide)
             start += batch.width ** 2
-    d, turning = ends.sizes
+    d, rotation_size = ends.sizes
     for _, first in ends.arms:
-        own = list(range(first, first + turning))
-        rows += np.repeat(own, turning).tolist()
-        columns += own * turning
+        own = list(range(first, first + rotation_size))
+        rows += np.repeat(own, rotation_size).tolist()
+        columns += own * rotation_size
     none = np.zeros(0, dtype=np.int64)
     links = Links(_table(ends.dependent, 4), _table(ends.arms, 2),
                   np.array(ends.vectors, dtype=float).reshape(-1, d), _table(elements, 7),
@@ -54,8 +54,8 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
 
 def with_entries(links: Links, entries: NDArray) -> Links:
     """The links with the places of their matrix entries."""
-    turning = 3 if links.arm_vectors.shape[1] == 3 else 1
-    own, of_arms = np.split(entries, [len(entries) - len(links.arms) * turning**2])
+    rotation_size = 3 if links.arm_vectors.shape[1] == 3 else 1
+    own, of_arms = np.split(entries, [len(entries) - len(links.arms) * rotation_size**2])
     return replace(links, entries=own, arm_entries=of_arms)
 
 
@@ -76,7 +76,7 @@ def _ends(model: Mechanism, numbering: Numbering, rotated: NDArray) -> _Ends:
 def _expanded(unknowns: list[int], ends: _Ends,
               at_map: int) -> tuple[list[int], list[int], list[tuple[int, int, int, int]]]:
     """Unknowns of an element with links replaced; see `sebody.engine.links` for map and blocks."""
-    d, turning = ends.sizes
+    d, rotation_size = ends.sizes
     inner = {u + k for u in unknowns if u in ends.number for k in range(d)}
     wide = [u for u in dict.fromkeys(unknowns) if u not in inner]
 
@@ -92,7 +92,7 @@ def _expanded(unknowns: list[int], ends: _Ends,
             _, root, first, last = ends.dependent[ends.number[u]]
             blocks.append((i, ends.number[u], at_map + len(local), ends.frame_of.get(root, -1)))
             local.append(first_of(root, d))
-            local += [first_of(ends.arms[k][1], turning) for k in range(first, last)]
+            local += [first_of(ends.arms[k][1], rotation_size) for k in range(first, last)]
     return wide, local, blocks
 
 

@@ -39,7 +39,7 @@ def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
     return list(range(first, first + triplet.start.size))
 
 
-def turning(model: Mechanism, numbering: Numbering) -> NDArray:
+def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates are those of rotations."""
     found = np.zeros(numbering.total, dtype=bool)
     for node in model.nodes.values():
@@ -82,8 +82,8 @@ def number(model: Mechanism) -> Numbering:
     dependent = [t for t in used if t.root is not None]
     for triplet in dependent:
         order.place(triplet)
-    turning = [] if model.planar else [t for t in used if t.turns]
-    rotations = {id(t): k for k, t in enumerate(turning)}
+    matrices = [] if model.planar else [t for t in used if t.rotational]
+    rotations = {id(t): k for k, t in enumerate(matrices)}
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, *number_ports(model, order.at), np.array(groups))
 

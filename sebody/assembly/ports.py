@@ -35,7 +35,7 @@ def number_ports(model: Mechanism, at: dict[int, int]) -> Ports:
         if body.body.damping is not None:
             found.of[id(body)] = add(f"damping of {body.name}", None)
     for triplet in model.triplets():
-        rotational = int(triplet.turns and not model.planar)
+        rotational = int(triplet.rotational and not model.planar)
         for motion in triplet.motions:
             port = add(motion.name, motion.history)
             found.prescribed.extend((at[id(triplet)] + k, port, rotational, d)

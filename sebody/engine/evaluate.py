@@ -9,7 +9,7 @@ from sebody.engine.tables import cubic_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.layout import C_DAMPING, ENERGY, OK, POWERS, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
-from sebody.kernels.rotations import tangent_operator, turn
+from sebody.kernels.rotations import rotate, tangent_operator
 
 
 @intrinsic
@@ -84,7 +84,7 @@ def update_rotations(system, state):
         first = places[r]
         x, y, z = dq[first], dq[first + 1], dq[first + 2]
         q[first], q[first + 1], q[first + 2] = x, y, z
-        turn(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
+        rotate(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
     if system.links.dependent.shape[0] > 0:
         place_dependent(system.links, state.q, state.v, state.a, state.R)
 

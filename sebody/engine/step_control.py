@@ -32,7 +32,7 @@ from sebody.kernels.layout import (
     V_PART,
 )
 from sebody.kernels.pipeline import compiled
-from sebody.kernels.rotations import inverse_tangent_coefficients, turn
+from sebody.kernels.rotations import inverse_tangent_coefficients, rotate
 
 AIM = 0.5               # share of the allowed error that a new step length aims at
 GAIN = 1.4              # smallest factor by which steps are lengthened
@@ -148,7 +148,7 @@ def _write_row(system, state, row, at, t, s, h):
         q[i] = _cubic(s, 0.0, h * state.v_old[i], x, h * u)
         q[i + 1] = _cubic(s, 0.0, h * state.v_old[i + 1], y, h * w)
         q[i + 2] = _cubic(s, 0.0, h * state.v_old[i + 2], z, h * p)
-        turn(pointer_to(state.R_old), 9 * r, q[i], q[i + 1], q[i + 2], pointer_to(R), 9 * r)
+        rotate(pointer_to(state.R_old), 9 * r, q[i], q[i + 1], q[i + 2], pointer_to(R), 9 * r)
     if system.links.dependent.shape[0] > 0:
         place_dependent(system.links, q, v, a, R)
 

@@ -14,8 +14,8 @@ from sebody.kernels.rotations import (
     inverse_tangent_coefficients,
     relative_log,
     relative_rotations,
+    rotate,
     rotated,
-    turn,
 )
 
 
@@ -35,7 +35,7 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
         if x * x + y * y + z * z < 1e-30:
             return 0
         x, y, z = _mean_step(count, alpha, psi, x, y, z)
-        turn(frame, 0, x, y, z, frame, 0)
+        rotate(frame, 0, x, y, z, frame, 0)
         if x * x + y * y + z * z < 1e-16:       # Newton: what is left is of the square of that
             return relative_rotations(count, nodes, R, frame, psi)
     return NO_FRAME
@@ -94,7 +94,7 @@ def weighted_mean(count, nodes, alpha, R, reference, frame, beta, psi):
         x += alpha[j] * beta[3 * j]
         y += alpha[j] * beta[3 * j + 1]
         z += alpha[j] * beta[3 * j + 2]
-    turn(reference, 0, x, y, z, frame, 0)
+    rotate(reference, 0, x, y, z, frame, 0)
     return relative_rotations(count, nodes, R, frame, psi)
 
 
@@ -141,7 +141,7 @@ def best_fit(count, fit, X, alpha, x, frame):
         size = px * px + py * py + pz * pz
         if not size < 16.0:
             return NO_FRAME
-        turn(frame, 0, px, py, pz, frame, 0)
+        rotate(frame, 0, px, py, pz, frame, 0)
         if definite and size < 1e-16:       # Newton: what is left is of the square of that
             return 0
     return NO_FRAME

@@ -115,7 +115,7 @@ def rotated(R, first, x, y, z):
 
 
 @compiled
-def turn(R, first, x, y, z, out, to):
+def rotate(R, first, x, y, z, out, to):
     """``out = R exp(psi)``: the rotation at `first` of R, rotated, to `to` of out."""
     (out[to], out[to + 1], out[to + 2], out[to + 3], out[to + 4], out[to + 5], out[to + 6],
      out[to + 7], out[to + 8]) = rotated(R, first, x, y, z)

@@ -6,7 +6,15 @@ from numpy.typing import ArrayLike
 from sebody.errors import InputError
 from sebody.model import histories
 from sebody.model.histories import History
-from sebody.model.inputs import axes, chosen_name, direction, known, triplet, turning, vector
+from sebody.model.inputs import (
+    axes,
+    chosen_name,
+    direction,
+    known,
+    rotation_vector,
+    triplet,
+    vector,
+)
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
 from sebody.model.parts import Element, Joint, Motion, Node
@@ -78,7 +86,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     if what == "position":
         along = vector(model, direction, f"motion of {moved.name}")
     else:
-        along = turning(model, direction, f"motion of {moved.name}")
+        along = rotation_vector(model, direction, f"motion of {moved.name}")
         if moved.motions:
             raise InputError(f"{moved.name} is moved about an axis already: rotations about "
                              "two axes do not add up, put a joint between them")

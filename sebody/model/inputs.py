@@ -35,7 +35,7 @@ def vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
     return given
 
 
-def turning(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
+def rotation_vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
     """A vector of rotation: three numbers, in a plane one."""
     given = np.atleast_1d(_numbers(value))
     if given.shape != (model.rotation_size,) or not np.isfinite(given).all():

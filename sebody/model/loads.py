@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from sebody.errors import InputError
 from sebody.kernels.user_functions import compile_force
 from sebody.model.histories import History, clock, history
-from sebody.model.inputs import chosen_name, known, triplet, turning, vector
+from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node
 
@@ -38,7 +38,7 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
     on = triplet(known(model, node), "rotation")
-    constants = {"d": turning(model, direction, f"torque on {on.name}")}
+    constants = {"d": rotation_vector(model, direction, f"torque on {on.name}")}
     kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
     course = history(amplitude)
     name = chosen_name(model, name, f"torque on {on.name}")

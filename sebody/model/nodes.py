@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
-from sebody.model.inputs import known, triplet, turning, vector
+from sebody.model.inputs import known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node, Triplet
 
@@ -82,7 +82,8 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
     What is not given follows from the joints, see `sebody.Simulation`.
     """
     node = known(model, node)
-    for kind, value, check in (("position", linear, vector), ("rotation", angular, turning)):
+    for kind, value, check in (("position", linear, vector),
+                               ("rotation", angular, rotation_vector)):
         if value is None:
             continue
         moving = triplet(node, kind)
@@ -97,7 +98,7 @@ def rigid_velocity(model: Mechanism, linear: ArrayLike, angular: ArrayLike,
                    about: ArrayLike | None = None) -> None:
     """Start all free triplets in a rigid motion of the whole model."""
     linear = vector(model, linear, "linear velocity")
-    angular = turning(model, angular, "angular velocity")
+    angular = rotation_vector(model, angular, "angular velocity")
     centre = np.zeros(model.dimension) if about is None else vector(model, about, "about")
     for node in model.nodes.values():
         if node.position is not None and node.position.solved:
@@ -116,4 +117,4 @@ def _check_new(model: Mechanism, name: str) -> None:
 
 def _rotation(model: Mechanism, name: str, fixed: bool = False) -> Triplet:
     return Triplet(name, np.zeros(model.rotation_size), np.zeros(model.rotation_size), fixed,
-                   turns=True)
+                   rotational=True)

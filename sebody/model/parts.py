@@ -34,7 +34,7 @@ class Triplet:
     root: "Triplet | None" = None   # of a dependent position, with its arms
     arms: tuple[tuple["Triplet", NDArray], ...] = ()
     given: bool = False             # its initial velocity was given by the user
-    turns: bool = False             # a rotation
+    rotational: bool = False        # a rotation
 
     @property
     def solved(self) -> bool:

@@ -19,7 +19,7 @@ from sebody.results.recording import Recording, record_counts
 class NodeQuantity(NamedTuple):
     """A history of one of the two triplets of a node."""
 
-    turning: bool           # of the rotation, else of the position
+    rotational: bool           # of the rotation, else of the position
     read: Callable[[Recording, Triplet, slice], NDArray]    # the slice: where its coordinates are
     saved: bool = True      # part of the output file
 
@@ -61,8 +61,8 @@ def saved(recording: Recording) -> list[str]:
     """Names of the histories an output file holds."""
     names = ["t"]
     for name, node in recording.model.nodes.items():
-        for quantity, (turning, _, kept) in OF_NODE.items():
-            triplet = node.rotation if turning else node.position
+        for quantity, (rotational, _, kept) in OF_NODE.items():
+            triplet = node.rotation if rotational else node.position
             if kept and triplet is not None and id(triplet) in recording.numbering.triplets:
                 names.append(f"{name}.{quantity}")
     return [*names, "energy.kinetic", "energy.strain", "energy.potential", "energy.external_work",
@@ -126,8 +126,8 @@ def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
 
 def _of_node(quantity: str, recording: Recording, name: str) -> NDArray:
     node, numbering = recording.model.nodes[name], recording.numbering
-    turning, read, _ = OF_NODE[quantity]
-    triplet = node.rotation if turning else node.position
+    rotational, read, _ = OF_NODE[quantity]
+    triplet = node.rotation if rotational else node.position
     if triplet is None or id(triplet) not in numbering.triplets:
         raise InputError(f"node {name!r} has no {quantity}: the triplet is not in the model")
     first = numbering.triplets[id(triplet)]

@@ -35,7 +35,7 @@ def local_velocities(case: Case) -> NDArray:
     positions = v[:module.ROTATIONS].reshape(-1, d) @ R0[:d, :d]
     v[:module.ROTATIONS] = positions.ravel()
     if not INERTIA_OPTIONS[module.INERTIA].material:
-        for j, at in enumerate(case.turning):
+        for j, at in enumerate(case.rotations):
             v[at:at + 3] = R0.T @ case.R[9 * j:9 * j + 9].reshape(3, 3) @ v[at:at + 3]
     return v
 

@@ -129,7 +129,7 @@ def hamilton(case: Case) -> float:
     force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][KINETIC], 0.01)
     force += _potential_force(case)
     p = momenta(case)
-    for at in case.turning:
+    for at in case.rotations:
         force[at:at + 3] += np.cross(case.v[at:at + 3], p[at:at + 3])
     return difference(evaluate(case, RESIDUAL)[0], force)
 
@@ -141,7 +141,7 @@ def body_momentum(case: Case) -> float:
     linear, moment = np.r_[p[:d], np.zeros(3 - d)], np.cross(x, np.r_[p[:d], np.zeros(3 - d)])
     if case.planar:
         moment[2] += p[d:].sum()
-    for j, at in enumerate(case.turning):
+    for j, at in enumerate(case.rotations):
         moment += case.R[9 * j:9 * j + 9].reshape(3, 3) @ p[at:at + 3]
     return difference(evaluate(case, ENERGY)[2][MOMENTUM:POTENTIAL], np.r_[linear, moment])
 

@@ -84,7 +84,7 @@ class Case(NamedTuple):
         return Row(self.module.__name__, self.module.CONSTANTS)
 
     @property
-    def turning(self) -> list[int]:
+    def rotations(self) -> list[int]:
         """First unknown of each rotation triplet."""
         first = self.module.ROTATIONS
         return [] if not self.R.size else [first + 3 * j for j in range(self.module.N_ROTATIONS)]
@@ -155,7 +155,7 @@ def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:
 def moved(case: Case, direction: NDArray, size: float) -> Case:
     """The case with its configuration moved: rotations multiplied, the rest added."""
     q, R = case.q + size * direction, case.R.copy()
-    for j, at in enumerate(case.turning):
+    for j, at in enumerate(case.rotations):
         turn = Rotation.from_rotvec(size * direction[at:at + 3]).as_matrix()
         R[9 * j:9 * j + 9] = (R[9 * j:9 * j + 9].reshape(3, 3) @ turn).ravel()
     return case._replace(q=q, R=R)
@@ -202,7 +202,7 @@ def along_path(case: Case, t: float) -> Case:
     """The case a time t later on a path with its velocity and acceleration at t = 0."""
     step = case.v * t + case.a * t * t / 2
     v = case.v + case.a * t
-    for at in case.turning:
+    for at in case.rotations:
         psi, rate = step[at:at + 3], v[at:at + 3].copy()
         angle = np.linalg.norm(psi)
         if angle > 0:       # Omega = T(psi) psidot

@@ -126,7 +126,7 @@ def inertia_force(case: Case) -> float:
     force = derivative(lambda t: momenta(along_path(case, t)), 0.003)
     force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][KINETIC], 0.01)
     p = momenta(case)
-    for at in case.turning:
+    for at in case.rotations:
         force[at:at + 3] += np.cross(case.v[at:at + 3], p[at:at + 3])
     return difference(evaluate(case, RESIDUAL)[0], force)
 
@@ -136,7 +136,7 @@ def asymmetry(case: Case) -> float:
     rest = case._replace(v=0 * case.v, a=0 * case.a)
     g, K, _ = evaluate(rest, TANGENT, (0, 0, 1, 1, 1))
     expected = np.zeros_like(K)
-    for at in rest.turning:
+    for at in rest.rotations:
         x, y, z = g[at:at + 3]
         expected[at:at + 3, at:at + 3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
     return float(np.abs(K - K.T - expected).max() / np.abs(K).max())
@@ -171,7 +171,7 @@ def damping_of_rigid_motion(case: Case) -> float:
     place = np.zeros((len(x) // d, 3))
     place[:, :d] = x.reshape(-1, d)
     v[:len(x)] = (np.cross(spin, place) + [0.2, 0.1, -0.4])[:, :d].ravel()
-    for j, at in enumerate(case.turning):
+    for j, at in enumerate(case.rotations):
         v[at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ spin
     force = _damping_force(case._replace(v=v))
     return float(np.abs(force).max() / np.abs(_damping_force(case)).max())
@@ -192,7 +192,7 @@ def total_momentum(case: Case) -> float:
     for k, e in enumerate(np.eye(3)):
         rigid[k, :x.shape[0] * d] = np.tile(e[:d], len(x))
         rigid[3 + k, :x.shape[0] * d] = np.cross(e, x)[:, :d].ravel()
-        for j, at in enumerate(case.turning):
+        for j, at in enumerate(case.rotations):
             rigid[3 + k, at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ e
     if case.planar:
         rigid[2:5] = 0.0
