@@ -272,7 +272,7 @@ def test_missing_and_orphaned_files_are_reported(original, tmp_path):
     assert done.returncode == 1
     assert done.stdout.splitlines() == [
         "missing: element_force.py (run python -m sebody.derive)",
-        "orphaned: element_spring.py is not in derive/manifest.py: add it or delete it"]
+        "orphaned: element_spring.py is not in derive/kernels/manifest.py: add it or delete it"]
 
 
 def test_a_layout_that_cannot_be_read(original):
