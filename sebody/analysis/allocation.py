@@ -1,4 +1,4 @@
-"""The arrays of a state before its first step: where a model begins, and scratch memory."""
+"""The arrays of a state before the first step: the initial configuration, and scratch memory."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,7 +68,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
 
 
 def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
-    """Initial places and velocities of all coordinates."""
+    """Initial values and velocities of all coordinates."""
     q, v = np.zeros((2, numbering.total))
     for node in (*model.nodes.values(), *model.grounds):
         for triplet in (node.position, node.rotation):
@@ -83,6 +83,6 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
 
 
 def _expansion_size(system: System) -> int:
-    """Scratch of links: a rotation, and the largest matrix of an element before and after."""
+    """Numbers in `State.expansion`: a 3x3 block, half and wholly expanded element matrices."""
     return 9 + int(max((w * wide + wide * wide for _, w, wide, *_ in system.links.elements),
                        default=0))

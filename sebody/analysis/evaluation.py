@@ -12,7 +12,9 @@ from sebody.kernels.layout import TANGENT
 
 
 def evaluate(system: System, state: State, of_bodies: int, of_others: int, what: str) -> None:
-    """Ask kernels of superelements and the others for their tasks; forces go to `state.residual`.
+    """Evaluate the elements; their forces go to `state.residual`.
+
+    Kernels of superelements are given one task, all others another one.
 
     Raises
     ------
@@ -49,7 +51,7 @@ def matrix(system: System, state: State, what: str, *, mass: float, damping: flo
 
 
 def assembled(system: System, state: State) -> csc_matrix:
-    """The assembled matrix, without padding."""
+    """The matrix in `State.matrix` as a sparse one, without padding."""
     n, entries = system.diagonal.size, state.matrix[:-1]
     kept = np.flatnonzero((entries != 0.0) & (system.rows < n))
     return csc_matrix((entries[kept], (system.rows[kept], system.columns[kept])), shape=(n, n))

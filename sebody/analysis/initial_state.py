@@ -23,8 +23,8 @@ from sebody.model.mechanism import Mechanism
 from sebody.results.recording import Start
 
 WHAT = "the initial state"
-SMALL = 1e-8            # residuals of constraints, relative to lengths and velocities
-HEAVY = 1e10            # mass that keeps velocities the user gave
+SMALL = 1e-8            # largest residual of constraints, relative to positions or velocities
+HEAVY = 1e10            # added mass, relative, that keeps velocities the user gave
 
 
 def start(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
@@ -33,8 +33,8 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     Raises
     ------
     InputError
-        Positions off their joints, given velocities that do not fit, constraints that contradict
-        each other, an unknown without mass.
+        Initial positions violate a joint, given velocities do not fit, constraints contradict
+        each other, or an unknown has no mass.
     """
     set_loads(system, state.loads, 0.0)
     state.loads_old[:] = state.loads
@@ -56,7 +56,7 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
 
 
 def _accelerate(system: System, numbering: Numbering, state: State, solver: Solver) -> None:
-    """Accelerations and multipliers of a state."""
+    """Solve for accelerations and multipliers of a state."""
     moving = system.is_multiplier[:numbering.total] == 0
     solved = np.arange(numbering.total) < numbering.free
     state.a[solved & moving], state.q[~moving] = 0.0, 0.0
@@ -90,7 +90,7 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
 
 
 def _masses(system: System, state: State) -> csc_matrix:
-    """Masses and constraints; leaves the forces in `residual`."""
+    """Matrix of masses and constraints; the forces are left in `state.residual`."""
     return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0)
 
 
@@ -106,7 +106,10 @@ def _check(values: NDArray, size: float, what: str, multipliers: NDArray, number
 
 def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, state: State,
                     masses: csc_matrix, multipliers: NDArray) -> dict[str, float]:
-    """Change velocities as little as the kinetic energy allows; those given stay."""
+    """Fit velocities by the smallest change in the norm of kinetic energy; given ones stay.
+
+    Returns the triplets whose velocity changed, and by how much.
+    """
     if not multipliers.size:
         return {}
     size = max(np.abs(state.v).max(), 1e-300)

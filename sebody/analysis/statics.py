@@ -13,8 +13,8 @@ from sebody.model.model import Model
 from sebody.results.result import Result
 
 ITERATIONS = 25
-SMALLEST = 1.0 / 1024       # share of the load, below which its step is not cut
-PUSH = 1e-6                 # of the forces: that acts on what nothing holds
+SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
+PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 
 
 def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = 1e-11,
@@ -79,7 +79,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
     """Newton's iteration with the exact tangent; False where it does not converge."""
     system, state, n = run.system, run.state, run.numbering.free
     size = system.magnitude[:n]
-    sized = size > 0.0              # modes and multipliers follow
+    sized = size > 0.0              # not modes and multipliers, which have no magnitude
     state.frames_old[:] = state.frames
     for _ in range(ITERATIONS):
         spin.move(run)
@@ -101,7 +101,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
 
 
 def _solution(solver: Scaled, residual: NDArray) -> NDArray:
-    """Correction; what nothing holds and nothing pushes, such as the angle of a spin, stays."""
+    """Correction; motions without stiffness and load, such as the angle of a spin, are kept."""
     if solver.regular:
         return solver.solve(residual)
     answer, left = solver.least(residual)

@@ -1,8 +1,8 @@
-"""The axes that unknowns are solved for in, and what turns element matrices into them.
+"""The axes that unknowns are solved for in, and which element matrices are rotated into them.
 
-Free positions are solved for in the axes of the first body they belong to. There the tangent of a
-body hardly changes, so one factorization serves many steps. Matrices of superelements are in the
-axes of their own frame, those of joints and loads in global ones (-1).
+Free positions are solved for in the frame of the first body they belong to. In these axes the
+tangent of the body hardly changes, so one factorization serves many steps. Element matrices of
+superelements are in the axes of their own frame, all others in global axes (-1).
 """
 
 import numpy as np
@@ -34,7 +34,7 @@ def body_axes(model: Mechanism, numbering: Numbering, batches: Batches) -> dict[
 
 
 def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
-    """Of first coordinates of positions the frame they are solved for in."""
+    """First coordinates of positions -> number of the frame they are solved for in."""
     frame_of: dict[int, int] = {}
     for k, body in enumerate(model.bodies.values()):
         for triplet in body.positions:
@@ -46,7 +46,7 @@ def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
 
 
 def summands(batches: Batches, rotated: NDArray, links: Links) -> NDArray:
-    """Element matrices, and what is done to them before they are summed."""
+    """The member `summands` of `System`: where element matrices are, and their special rows."""
     width = np.repeat([b.width for b in batches.all], [len(b.rows) for b in batches.all])
     start = starts(width ** 2)
     linked = np.full(len(width), -1)

@@ -1,4 +1,4 @@
-"""A model as the flat arrays the compiled loop runs on."""
+"""From a model to the flat arrays that the compiled loop runs on."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from sebody.kernels.layout import LANES, whole_vectors
 from sebody.kernels.loader import load
 from sebody.model.mechanism import Mechanism
 
-DENSE_LIMIT = 24        # above this many unknowns elimination by blocks is faster than an inverse
+DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
 
 
 def build(model: Mechanism) -> tuple[System, Numbering]:
@@ -100,7 +100,7 @@ def _rotation_starts(numbering: Numbering) -> NDArray:
 
 
 def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
-    """Sizes that rounding acts on: the model's extent for positions, one radian for rotations."""
+    """Magnitudes of coordinates: the model's extent for positions, one radian for rotations."""
     points = np.array([n.point for n in model.nodes.values()])
     size = np.zeros(numbering.total)
     for node in model.nodes.values():

@@ -1,7 +1,7 @@
-"""Every body and element of a model against the kernel it is given to, before anything runs.
+"""Checks of every body and element of a model against its kernel, before anything runs.
 
-Kernels read and write through pointers, without bounds: a row that is too short, or a number of
-unknowns that is not the kernel's, would go unnoticed.
+Kernels read and write through pointers without bounds checks: a row that is too short, or a wrong
+number of unknowns, would go unnoticed.
 """
 
 from collections.abc import Iterable, Mapping
@@ -20,7 +20,7 @@ REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebo
 
 def check_element(element: Element, kernel: ModuleType, unknowns: int,
                   numbering: Numbering) -> None:
-    """Counts, history and work of an element.
+    """Check counts, history and power port of an element.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
 
 
 def check_superelement(body: Superelement, kernel: ModuleType) -> None:
-    """Counts and damping of a superelement.
+    """Check counts and damping of a superelement.
 
     Raises
     ------
@@ -85,12 +85,12 @@ def constants_row(name: str, kernel: ModuleType, counts: Counts,
 
 def index_row(name: str, kernel: ModuleType, unknowns: list[int],
               **values: int | list[int]) -> NDArray:
-    """The row of integers that a kernel finds an element by.
+    """The index row of an element: where its kernel finds its data.
 
     Raises
     ------
     InputError
-        Its numbers are not as many as the kernel reads.
+        The row is longer or shorter than the kernel reads.
     """
     counts = {"N_ROTATIONS": kernel.N_ROTATIONS, "n": len(unknowns)}
     try:
@@ -111,7 +111,7 @@ def _width(body: Superelement) -> int:
 
 
 def _different(facts: Iterable[tuple[str, int, int | None]]) -> list[str]:
-    """What differs; a kernel that takes any number has None."""
+    """Descriptions of facts that differ; None is of a kernel that takes any number."""
     return [f"it has {own} {what} and the kernel {read}" for what, own, read in facts
             if read is not None and own != read]
 

@@ -13,19 +13,19 @@ from sebody.model.mechanism import Mechanism
 
 
 class _Ends(NamedTuple):
-    """The ends of all links, and what positions are solved for in."""
+    """Dependent positions at the ends of links, and the axes of all positions."""
 
     dependent: list[tuple[int, int, int, int]]    # rows of `Links.dependent`
     arms: list[tuple[int, int]]                 # and of `Links.arms`
     vectors: list[NDArray]
-    number: dict[int, int]                      # first coordinate -> row of dependent
+    number: dict[int, int]                      # first coordinate -> row of `dependent`
     frame_of: dict[int, int]                    # first coordinate -> frame it is solved for in
     sizes: tuple[int, int]                      # coordinates of a position and of a rotation
 
 
 def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
                 rotated: NDArray) -> tuple[Links, NDArray, NDArray]:
-    """Links without their matrix entries, and rows and columns of these."""
+    """Links without their matrix entries, and rows and columns of these entries."""
     ends = _ends(model, numbering, rotated)
     elements, maps, blocks, rows, columns = [], [], [], [], []
     start = 0
@@ -75,7 +75,7 @@ def _ends(model: Mechanism, numbering: Numbering, rotated: NDArray) -> _Ends:
 
 def _expanded(unknowns: list[int], ends: _Ends,
               at_map: int) -> tuple[list[int], list[int], list[tuple[int, int, int, int]]]:
-    """Unknowns of an element with links replaced; see `sebody.engine.links` for map and blocks."""
+    """Unknowns of an element after replacement; `sebody.engine.links` has map and blocks."""
     d, rotation_size = ends.sizes
     inner = {u + k for u in unknowns if u in ends.number for k in range(d)}
     wide = [u for u in dict.fromkeys(unknowns) if u not in inner]
