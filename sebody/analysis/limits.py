@@ -69,10 +69,10 @@ class Watch:
         rows = rows[::-(-len(rows) // most)]
         parts = RECORD.slices(record_counts(numbering))
         for group in self._groups:
-            turned, spins = _motion(model.planar, group, rows, parts)
-            for k in np.flatnonzero(turned > LINEAR):
+            local, spins = _motion(model.planar, group, rows, parts)
+            for k in np.flatnonzero(local > LINEAR):
                 name = group.bodies[k].name
-                self.say(f"turn {name}", f"local rotation {turned[k]:.2g} rad of body {name!r} "
+                self.say(f"turn {name}", f"local rotation {local[k]:.2g} rad of body {name!r} "
                          f"exceeds the linear range, {LINEAR} rad: divide it")
             speeds = np.linalg.norm(spins, axis=2)
             for k in np.flatnonzero(speeds.max(axis=0) > group.least):
@@ -134,15 +134,15 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
     planar, count = reduced.planar, len(reduced.position_nodes)
     d, size = (2, 1) if planar else (3, 3)
     n = reduced.stiffness.shape[0]
-    turn = np.zeros((n, n))
+    rotate = np.zeros((n, n))
     if axis is None:
-        turn[:d * count, :d * count] = np.eye(d * count)
+        rotate[:d * count, :d * count] = np.eye(d * count)
     else:
         own = (np.array([[0.0, -1.0], [1.0, 0.0]]) if planar else
                np.cross(np.eye(3), axis).T)
         for i in range(count):
-            turn[d * i:d * i + d, d * i:d * i + d] = own
-    inertia = turn.T @ reduced.mass @ turn
+            rotate[d * i:d * i + d, d * i:d * i + d] = own
+    inertia = rotate.T @ reduced.mass @ rotate
     lowest = np.inf
     for pivot in range(count):
         held = np.zeros((d + size, n))

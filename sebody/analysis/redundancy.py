@@ -91,7 +91,7 @@ class Solver:
 
     def _redundant(self, constraints: NDArray, multipliers: NDArray
                    ) -> tuple[int, tuple[str, ...]]:
-        """Rank of the constraints, and the joints with constraints that do not increase the rank."""
+        """Rank of the constraints, and the joints whose constraints do not increase the rank."""
         if not multipliers.size:
             return 0, ()
         names, lengths = self.names, np.linalg.norm(constraints, axis=1)

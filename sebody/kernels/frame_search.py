@@ -1,4 +1,4 @@
-"""Where a floating frame is: the searches for its rotation that superelement kernels call.
+"""Searches for the rotation of a floating frame, called by superelement kernels.
 
 Each returns a status: 0, HALF_TURN where a node is rotated by nearly half a turn against the frame,
 or NO_FRAME where the search does not end.
@@ -36,17 +36,18 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
             return 0
         x, y, z = _mean_step(count, alpha, psi, x, y, z)
         rotate(frame, 0, x, y, z, frame, 0)
-        if x * x + y * y + z * z < 1e-16:       # Newton: what is left is of the square of that
+        if x * x + y * y + z * z < 1e-16:       # Newton: the error left is the square of the step
             return relative_rotations(count, nodes, R, frame, psi)
     return NO_FRAME
 
 
 @compiled
 def _mean_of_two(nodes, alpha, R, frame, psi):
-    """Mean of two rotations: a point of the shortest way between them, in closed form.
+    """Mean of two rotations: a point on the geodesic between them, in closed form.
 
-    False, and nothing done, for more than a quarter turn between them, or from the last frame: two
-    nodes may be rotated against each other by more than half a turn.
+    Returns False and changes nothing if the rotations, or the mean and the last frame, differ by
+    more than a quarter turn: the nodes may be rotated against each other by more than half a turn,
+    and then the mean is not on the shortest way between them.
     """
     x, y, z, cosine = relative_log(R, 9 * nodes[0], R, 9 * nodes[1])
     if not cosine > 0.0:
@@ -142,18 +143,18 @@ def best_fit(count, fit, X, alpha, x, frame):
         if not size < 16.0:
             return NO_FRAME
         rotate(frame, 0, px, py, pz, frame, 0)
-        if definite and size < 1e-16:       # Newton: what is left is of the square of that
+        if definite and size < 1e-16:       # Newton: the error left is the square of the step
             return 0
     return NO_FRAME
 
 
 @compiled
 def _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz):
-    """Turn towards the best fit, and whether it is a minimum that is being approached.
+    """Rotation vector of a step towards the best fit, and whether the step is Newton's.
 
-    ``J = tr(S) I - S`` is positive definite near the best fit. Its Newton step of an isotropic
-    body is the tangent of the angle that is missing, hence the arc tangent; elsewhere (beyond a
-    saddle) one radian along the moment leads back.
+    ``J = tr(S) I - S`` is positive definite near the best fit. For an isotropic body the length of
+    Newton's step is the tangent of the remaining angle, hence the arc tangent; where J is not
+    definite (beyond a saddle), the step is one radian along the moment.
     """
     a, b, c = yy + zz, xx + zz, xx + yy
     det = a * (b * c - yz * yz) - xy * (xy * c + xz * yz) - xz * (xy * yz + b * xz)
@@ -197,7 +198,6 @@ def planar_relative_angles(count, angles, frame, psi):
         if not math.cos(psi[j]) > NEAR_PI:
             return HALF_TURN
     return 0
-
 
 
 @compiled

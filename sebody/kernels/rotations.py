@@ -104,7 +104,7 @@ def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
 
 @compiled
 def rotated(R, first, x, y, z):
-    """``R exp(psi)`` of the rotation at `first` of R, row by row."""
+    """``R exp(psi)`` of the rotation that begins at `first` of R, row by row."""
     a, b, c, d, e, f, g, h, i = exp_map(x, y, z)
     k, m, n = R[first], R[first + 1], R[first + 2]
     p, q, r = R[first + 3], R[first + 4], R[first + 5]

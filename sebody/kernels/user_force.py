@@ -1,7 +1,7 @@
-"""Forces of a user's own: a compiled function behind the signature of every other kernel.
+"""Kernel of forces by a function of the user, with the signature of every other kernel.
 
-The kernel is written by hand, since there is nothing to derive: forces come from the function, the
-matrix from central differences of it.
+It is written by hand, since there is nothing to derive: the forces come from the function, the
+matrix from central differences of these forces.
 """
 
 from llvmlite import ir

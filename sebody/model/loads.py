@@ -1,4 +1,4 @@
-"""Loads of a model: forces, torques, gravity. Each of the first has a name and a work."""
+"""Loads of a model: forces and torques, each with a name and its work, and gravity."""
 
 from collections.abc import Callable, Iterable
 
@@ -68,15 +68,15 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
 
 def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
                function: Callable[..., None]) -> Element:
-    """Forces of a user's own, compiled into the loop.
+    """Forces by a function of the user, compiled for the loop.
 
     Parameters
     ----------
     nodes : iterable of Node or str
-        Whose positions and velocities the function is given, and on which it acts.
+        Nodes whose positions and velocities the function gets, and on which its forces act.
     function : callable
-        ``function(t, x, v, force)`` with arrays of all coordinates, node after node: sets
-        `force`, which comes as zeros. Numba compiles it; its derivatives are differences.
+        ``function(t, x, v, force)`` with arrays of all coordinates, node after node; it sets
+        `force`, which is zero before. Numba compiles it; derivatives are central differences.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def gravity(model: Mechanism, field: ArrayLike) -> None:
     Raises
     ------
     InputError
-        Not so many finite numbers.
+        Another number of values than coordinates, or values that are not finite.
     """
     model.gravity_field = vector(model, field, "gravity")
 

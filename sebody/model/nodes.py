@@ -103,9 +103,9 @@ def rigid_velocity(model: Mechanism, linear: ArrayLike, angular: ArrayLike,
     for node in model.nodes.values():
         if node.position is not None and node.position.solved:
             arm = node.point - centre
-            turned = (angular[0] * np.array([-arm[1], arm[0]]) if model.planar
-                      else np.cross(angular, arm))
-            node.position.rate = linear + turned
+            spin = (angular[0] * np.array([-arm[1], arm[0]]) if model.planar
+                    else np.cross(angular, arm))
+            node.position.rate = linear + spin
         if node.rotation is not None and node.rotation.solved:
             node.rotation.rate = angular.copy()
 

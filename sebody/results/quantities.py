@@ -1,4 +1,4 @@
-"""Names of what a result holds, and how each is read: two tables.
+"""Names of the quantities of a result, and how each is read: two tables.
 
 ``<owner>.<quantity>`` is looked up in `OWNERS`; quantities of the whole model are in `OF_MODEL`.
 """
@@ -19,16 +19,16 @@ from sebody.results.recording import Recording, record_counts
 class NodeQuantity(NamedTuple):
     """A history of one of the two triplets of a node."""
 
-    rotational: bool           # of the rotation, else of the position
-    read: Callable[[Recording, Triplet, slice], NDArray]    # the slice: where its coordinates are
+    rotational: bool        # of the rotation, else of the position
+    read: Callable[[Recording, Triplet, slice], NDArray]    # slice of its coordinates
     saved: bool = True      # part of the output file
 
 
 class Owner(NamedTuple):
-    """A kind of named things and what is recorded of each."""
+    """A kind of named parts of a model, and their recorded quantities."""
 
     kind: str
-    offer: str              # for the message about an unknown name
+    offer: str              # text for the message about an unknown name
     names: Callable[[Recording], Iterable[str]]
     quantities: Mapping[str, Callable[[Recording, str], NDArray]]
 
@@ -114,7 +114,7 @@ def _angular_velocity(recording: Recording, triplet: Triplet, at: slice) -> NDAr
 
 
 def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
-    """What the support of a fixed or prescribed triplet exerts, in global axes."""
+    """Force or moment of the support of a fixed or prescribed triplet, in global axes."""
     if not triplet.fixed:
         raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
                          "reaction; a joint's force is in its multipliers")
@@ -145,7 +145,7 @@ OF_NODE = {
 }
 
 
-# bodies, joints, and what does work
+# bodies, joints, power ports
 
 
 def _bodies(recording: Recording) -> dict:
@@ -160,7 +160,7 @@ def _modes(recording: Recording, name: str) -> NDArray:
 
 
 def _body_forces(recording: Recording, name: str) -> NDArray:
-    """Forces of neighbours and supports on a body's nodes, its inertia balanced."""
+    """Forces of neighbours and supports on a body's nodes, in balance with its inertia."""
     part = _bodies(recording)[name]
     first = recording.numbering.forces_at[id(part)]
     width = (part.body.stiffness.shape[0] if name in recording.model.bodies else
