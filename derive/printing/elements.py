@@ -46,7 +46,7 @@ def _head(element: Element) -> dict[str, object]:
             "version": templates.VERSION, "sympy": sp.__version__, "room": room_hash("kernels"),
             "signature": templates.SIGNATURE,
             "planar": element.space.planar,
-            "positions": sum(not b.turns for b in element.blocks),
+            "positions": sum(not b.rotational for b in element.blocks),
             "rotations": _matrices(element), "first_rotation": _first_rotation(element),
             "constants": parts.table(map(_part, element.constants)),
             "inertial": "kinetic" in element.sums, "power": element.power is not None,
@@ -85,11 +85,11 @@ def _part(constant: Constant) -> Part:
 
 def _matrices(element: Element) -> int:
     """Rotation matrices it reads; in a plane there are angles instead."""
-    return 0 if element.space.planar else sum(b.turns for b in element.blocks)
+    return 0 if element.space.planar else sum(b.rotational for b in element.blocks)
 
 
 def _first_rotation(element: Element) -> int:
-    return sum(len(b.direction.kept) for b in element.blocks if not b.turns)
+    return sum(len(b.direction.kept) for b in element.blocks if not b.rotational)
 
 
 def _operations(expressions) -> int:
@@ -137,7 +137,7 @@ def _loads(element: Element) -> list[str]:
             lines += [f"{s} = {array}[unknowns[{at + k}]]" for k, s in enumerate(quantity.kept)
                       if s in used]
         at += len(block.direction.kept)
-        matrix += block.turns
+        matrix += block.rotational
     lines += [f"{s} = q[unknowns[{element.coordinates + k}]]"
               for k, s in enumerate(element.multipliers)]
     return lines + [f"{s} = loads[{offset('3*index[first + AT_PORT]', k)}]"
@@ -146,7 +146,7 @@ def _loads(element: Element) -> list[str]:
 
 def _state(block: Block, at: int, matrix: int, used: set) -> list[str]:
     kept = block.state.kept
-    if not block.turns:
+    if not block.rotational:
         return [f"{s} = q[unknowns[{at + k}]]" for k, s in enumerate(kept) if s in used]
     if block.angle is None:
         return [f"{s} = R[9*nodes[{matrix}] + {k}]" for k, s in enumerate(kept) if s in used]
