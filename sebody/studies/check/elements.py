@@ -62,7 +62,7 @@ def joint_force(case: Case) -> float:
 
 
 def _phi_later(case: Case, t: float) -> NDArray:
-    """``phi`` a time later, on a path of the coordinates and of the amplitude."""
+    """``phi`` at a later time, on a path of the coordinates and of the amplitude."""
     m = case.module.MULTIPLIERS
     still = case._replace(v=np.r_[case.v[:-m], np.zeros(m)], a=np.r_[case.a[:-m], np.zeros(m)])
     value, rate, second = case.loads
@@ -94,7 +94,7 @@ def drive_power(case: Case) -> float:
 
 
 def element_tangent(case: Case) -> float:
-    """Matrix against differences of the residual, with a coefficient for what has multipliers."""
+    """Matrix against differences of the residual, with the coefficient of constraints."""
     place, constraint, m = 2.0, 3.0, case.n - case.module.MULTIPLIERS
     exact = constraint * gradient(case, lambda c: evaluate(c, RESIDUAL)[0], 0.005)
     exact[:m, :m] *= place / constraint
@@ -109,7 +109,7 @@ def _potential_force(case: Case) -> NDArray:
 
 
 def power(case: Case) -> float:
-    """Power of loads and dampers against what their force does beyond the potential."""
+    """Power of loads and dampers against the power of their force less that of the potential."""
     exact = -(evaluate(case, RESIDUAL)[0] - _potential_force(case)) @ case.v
     return abs(evaluate(case, ENERGY)[2][POWERS] / exact - 1)
 
@@ -147,7 +147,7 @@ def body_momentum(case: Case) -> float:
 
 
 def criteria(module: ModuleType) -> dict:
-    """What a kernel of this kind is judged by."""
+    """The criteria for a kernel of this kind."""
     chosen = {"tangent": element_tangent}
     if module.MULTIPLIERS:
         chosen |= {"force = gradient of lambda.phi": joint_force, "velocity": joint_velocity,
