@@ -1,8 +1,8 @@
-"""The contracts between kernels and whoever calls them: one table for every row of numbers.
+"""The contracts between kernels and their callers: one table for every row of numbers.
 
-Kernels work on flat arrays. What stands where in these is written here and nowhere else: the
-printer of the kernels, the packers of models, the compiled loop, the checks and the results all
-read these tables. Sizes are products of counts, which specialised kernels know beforehand:
+Kernels work on flat arrays. The places of all numbers in these arrays are defined here only: the
+printer of the kernels, the assembly of models, the compiled loop, the checks and the results read
+these tables. Sizes are products of counts, which are constants in specialised kernels:
 
 ============  ======================================================================================
 N_POSITIONS   nodes of the element that keep their position
@@ -20,10 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 
 LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
 
-# what a kernel is asked for: constraints differentiated in time are VELOCITY and ACCELERATION
+# tasks of a kernel; VELOCITY and ACCELERATION are the constraints differentiated in time
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
-# what a kernel answers: HALF_TURN where a node is rotated by nearly half a turn against the frame
-# of its body, NO_FRAME where the search for that frame does not end
+# status that a kernel returns: HALF_TURN if a node is rotated by nearly half a turn against the
+# frame of its body, NO_FRAME if the search for this frame does not converge
 OK, HALF_TURN, NO_FRAME = range(3)
 
 Counts = Mapping[str, int]
@@ -42,14 +42,14 @@ class Part(NamedTuple):
     columns: bool = False
 
     def size(self, counts: Counts) -> int:
-        """How many numbers it takes."""
+        """How many numbers the part takes."""
         sizes = [counts[s] if isinstance(s, str) else s for s in self.shape]
         if self.columns:
             return sizes[1] * whole_vectors(sizes[0])
         return int(np.prod(sizes, dtype=int))
 
     def expression(self, known: Counts) -> str:
-        """The same as text for a kernel: known counts are numbers, the others names."""
+        """The size as text for a kernel: known counts as numbers, the others by name."""
         sizes = [str(known.get(s, s)) for s in self.shape]
         if self.columns:
             return f"{sizes[1]}*padded({sizes[0]})"
@@ -63,7 +63,7 @@ class Row(NamedTuple):
     parts: tuple[Part, ...]
 
     def slices(self, counts: Counts) -> dict[str, slice]:
-        """Where every part is."""
+        """The slice of every part in the row."""
         return {name: slice(first, first + size) for name, first, size in self._walk(counts)}
 
     def size(self, counts: Counts) -> int:
@@ -71,7 +71,7 @@ class Row(NamedTuple):
         return sum(part.size(counts) for part in self.parts)
 
     def first(self, name: str) -> int:
-        """Where a part begins, if all before it are of fixed size."""
+        """Where a part begins, if all parts before it are of fixed size."""
         return self.slices(_Fixed())[name].start
 
     def pack(self, counts: Counts, values: Mapping[str, ArrayLike]) -> NDArray:
@@ -113,7 +113,7 @@ class Row(NamedTuple):
         for part in self.parts:
             try:
                 size = part.size(counts)
-            except KeyError:        # what follows has no fixed place
+            except KeyError:        # parts that follow have no fixed place
                 yield part.name, first, 0
                 return
             yield part.name, first, size
@@ -121,11 +121,11 @@ class Row(NamedTuple):
 
 
 class ContractError(ValueError):
-    """What a model gives and what a kernel reads do not agree."""
+    """Data of a model that do not agree with what a kernel reads."""
 
 
 class _Fixed(dict):
-    """No counts at all: only parts of fixed size have a place."""
+    """No counts: only parts behind parts of fixed size have a place."""
 
 
 def whole_vectors(n: int) -> int:
@@ -205,13 +205,13 @@ RECORD = Row("what is recorded of a state", (
     Part("frames", ("bodies", 9), "frames of superelements"),
     Part("frames_old", ("bodies", 9), "the same of the last accepted step"),
 ))
-# places that are the same for all models; of the others which part they are, for arrays of places
+# places that are the same in all models; of other parts their number, see `Record.at`
 RECORD_T, RECORD_ITERATIONS, RECORD_WORKS = (
     RECORD.first(name) for name in ("t", "iterations", "works"))
 Q_PART, R_PART, V_PART, A_PART = (
     [part.name for part in RECORD.parts].index(name) for name in ("q", "R", "v", "a"))
 
-# what every superelement reads; its frame and inertia option may declare more
+# constants of every superelement; a frame or inertia option may declare more
 SUPERELEMENT_CONSTANTS = (
     Part("alphas", ("N_POSITIONS",), "frame weights of the positions"),
     Part("fits", ("N_POSITIONS",), "weights in the rotation of best fit"),
@@ -235,26 +235,26 @@ def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: 
 
 
 class FrameTraits(NamedTuple):
-    """What a floating frame is and what it needs."""
+    """Properties of a floating frame."""
 
     summary: str
-    needs_rotations: bool = True    # it averages rotations of nodes; else it follows positions
+    needs_rotations: bool = True    # averages rotations of nodes; else follows positions
     fewest_positions: tuple[int, int] = (1, 1)      # in space, in a plane
-    planar: bool = True             # False: in a plane it is the same as another one
+    planar: bool = True             # False: in a plane the frame equals another one
     exact: bool = True              # forces are derivatives of the energy
-    incremental: bool = False       # it averages what nodes rotated since the last step
+    incremental: bool = False       # averages rotation increments of the step
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 
 
 class InertiaTraits(NamedTuple):
-    """What an inertia option is and what it needs."""
+    """Properties of an inertia option."""
 
     summary: str
     material: bool                  # T in material angular velocities; else in those of the frame
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 
 
-LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # what a boundary node keeps
+LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # by kept triplets of a node
 
 
 def layout_name(keeps: Iterable[str], planar: bool) -> str:

@@ -1,4 +1,4 @@
-"""Nodes of a model: where they are, what they share, and how they start to move."""
+"""Nodes of a model: positions, shared triplets, rigid links and initial velocities."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -67,7 +67,7 @@ def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Nod
 
 
 def ground(model: Mechanism, node: Node) -> Node:
-    """A fixed node at the place of another one."""
+    """A fixed node at the position of another one."""
     fixed = Node(f"ground at {node.name}", node.point,
                  Triplet("ground.position", node.point, np.zeros(model.dimension), fixed=True),
                  _rotation(model, "ground.rotation", fixed=True))
@@ -79,7 +79,7 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
                      angular: ArrayLike | None = None) -> None:
     """Initial velocity of a node, global axes.
 
-    What is not given follows from the joints, see `sebody.Simulation`.
+    Velocities that are not given are solved for, see `sebody.Simulation`.
     """
     node = known(model, node)
     for kind, value, check in (("position", linear, vector),
