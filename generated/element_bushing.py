@@ -39,7 +39,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (375, 0), "column": (1122, 0)}
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -635,41 +635,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t360 = t192*(2*t187 + 2*t188 + 2*t189)
                 t361 = t304*(2*t284 + 2*t285 + 2*t286)
                 t362 = t333*(2*t256 + 2*t257 + 2*t258)
-                J[0 + column] = -c_stiffness*t166 - c_damping*t117
-                J[12 + column] = -c_stiffness*t171 - c_damping*t170
-                J[24 + column] = -c_stiffness*t176 - c_damping*t175
-                J[36 + column] = c_stiffness*t166 + c_damping*t117
-                J[48 + column] = c_stiffness*t171 + c_damping*t170
-                J[60 + column] = c_stiffness*t176 + c_damping*t175
-                J[72 + column] = (c_stiffness*(t121*t224 + t123*t226 + t146*t194 + t156*t197 +
-                    t161*t224 + t162*t226 + t164*t195 + t165*t198 + t192*(-2*t295 - 2*t297 -
-                    2*t299) + t208*t213 + t220*t222 + t230*t240 + t241*t251 - t260*t268 -
-                    t283*t287) + c_damping*(t113*t195 + t115*t198 + t192*(-2*t181 - 2*t186 - 2*t191 +
-                    2*utha_x)))
-                J[84 + column] = (c_stiffness*(t119*t317 + t123*t319 + t136*t305 + t156*t308 +
-                    t160*t317 + t162*t319 + t163*t306 + t165*t309 + t185*t268 - t213*t325 +
-                    t222*t316 - t240*t324 + t251*t323 + t287*t296 + t304*(-2*t326 - 2*t327 -
-                    2*t329)) + c_damping*(t107*t306 + t115*t309 + t304*(-2*t300 - 2*t301 - 2*t303 +
-                    2*utha_y)))
-                J[96 + column] = (c_stiffness*(t119*t338 + t121*t339 + t136*t334 + t146*t336 +
-                    t160*t338 + t161*t339 + t163*t335 + t164*t337 + t190*t268 + t213*t328 -
-                    t222*t341 + t240*t302 - t251*t340 + t287*t298 + t333*(-2*t342 - 2*t343 -
-                    2*t344)) + c_damping*(t107*t335 + t113*t337 + t333*(-2*t330 - 2*t331 - 2*t332 +
-                    2*utha_z)))
-                J[108 + column] = (c_stiffness*(-t185*t240 - t190*t251 - t213*t296 - t222*t298 +
-                    t260*t268 + t283*t287 + t346*t354 + t348*t355 + t350*t356 + t351*(2*t288 +
-                    2*t289 + 2*t290 + 2*t291 + 2*t292 + 2*t293) + t352*(2*t200 + 2*t202 + 2*t204 +
-                    2*t205 + 2*t206 + 2*t207) + t353*(2*t214 + 2*t215 + 2*t216 + 2*t217 + 2*t218 +
-                    2*t219)) + c_damping*(t345*t346 + t347*t348 + t349*t350))
-                J[120 + column] = (c_stiffness*(-t208*t287 + t213*t325 - t222*t328 - t230*t268 +
-                    t240*t324 - t251*t302 + t351*(2*t243 + 2*t245 + 2*t247 + 2*t248 + 2*t249 +
-                    2*t250) + t352*(2*t269 + 2*t270 + 2*t271 + 2*t272 + 2*t273 + 2*t274) +
-                    t353*(2*t310 + 2*t311 + 2*t312 + 2*t313 + 2*t314 + 2*t315) + t354*t357 +
-                    t355*t358 + t356*t359) + c_damping*(t345*t357 + t347*t358 + t349*t359))
-                J[132 + column] = (c_stiffness*(-t213*t316 - t220*t287 + t222*t341 - t240*t323 -
-                    t241*t268 + t251*t340 + t351*(2*t232 + 2*t234 + 2*t236 + 2*t237 + 2*t238 +
-                    2*t239) + t352*(2*t261 + 2*t262 + 2*t263 + 2*t264 + 2*t265 + 2*t266) +
-                    t353*(2*t276 + 2*t277 + 2*t278 + 2*t279 + 2*t280 + 2*t281) + t354*t360 +
-                    t355*t361 + t356*t362) + c_damping*(t345*t360 + t347*t361 + t349*t362))
+                J[0 + column] = -c_damping*t117 - c_stiffness*t166
+                J[12 + column] = -c_damping*t170 - c_stiffness*t171
+                J[24 + column] = -c_damping*t175 - c_stiffness*t176
+                J[36 + column] = c_damping*t117 + c_stiffness*t166
+                J[48 + column] = c_damping*t170 + c_stiffness*t171
+                J[60 + column] = c_damping*t175 + c_stiffness*t176
+                J[72 + column] = (c_damping*(t113*t195 + t115*t198 + t192*(-2*t181 - 2*t186 -
+                    2*t191 + 2*utha_x)) + c_stiffness*(t121*t224 + t123*t226 + t146*t194 +
+                    t156*t197 + t161*t224 + t162*t226 + t164*t195 + t165*t198 + t192*(-2*t295 -
+                    2*t297 - 2*t299) + t208*t213 + t220*t222 + t230*t240 + t241*t251 - t260*t268 -
+                    t283*t287))
+                J[84 + column] = (c_damping*(t107*t306 + t115*t309 + t304*(-2*t300 - 2*t301 -
+                    2*t303 + 2*utha_y)) + c_stiffness*(t119*t317 + t123*t319 + t136*t305 +
+                    t156*t308 + t160*t317 + t162*t319 + t163*t306 + t165*t309 + t185*t268 -
+                    t213*t325 + t222*t316 - t240*t324 + t251*t323 + t287*t296 + t304*(-2*t326 -
+                    2*t327 - 2*t329)))
+                J[96 + column] = (c_damping*(t107*t335 + t113*t337 + t333*(-2*t330 - 2*t331 -
+                    2*t332 + 2*utha_z)) + c_stiffness*(t119*t338 + t121*t339 + t136*t334 +
+                    t146*t336 + t160*t338 + t161*t339 + t163*t335 + t164*t337 + t190*t268 +
+                    t213*t328 - t222*t341 + t240*t302 - t251*t340 + t287*t298 + t333*(-2*t342 -
+                    2*t343 - 2*t344)))
+                J[108 + column] = (c_damping*(t345*t346 + t347*t348 + t349*t350) +
+                    c_stiffness*(-t185*t240 - t190*t251 - t213*t296 - t222*t298 + t260*t268 +
+                    t283*t287 + t346*t354 + t348*t355 + t350*t356 + t351*(2*t288 + 2*t289 + 2*t290
+                    + 2*t291 + 2*t292 + 2*t293) + t352*(2*t200 + 2*t202 + 2*t204 + 2*t205 + 2*t206
+                    + 2*t207) + t353*(2*t214 + 2*t215 + 2*t216 + 2*t217 + 2*t218 + 2*t219)))
+                J[120 + column] = (c_damping*(t345*t357 + t347*t358 + t349*t359) +
+                    c_stiffness*(-t208*t287 + t213*t325 - t222*t328 - t230*t268 + t240*t324 -
+                    t251*t302 + t351*(2*t243 + 2*t245 + 2*t247 + 2*t248 + 2*t249 + 2*t250) +
+                    t352*(2*t269 + 2*t270 + 2*t271 + 2*t272 + 2*t273 + 2*t274) + t353*(2*t310 +
+                    2*t311 + 2*t312 + 2*t313 + 2*t314 + 2*t315) + t354*t357 + t355*t358 +
+                    t356*t359))
+                J[132 + column] = (c_damping*(t345*t360 + t347*t361 + t349*t362) +
+                    c_stiffness*(-t213*t316 - t220*t287 + t222*t341 - t240*t323 - t241*t268 +
+                    t251*t340 + t351*(2*t232 + 2*t234 + 2*t236 + 2*t237 + 2*t238 + 2*t239) +
+                    t352*(2*t261 + 2*t262 + 2*t263 + 2*t264 + 2*t265 + 2*t266) + t353*(2*t276 +
+                    2*t277 + 2*t278 + 2*t279 + 2*t280 + 2*t281) + t354*t360 + t355*t361 +
+                    t356*t362))
 
     return OK

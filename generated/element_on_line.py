@@ -35,7 +35,7 @@ POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (157, 0), "column": (330, 0)}
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -234,9 +234,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     n1_z*t20)) + lam_2*(t24*(-Ra_xy*n2_z + Ra_xz*n2_y) + t25*(-Ra_yy*n2_z +
                     Ra_yz*n2_y) + t26*(-Ra_zy*n2_z + Ra_zz*n2_y) + t27*(n2_y*t11 - n2_z*t10) +
                     t28*(n2_y*t16 - n2_z*t15) + t29*(n2_y*t21 - n2_z*t20))))
-                J[77 + column] = (c_stiffness*(lam_1*(t24*(Ra_xx*n1_z - Ra_xz*n1_x) + t25*(Ra_yx*n1_z
-                    - Ra_yz*n1_x) + t26*(Ra_zx*n1_z - Ra_zz*n1_x) + t27*(-n1_x*t11 + n1_z*t9) +
-                    t28*(-n1_x*t16 + n1_z*t14) + t29*(-n1_x*t21 + n1_z*t19)) +
+                J[77 + column] = (c_stiffness*(lam_1*(t24*(Ra_xx*n1_z - Ra_xz*n1_x) +
+                    t25*(Ra_yx*n1_z - Ra_yz*n1_x) + t26*(Ra_zx*n1_z - Ra_zz*n1_x) + t27*(-n1_x*t11
+                    + n1_z*t9) + t28*(-n1_x*t16 + n1_z*t14) + t29*(-n1_x*t21 + n1_z*t19)) +
                     lam_2*(t24*(Ra_xx*n2_z - Ra_xz*n2_x) + t25*(Ra_yx*n2_z - Ra_yz*n2_x) +
                     t26*(Ra_zx*n2_z - Ra_zz*n2_x) + t27*(-n2_x*t11 + n2_z*t9) + t28*(-n2_x*t16 +
                     n2_z*t14) + t29*(-n2_x*t21 + n2_z*t19))))

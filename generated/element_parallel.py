@@ -36,7 +36,7 @@ POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (214, 0), "column": (486, 0)}
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -292,14 +292,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     lam_2*(t18*(n2_x*t20 - n2_y*t39) + t21*(n2_x*t23 - n2_y*t40) + t24*(n2_x*t26 -
                     n2_y*t41) + t30*(-Ra_xx*n2_y + Ra_xy*n2_x) + t34*(-Ra_yx*n2_y + Ra_yy*n2_x) +
                     t38*(-Ra_zx*n2_y + Ra_zy*n2_x))))
-                J[24 + column] = (c_stiffness*(lam_1*(t42*t43 + t44*t45 + t46*t47 + t48*t49 + t50*t51
-                    + t52*t53) + lam_2*(t43*t54 + t45*t55 + t47*t56 + t48*t57 + t50*t58 +
+                J[24 + column] = (c_stiffness*(lam_1*(t42*t43 + t44*t45 + t46*t47 + t48*t49 +
+                    t50*t51 + t52*t53) + lam_2*(t43*t54 + t45*t55 + t47*t56 + t48*t57 + t50*t58 +
                     t52*t59)))
-                J[32 + column] = (c_stiffness*(lam_1*(t42*t60 + t44*t61 + t46*t62 + t49*t63 + t51*t64
-                    + t53*t65) + lam_2*(t54*t60 + t55*t61 + t56*t62 + t57*t63 + t58*t64 +
+                J[32 + column] = (c_stiffness*(lam_1*(t42*t60 + t44*t61 + t46*t62 + t49*t63 +
+                    t51*t64 + t53*t65) + lam_2*(t54*t60 + t55*t61 + t56*t62 + t57*t63 + t58*t64 +
                     t59*t65)))
-                J[40 + column] = (c_stiffness*(lam_1*(t42*t66 + t44*t67 + t46*t68 + t49*t69 + t51*t70
-                    + t53*t71) + lam_2*(t54*t66 + t55*t67 + t56*t68 + t57*t69 + t58*t70 +
+                J[40 + column] = (c_stiffness*(lam_1*(t42*t66 + t44*t67 + t46*t68 + t49*t69 +
+                    t51*t70 + t53*t71) + lam_2*(t54*t66 + t55*t67 + t56*t68 + t57*t69 + t58*t70 +
                     t59*t71)))
                 J[48 + column] = (c_constraint*(t18*t49 + t21*t51 + t24*t53 + t30*t42 + t34*t44 +
                     t38*t46))

@@ -36,7 +36,7 @@ POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (133, 0), "column": (165, 0)}
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -147,9 +147,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t6 = Ra_xy*dtha_z - Ra_xz*dtha_y
                 t7 = Ra_yy*dtha_z - Ra_yz*dtha_y
                 t8 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                J[0 + column] = (c_stiffness*(lam_1*(e_x*(n1_y*t0 - n1_z*t1) + e_y*(n1_y*t2 - n1_z*t3)
-                    + e_z*(n1_y*t4 - n1_z*t5)) + lam_2*(e_x*(n2_y*t0 - n2_z*t1) + e_y*(n2_y*t2 -
-                    n2_z*t3) + e_z*(n2_y*t4 - n2_z*t5))))
+                J[0 + column] = (c_stiffness*(lam_1*(e_x*(n1_y*t0 - n1_z*t1) + e_y*(n1_y*t2 -
+                    n1_z*t3) + e_z*(n1_y*t4 - n1_z*t5)) + lam_2*(e_x*(n2_y*t0 - n2_z*t1) +
+                    e_y*(n2_y*t2 - n2_z*t3) + e_z*(n2_y*t4 - n2_z*t5))))
                 J[5 + column] = (c_stiffness*(lam_1*(e_x*(-n1_x*t0 + n1_z*t6) + e_y*(-n1_x*t2 +
                     n1_z*t7) + e_z*(-n1_x*t4 + n1_z*t8)) + lam_2*(e_x*(-n2_x*t0 + n2_z*t6) +
                     e_y*(-n2_x*t2 + n2_z*t7) + e_z*(-n2_x*t4 + n2_z*t8))))

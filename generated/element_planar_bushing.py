@@ -41,7 +41,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (63, 0), "column": (194, 0)}
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -207,13 +207,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t74 = kt_z*(-dtha_z + dthb_z)
                 t75 = 2*Ra_cos*t41 - 2*t46 - 2*t47 - 2*t48
                 t76 = 2*Ra_sin*dtha_z*t26 - 2*t40 - 2*t42 - 2*t43
-                J[0 + column] = c_stiffness*t63 - c_damping*t35
-                J[6 + column] = -c_stiffness*t65 - c_damping*t64
-                J[12 + column] = -c_stiffness*t63 + c_damping*t35
-                J[18 + column] = c_stiffness*t65 + c_damping*t64
-                J[24 + column] = (c_stiffness*((0.5)*t36*t75 + (0.5)*t38*t76 + (0.5)*t45*t68 +
-                    (0.5)*t50*t71 + t56*t69*t75 + t60*t72*t76 + t61*t73 + t62*t70 - t74) +
-                    c_damping*(t29*t70 + t34*t73 + t66*t67))
-                J[30 + column] = c_stiffness*t74 - c_damping*t66*t67
+                J[0 + column] = -c_damping*t35 + c_stiffness*t63
+                J[6 + column] = -c_damping*t64 - c_stiffness*t65
+                J[12 + column] = c_damping*t35 - c_stiffness*t63
+                J[18 + column] = c_damping*t64 + c_stiffness*t65
+                J[24 + column] = (c_damping*(t29*t70 + t34*t73 + t66*t67) +
+                    c_stiffness*((0.5)*t36*t75 + (0.5)*t38*t76 + (0.5)*t45*t68 + (0.5)*t50*t71 +
+                    t56*t69*t75 + t60*t72*t76 + t61*t73 + t62*t70 - t74))
+                J[30 + column] = -c_damping*t66*t67 + c_stiffness*t74
 
     return OK

@@ -46,7 +46,7 @@ POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (303, 0), "column": (723, 0)}
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -266,47 +266,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t96 = t93*va_x + t94*va_y + t95*va_z
                 t97 = J_xx*Oma_x + J_xy*Oma_y + J_xz*Oma_z + t72*va_x + t73*va_y + t74*va_z
                 t98 = t86*va_x + t87*va_y + t88*va_z
-                J[0 + column] = (c_mass*(Ra_xx*t27 + Ra_xy*t28 + Ra_xz*t29 + mass*uxa_x) +
-                    c_stiffness*(t32*t45 + t34*t46 + t37*t47 + t39*t40 + t41*t42 + t43*t44) +
-                    c_damping*(t27*t36 + t28*t31 + t29*t30 + t32*t33 + t34*t35 + t37*t38))
-                J[6 + column] = (c_mass*(Ra_yx*t27 + Ra_yy*t28 + Ra_yz*t29 + mass*uxa_y) +
-                    c_stiffness*(t32*t57 + t34*t58 + t37*t59 + t39*t54 + t41*t55 + t43*t56) +
-                    c_damping*(t27*t52 + t28*t49 + t29*t48 + t32*t50 + t34*t51 + t37*t53))
-                J[12 + column] = (c_mass*(Ra_zx*t27 + Ra_zy*t28 + Ra_zz*t29 + mass*uxa_z) +
-                    c_stiffness*(t32*t69 + t34*t70 + t37*t71 + t39*t66 + t41*t67 + t43*t68) +
-                    c_damping*(t27*t64 + t28*t61 + t29*t60 + t32*t62 + t34*t63 + t37*t65))
-                J[18 + column] = (c_mass*t75 + c_stiffness*(Oma_y*t92 - Oma_z*t96 + aa_x*t86 +
-                    aa_y*t87 + aa_z*t88 - field_x*t86 - field_y*t87 - field_z*t88 + va_x*(mc_y*t45
-                    - mc_z*t46) - va_x*(-t32*t42 + t34*t40) + va_y*(mc_y*t57 - mc_z*t58) -
-                    va_y*(-t32*t55 + t34*t54) + va_z*(mc_y*t69 - mc_z*t70) - va_z*(-t32*t67 +
-                    t34*t66)) + c_damping*(Oma_y*t79 - Oma_z*t84 + t80*utha_y - t85*utha_z -
+                J[0 + column] = (c_damping*(t27*t36 + t28*t31 + t29*t30 + t32*t33 + t34*t35 +
+                    t37*t38) + c_mass*(Ra_xx*t27 + Ra_xy*t28 + Ra_xz*t29 + mass*uxa_x) +
+                    c_stiffness*(t32*t45 + t34*t46 + t37*t47 + t39*t40 + t41*t42 + t43*t44))
+                J[6 + column] = (c_damping*(t27*t52 + t28*t49 + t29*t48 + t32*t50 + t34*t51 +
+                    t37*t53) + c_mass*(Ra_yx*t27 + Ra_yy*t28 + Ra_yz*t29 + mass*uxa_y) +
+                    c_stiffness*(t32*t57 + t34*t58 + t37*t59 + t39*t54 + t41*t55 + t43*t56))
+                J[12 + column] = (c_damping*(t27*t64 + t28*t61 + t29*t60 + t32*t62 + t34*t63 +
+                    t37*t65) + c_mass*(Ra_zx*t27 + Ra_zy*t28 + Ra_zz*t29 + mass*uxa_z) +
+                    c_stiffness*(t32*t69 + t34*t70 + t37*t71 + t39*t66 + t41*t67 + t43*t68))
+                J[18 + column] = (c_damping*(Oma_y*t79 - Oma_z*t84 + t80*utha_y - t85*utha_z -
                     uxa_x*(-Ra_xy*t32 + Ra_xz*t34) + uxa_x*(mc_y*t30 - mc_z*t31) -
                     uxa_y*(-Ra_yy*t32 + Ra_yz*t34) + uxa_y*(mc_y*t48 - mc_z*t49) -
                     uxa_z*(-Ra_zy*t32 + Ra_zz*t34) + uxa_z*(mc_y*t60 - mc_z*t61) -
                     va_x*(-Ra_xy*t29 + Ra_xz*t28) + va_x*(mc_y*t33 - mc_z*t35) - va_y*(-Ra_yy*t29
                     + Ra_yz*t28) + va_y*(mc_y*t50 - mc_z*t51) - va_z*(-Ra_zy*t29 + Ra_zz*t28) +
-                    va_z*(mc_y*t62 - mc_z*t63)))
-                J[24 + column] = (c_mass*t84 + c_stiffness*(-Oma_x*t92 + Oma_z*t98 + aa_x*t93 +
-                    aa_y*t94 + aa_z*t95 - field_x*t93 - field_y*t94 - field_z*t95 +
-                    va_x*(-mc_x*t45 + mc_z*t47) - va_x*(t32*t44 - t37*t40) + va_y*(-mc_x*t57 +
-                    mc_z*t59) - va_y*(t32*t56 - t37*t54) + va_z*(-mc_x*t69 + mc_z*t71) -
-                    va_z*(t32*t68 - t37*t66)) + c_damping*(-Oma_x*t79 + Oma_z*t75 - t80*utha_x +
-                    t97*utha_z - uxa_x*(Ra_xx*t32 - Ra_xz*t37) + uxa_x*(-mc_x*t30 + mc_z*t36) -
+                    va_z*(mc_y*t62 - mc_z*t63)) + c_mass*t75 + c_stiffness*(Oma_y*t92 - Oma_z*t96
+                    + aa_x*t86 + aa_y*t87 + aa_z*t88 - field_x*t86 - field_y*t87 - field_z*t88 +
+                    va_x*(mc_y*t45 - mc_z*t46) - va_x*(-t32*t42 + t34*t40) + va_y*(mc_y*t57 -
+                    mc_z*t58) - va_y*(-t32*t55 + t34*t54) + va_z*(mc_y*t69 - mc_z*t70) -
+                    va_z*(-t32*t67 + t34*t66)))
+                J[24 + column] = (c_damping*(-Oma_x*t79 + Oma_z*t75 - t80*utha_x + t97*utha_z -
+                    uxa_x*(Ra_xx*t32 - Ra_xz*t37) + uxa_x*(-mc_x*t30 + mc_z*t36) -
                     uxa_y*(Ra_yx*t32 - Ra_yz*t37) + uxa_y*(-mc_x*t48 + mc_z*t52) -
                     uxa_z*(Ra_zx*t32 - Ra_zz*t37) + uxa_z*(-mc_x*t60 + mc_z*t64) - va_x*(Ra_xx*t29
                     - Ra_xz*t27) + va_x*(-mc_x*t33 + mc_z*t38) - va_y*(Ra_yx*t29 - Ra_yz*t27) +
                     va_y*(-mc_x*t50 + mc_z*t53) - va_z*(Ra_zx*t29 - Ra_zz*t27) + va_z*(-mc_x*t62 +
-                    mc_z*t65)))
-                J[30 + column] = (c_mass*t79 + c_stiffness*(Oma_x*t96 - Oma_y*t98 + aa_x*t89 +
-                    aa_y*t90 + aa_z*t91 - field_x*t89 - field_y*t90 - field_z*t91 + va_x*(mc_x*t46
-                    - mc_y*t47) - va_x*(-t34*t44 + t37*t42) + va_y*(mc_x*t58 - mc_y*t59) -
-                    va_y*(-t34*t56 + t37*t55) + va_z*(mc_x*t70 - mc_y*t71) - va_z*(-t34*t68 +
-                    t37*t67)) + c_damping*(Oma_x*t84 - Oma_y*t75 + t85*utha_x - t97*utha_y -
+                    mc_z*t65)) + c_mass*t84 + c_stiffness*(-Oma_x*t92 + Oma_z*t98 + aa_x*t93 +
+                    aa_y*t94 + aa_z*t95 - field_x*t93 - field_y*t94 - field_z*t95 +
+                    va_x*(-mc_x*t45 + mc_z*t47) - va_x*(t32*t44 - t37*t40) + va_y*(-mc_x*t57 +
+                    mc_z*t59) - va_y*(t32*t56 - t37*t54) + va_z*(-mc_x*t69 + mc_z*t71) -
+                    va_z*(t32*t68 - t37*t66)))
+                J[30 + column] = (c_damping*(Oma_x*t84 - Oma_y*t75 + t85*utha_x - t97*utha_y -
                     uxa_x*(-Ra_xx*t34 + Ra_xy*t37) + uxa_x*(mc_x*t31 - mc_y*t36) -
                     uxa_y*(-Ra_yx*t34 + Ra_yy*t37) + uxa_y*(mc_x*t49 - mc_y*t52) -
                     uxa_z*(-Ra_zx*t34 + Ra_zy*t37) + uxa_z*(mc_x*t61 - mc_y*t64) -
                     va_x*(-Ra_xx*t28 + Ra_xy*t27) + va_x*(mc_x*t35 - mc_y*t38) - va_y*(-Ra_yx*t28
                     + Ra_yy*t27) + va_y*(mc_x*t51 - mc_y*t53) - va_z*(-Ra_zx*t28 + Ra_zy*t27) +
-                    va_z*(mc_x*t63 - mc_y*t65)))
+                    va_z*(mc_x*t63 - mc_y*t65)) + c_mass*t79 + c_stiffness*(Oma_x*t96 - Oma_y*t98
+                    + aa_x*t89 + aa_y*t90 + aa_z*t91 - field_x*t89 - field_y*t90 - field_z*t91 +
+                    va_x*(mc_x*t46 - mc_y*t47) - va_x*(-t34*t44 + t37*t42) + va_y*(mc_x*t58 -
+                    mc_y*t59) - va_y*(-t34*t56 + t37*t55) + va_z*(mc_x*t70 - mc_y*t71) -
+                    va_z*(-t34*t68 + t37*t67)))
 
     return OK

@@ -43,7 +43,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (361, 0), "column": (1060, 0)}
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -233,10 +233,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t72 = 2*Ra_zx
                 t73 = t67*t68 + t69*t70 + t71*t72
                 t74 = (0.5)*c
-                t75 = (c_damping*t74*(t67*(Ra_xx*utha_x + Ra_xy*utha_y + Ra_xz*utha_z - Rb_xx*uthb_x
-                    - Rb_xy*uthb_y - Rb_xz*uthb_z) + t69*(Ra_yx*utha_x + Ra_yy*utha_y +
-                    Ra_yz*utha_z - Rb_yx*uthb_x - Rb_yy*uthb_y - Rb_yz*uthb_z) + t71*(Ra_zx*utha_x
-                    + Ra_zy*utha_y + Ra_zz*utha_z - Rb_zx*uthb_x - Rb_zy*uthb_y - Rb_zz*uthb_z)))
+                t75 = (c_damping*t74*(t67*(Ra_xx*utha_x + Ra_xy*utha_y + Ra_xz*utha_z -
+                    Rb_xx*uthb_x - Rb_xy*uthb_y - Rb_xz*uthb_z) + t69*(Ra_yx*utha_x + Ra_yy*utha_y
+                    + Ra_yz*utha_z - Rb_yx*uthb_x - Rb_yy*uthb_y - Rb_yz*uthb_z) +
+                    t71*(Ra_zx*utha_x + Ra_zy*utha_y + Ra_zz*utha_z - Rb_zx*uthb_x - Rb_zy*uthb_y
+                    - Rb_zz*uthb_z)))
                 t76 = Ra_xy*dtha_z - Ra_xz*dtha_y
                 t77 = 2*t67
                 t78 = Ra_yy*dtha_z - Ra_yz*dtha_y
