@@ -49,7 +49,7 @@ WORK_ROWS = 32
 OPERATIONS = {"residual": (1322, 3),
               "column": (2815, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "196854b5cc6c"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

@@ -52,7 +52,7 @@ WORK_ROWS = 35
 OPERATIONS = {"residual": (1272, 4),
               "column": (2563, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "196854b5cc6c"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

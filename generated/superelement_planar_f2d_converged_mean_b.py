@@ -51,7 +51,7 @@ WORK_ROWS = 33
 OPERATIONS = {"residual": (368, 4),
               "column": (199, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "196854b5cc6c"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

@@ -48,7 +48,7 @@ WORK_ROWS = 29
 OPERATIONS = {"residual": (344, 3),
               "column": (167, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "196854b5cc6c"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
