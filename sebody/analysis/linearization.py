@@ -84,7 +84,7 @@ class Spin:
         """Derivatives of velocity and acceleration by motion, and of acceleration by its rate."""
         n = run.numbering.free
         velocity, place, rate = (np.zeros((n, n)) for _ in range(3))
-        frame_of = dict(run.system.turned.tolist())
+        frame_of = dict(run.system.rotated.tolist())
         for node in run.model.nodes.values():
             for triplet in (node.position, node.rotation):
                 at = (None if triplet is None or id(triplet) not in run.numbering.triplets
