@@ -45,7 +45,7 @@ def build() -> Scene:
                  tip="point")
 
 
-def _turned(angle: float, vector: tuple) -> np.ndarray:
+def _rotated(angle: float, vector: tuple) -> np.ndarray:
     """A vector of a body's own axes in the axes of the ground."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s], [s, c]]) @ vector
@@ -65,12 +65,12 @@ def _hung(model: Model, name: str, on, number: int, angle: float, centre: tuple)
 
 def _body(model: Model, node, number: int, angle: float, centre: tuple):
     model.rigid_body(node.name, node, MASS[number], INERTIA[number],
-                     node.point + _turned(angle, centre))
+                     node.point + _rotated(angle, centre))
     return node
 
 
 def _end(model: Model, name: str, node, angle: float, arm: tuple):
-    return model.attach(name, node.point + _turned(angle, arm), node)
+    return model.attach(name, node.point + _rotated(angle, arm), node)
 
 
 if __name__ == "__main__":

@@ -106,7 +106,7 @@ def _check(values: NDArray, size: float, what: str, multipliers: NDArray, number
 
 def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, state: State,
                     masses: csc_matrix, multipliers: NDArray) -> dict[str, float]:
-    """Fit velocities by the smallest change in the norm of kinetic energy; given ones stay.
+    """Fit velocities by the smallest change in the norm of kinetic energy; given ones are kept.
 
     Returns the triplets whose velocity changed, and by how much.
     """

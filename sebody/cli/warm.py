@@ -15,7 +15,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Compile, and print what it takes."""
+    """Compile, and print how long it takes."""
     began = time.perf_counter()
     names = [kernel.name for kernel in sorted(kernels(), key=lambda kernel: -kernel.size)]
     with ProcessPoolExecutor(PROCESSES) as pool:

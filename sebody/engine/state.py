@@ -1,4 +1,4 @@
-"""What the compiled loop works on: state, records, scheme, and the indices of its counters."""
+"""Data of the compiled loop: state, records, scheme, and the indices of counters."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields

@@ -1,1 +1,1 @@
-"""What generated code may call, and how it is called, found and compiled."""
+"""Functions that generated code may call; its signature, search and compilation."""

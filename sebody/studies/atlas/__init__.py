@@ -1,4 +1,4 @@
-"""``sebody atlas``: where methods fail, what theory says of it, what is measured, what is done.
+"""``sebody atlas``: where methods fail: prediction of theory, measurement, reaction.
 
 Every row of the table is a number that a run has to show: theory or another program predicts it,
 or it says what this program is to do there.

@@ -12,7 +12,7 @@ PROGRAM = "program"         # what the program is to do there
 
 
 class Row(NamedTuple):
-    """One number that is known beforehand and that a run shows; infinity for what never happens."""
+    """A number with its prediction and its measurement; infinity for what never happens."""
 
     what: str
     expected: float

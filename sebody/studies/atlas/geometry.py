@@ -26,7 +26,7 @@ def _beam(model: Model, length: float = 10.0, first: int = 0, last: int = 4,
 
 
 def _status(model: Model, angle: float) -> int:
-    """Status of the kernel when the second node is turned."""
+    """Status of the kernel when the second node is rotated."""
     run = Simulation(model, 0.01)
     k = run.numbering.rotations[id(model.nodes["b"].rotation)]
     run.state.R[9 * k:9 * k + 9] = exp_map(0.0, 0.0, np.radians(angle))
@@ -34,7 +34,7 @@ def _status(model: Model, angle: float) -> int:
 
 
 def half_turn() -> Finding:
-    """How far one end of a body can be turned against the other."""
+    """How far one end of a body can be rotated against the other."""
     finding = Finding(
         "node rotations towards pi",
         "The local rotation is a logarithm, which jumps at half a turn. Its derivative grows "

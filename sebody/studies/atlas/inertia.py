@@ -76,7 +76,7 @@ def small_increments() -> Finding:
 
 
 def _force_difference(angle: float) -> float:
-    """Both ends turned about three axes against each other, the frame not at all."""
+    """Both ends rotated about three axes against each other, with the frame at rest."""
     forces = []
     for frame in ("mean", "mean_small"):
         model = Model()

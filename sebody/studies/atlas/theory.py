@@ -1,7 +1,7 @@
-"""What theory says of linear beams in floating frames that turn or are pressed (unit beams).
+"""Theory of linear beams in floating frames that rotate or are compressed (unit beams).
 
 A cantilever of unit length, mass and bending stiffness is cut into equal bodies, each linear in a
-frame of its own that is turned by phi against the undeformed axis. A point s along a body with
+frame of its own that is rotated by phi against the undeformed axis. A point s along a body with
 deflection v against the frame then moves by ``-s phi^2 / 2 - v phi`` along the axis, and the axial
 inertia or load that works on this is all the geometric stiffness there is. Hermite cells inside
 the bodies, every term of second order kept; nothing is shared with the kernels.
@@ -60,7 +60,7 @@ def cantilever(bodies: int, frame: str) -> Beam:
         spin_b -= 2 * (work[0] * ends[i] + work[2] * ends[i + 1])
         for node, k in ((at, 1), (at + 2 * cells, 3)):
             spin_b[node + 1, node + 1] += work[k]
-        # velocities of the nodes in the axes of the frame, which are turned by phi
+        # velocities of the nodes in the axes of the frame, which are rotated by phi
         moves, lines = np.eye(n)[[at, at + 2 * cells]], np.array([1 - POINTS, POINTS])
         for X, k, move, end in zip((x0, x0 + length), (0, 2), moves, ends[i:], strict=True):
             plane_b -= work[k] * (2 * end + np.outer(p, move) + np.outer(move, p)

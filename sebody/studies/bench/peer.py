@@ -28,7 +28,7 @@ def available() -> bool:
 
 
 def version() -> str | None:
-    """Its version, None where it is not installed."""
+    """Version of Exudyn, None where it is not installed."""
     try:
         return installed_version("exudyn")
     except PackageNotFoundError:

@@ -55,7 +55,7 @@ def reduced_beam(h: float) -> Run:
     ground = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.AddObject(ObjectGround())))
     mbs.AddObject(GenericJoint(markerNumbers=[ground, base], constrainedAxes=[1, 1, 1, 1, 1, 0]))
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _turned(solve(system, mbs, tip, h, T_END), np.pi / 4)
+    return _rotated(solve(system, mbs, tip, h, T_END), np.pi / 4)
 
 
 def spherical_beam(h: float, elements: int) -> Run:
@@ -99,7 +99,7 @@ def planar_beams(h: float, elements: int) -> Run:
         mbs.AddObject(CoordinateConstraint(markerNumbers=[ground, held]))
     base, tip = (mbs.AddMarker(MarkerNodeRigid(nodeNumber=node)) for node in (nodes[0], nodes[-1]))
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _turned(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
+    return _rotated(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
 
 
 def spatial_beams(h: float, elements: int) -> Run:
@@ -107,7 +107,7 @@ def spatial_beams(h: float, elements: int) -> Run:
     system, mbs = new_system()
     base, tip = _exact_beams(mbs, np.sqrt(2.0) * 100.0, elements, [1, 1, 1, 1, 1, 0])
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _turned(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
+    return _rotated(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
 
 
 def _exact_beams(mbs, length: float, elements: int, held: list[int]):
@@ -229,8 +229,8 @@ def solve(system, mbs, tip, h: float, t_end: float, modified: bool = True) -> Ru
     return Run(coordinates, steps, seconds, count / steps, path)
 
 
-def _turned(run: Run, angle: float) -> Run:
-    """The run turned about z: these beams start along x."""
+def _rotated(run: Run, angle: float) -> Run:
+    """The run rotated about z, because these beams start along x."""
     tip, (c, s) = run.tip.copy(), (np.cos(angle), np.sin(angle))
     tip[:, 1], tip[:, 2] = (c * run.tip[:, 1] - s * run.tip[:, 2],
                             s * run.tip[:, 1] + c * run.tip[:, 2])
