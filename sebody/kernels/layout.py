@@ -13,6 +13,7 @@ n             unknowns of the element
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -46,7 +47,7 @@ class Part(NamedTuple):
         sizes = [counts[s] if isinstance(s, str) else s for s in self.shape]
         if self.columns:
             return sizes[1] * whole_vectors(sizes[0])
-        return int(np.prod(sizes, dtype=int))
+        return prod(sizes)
 
     def expression(self, known: Counts) -> str:
         """The same as text for a kernel: known counts are numbers, the others names."""

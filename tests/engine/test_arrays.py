@@ -66,7 +66,7 @@ def test_members_are_never_replaced():
 
 def test_changed_sources_are_other_types(monkeypatch):
     """Numba's cache must not serve what was compiled from other sources."""
-    before = group()._kind
-    assert before == group()._kind
+    before = group()._numba_type_
+    assert before == group()._numba_type_
     monkeypatch.setattr(arrays, "SOURCES", "changed")
-    assert group()._kind != before
+    assert group()._numba_type_ != before
