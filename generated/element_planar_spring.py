@@ -41,7 +41,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (52, 0), "column": (164, 0)}
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "196854b5cc6c"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

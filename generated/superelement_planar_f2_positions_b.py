@@ -48,7 +48,7 @@ WORK_ROWS = 29
 OPERATIONS = {"residual": (590, 3),
               "column": (236, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "a747570b1e5f"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "196854b5cc6c"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -89,7 +89,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
-        reference = at(references, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
         alphas = at(constants, index[first + AT_CONSTANTS])

@@ -24,6 +24,7 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     return templates.SUPERELEMENT.format(
         **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
+        reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows), rows=indented(_rows(uses.rows), 1),
         residual_operations=counted[0], residual_products=counted[1],
         column_operations=printer.operations, column_products=printer.products,
