@@ -20,17 +20,16 @@ class Scaled:
     """
 
     def __init__(self, matrix: csc_matrix):
-        self.matrix = matrix.copy()
-        self.matrix.sum_duplicates()
-        entries, row = self.matrix.data, self.matrix.indices
-        column = np.repeat(np.arange(matrix.shape[1]), np.diff(self.matrix.indptr))
-        largest = np.zeros(matrix.shape[1])
+        matrix = csc_matrix(matrix, copy=not matrix.has_canonical_format)
+        matrix.sum_duplicates()
+        entries, row, across = matrix.data, matrix.indices, matrix.shape[1]
+        column = np.repeat(np.arange(across), np.diff(matrix.indptr))
+        largest = np.zeros(across)
         np.maximum.at(largest, column, np.abs(entries))
         self.scale = 1.0 / np.sqrt(np.maximum(largest, 1e-300))
-        # on the entries themselves: for a few bodies SciPy's products of matrices take ten times
-        # as long as their arithmetic
-        entries *= self.scale[row]
-        entries *= self.scale[column]
+        # on the entries: for a few bodies SciPy's products take ten times as long as their numbers
+        matrix.data = entries * self.scale[row] * self.scale[column]
+        self.matrix = matrix
         try:
             self.factors = splu(self.matrix)
         except RuntimeError:        # a pivot is exactly zero

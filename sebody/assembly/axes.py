@@ -51,5 +51,5 @@ def summands(batches: Batches, turned: NDArray, links: Links) -> NDArray:
     start = starts(width ** 2)
     linked = np.full(len(width), -1)
     linked[np.searchsorted(start, links.elements[:, 0])] = np.arange(len(links.elements))
-    return np.column_stack([start[:-1], width, np.searchsorted(turned[:, 0], start[:-1]),
-                            np.searchsorted(turned[:, 0], start[1:]), linked])
+    firsts = np.searchsorted(turned[:, 0], start)
+    return np.array([start[:-1], width, firsts[:-1], firsts[1:], linked]).T.copy()

@@ -40,17 +40,18 @@ def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
     """
     across = -(-n // LANES)
     below: list[set[int]] = [set() for _ in range(across)]
-    for key in np.unique(column // LANES * across + row // LANES):
-        i, j = key % across, key // across
-        if i > j:
-            below[j].add(int(i))
-    keys = [np.arange(across) * (across + 1)]
+    i, j = row // LANES, column // LANES
+    for key in np.unique((j * across + i)[i > j]).tolist():
+        below[key // across].add(key % across)
+    keys = list(range(0, across * across, across + 1))
     for j in range(across):
-        rows = np.array(sorted(below[j]), dtype=np.int64)
-        if len(rows):
-            below[rows[0]].update(rows[1:].tolist())
-        keys += [j * across + rows, rows * across + j]
-    keys = np.unique(np.concatenate(keys))
+        if below[j]:
+            parent = min(below[j])
+            below[parent].update(below[j])
+            below[parent].discard(parent)
+        keys += [j * across + i for i in below[j]]
+        keys += [i * across + j for i in below[j]]
+    keys = np.sort(np.array(keys))
     return Pattern(np.searchsorted(keys // across, np.arange(across + 1)), keys % across,
                    np.searchsorted(keys, np.arange(across) * (across + 1)))
 

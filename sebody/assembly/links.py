@@ -55,8 +55,8 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
 def with_entries(links: Links, entries: NDArray) -> Links:
     """The links with the places of their matrix entries."""
     turning = 3 if links.arm_vectors.shape[1] == 3 else 1
-    own, of_arms = np.split(entries, [len(entries) - len(links.arms) * turning**2])
-    return replace(links, entries=own, arm_entries=of_arms)
+    own = len(entries) - len(links.arms) * turning**2
+    return replace(links, entries=entries[:own], arm_entries=entries[own:])
 
 
 def _ends(model: Mechanism, numbering: Numbering, turned: NDArray) -> _Ends:

@@ -39,6 +39,12 @@ def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
     return list(range(first, first + triplet.start.size))
 
 
+def stretch(numbering: Numbering, triplet: Triplet) -> slice:
+    """The same as a slice."""
+    first = numbering.triplets[id(triplet)]
+    return slice(first, first + triplet.start.size)
+
+
 def turning(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates are those of rotations."""
     found = np.zeros(numbering.total, dtype=bool)

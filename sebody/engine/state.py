@@ -1,7 +1,7 @@
 """What the compiled loop works on: state, records, scheme, and the names of its numbers."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -92,8 +92,8 @@ class State(Arrays):
             Members that are not recorded.
         """
         now = np.zeros(RECORD.size(counts))
-        names = {field.name for field in fields(cls)}
-        parts = {name: now[part] for name, part in RECORD.slices(counts).items() if name in names}
+        parts = {name: now[part] for name, part in RECORD.slices(counts).items()
+                 if name in cls.__annotations__}
         return cls(now=now, **parts, **others)
 
     @property
