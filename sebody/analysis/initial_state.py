@@ -117,7 +117,9 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     given = [t for t in triplets if t.given]
     held = [i for triplet in given for i in coordinates(numbering, triplet)]
     added = np.full(len(held), HEAVY * abs(masses.diagonal()).max())
-    weighted = masses + csc_matrix((added, (held, held)), shape=masses.shape)
+    column = np.repeat(np.arange(numbering.free), np.diff(masses.indptr))
+    places = np.append(masses.indices, held), np.append(column, held)
+    weighted = csc_matrix((np.append(masses.data, added), places), shape=masses.shape)
     demand = np.zeros(numbering.free)
     demand[multipliers] = -rates
     answer = np.zeros(numbering.total)

@@ -90,7 +90,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         row = index_row(body.name, kernel, unknowns, constants=row_of[key], frame=frame,
                         item=numbering.items.get(id(body), 0),
                         nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations])
-        _append(batches, kernel, frame, row.tolist(), unknowns, id(body))
+        _append(batches, kernel, frame, row, unknowns, id(body))
     return list(batches.values())
 
 
@@ -107,7 +107,7 @@ def _element_batches(numbering: Numbering, constants: _Constants,
                         nodes=[numbering.rotations[id(t)] for t in element.triplets
                                if id(t) in numbering.rotations])
         function = [] if element.function is None else [element.function.address]
-        _append(batches, kernel, -1, [*row.tolist(), *function], unknowns, id(element))
+        _append(batches, kernel, -1, row + function, unknowns, id(element))
     return list(batches.values())
 
 

@@ -1,5 +1,6 @@
 """Where the blocks of a large sparse matrix and of its factors are."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -39,19 +40,19 @@ def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
     What a column has below the diagonal, its parent (the first of these rows) gets, too.
     """
     across = -(-n // LANES)
-    below: list[set[int]] = [set() for _ in range(across)]
     i, j = row // LANES, column // LANES
-    for key in np.unique((j * across + i)[i > j]).tolist():
-        below[key // across].add(key % across)
-    keys = list(range(0, across * across, across + 1))
-    for j in range(across):
-        if below[j]:
-            parent = min(below[j])
-            below[parent].update(below[j])
+    j, i = np.divmod(np.unique((j * across + i)[i > j]), across)
+    firsts, i = np.searchsorted(j, np.arange(across + 1)).tolist(), i.tolist()
+    below = [set(i[first:end]) for first, end in pairwise(firsts)]
+    for rows in below:
+        if rows:
+            parent = min(rows)
+            below[parent] |= rows
             below[parent].discard(parent)
-        keys += [j * across + i for i in below[j]]
-        keys += [i * across + j for i in below[j]]
-    keys = np.sort(np.array(keys))
+    i = np.array([i for rows in below for i in rows], dtype=np.int64)
+    j = np.repeat(np.arange(across), [len(rows) for rows in below])
+    keys = np.sort(np.concatenate([np.arange(across) * (across + 1), j * across + i,
+                                   i * across + j]))
     return Pattern(np.searchsorted(keys // across, np.arange(across + 1)), keys % across,
                    np.searchsorted(keys, np.arange(across) * (across + 1)))
 

@@ -37,13 +37,13 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
                                  len(blocks), len(blocks) + len(own_blocks)))
                 maps += own_map
                 blocks += own_blocks
-                rows += np.repeat(wide, len(wide)).tolist()
+                rows += [u for u in wide for _ in wide]
                 columns += wide * len(wide)
             start += batch.width ** 2
     d, turning = ends.sizes
     for _, first in ends.arms:
         own = list(range(first, first + turning))
-        rows += np.repeat(own, turning).tolist()
+        rows += [u for u in own for _ in own]
         columns += own * turning
     none = np.zeros(0, dtype=np.int64)
     links = Links(_table(ends.hanging, 4), _table(ends.arms, 2),

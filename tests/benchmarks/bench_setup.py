@@ -38,15 +38,15 @@ def milliseconds(build, times: int = TIMES) -> float:
     return 1e3 * quickest
 
 
-def main() -> None:
+def main(arguments: list[str] | None = None, times: int = TIMES) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--json", action="store_true", help="milliseconds by scene, to be read")
-    as_json = parser.parse_args().json
+    as_json = parser.parse_args(arguments).json
     found = {}
     for scene in SCENES:
         name = scene.build().name
-        found[name] = milliseconds(scene.build)
+        found[name] = milliseconds(scene.build, times)
         if not as_json:
             print(f"{name:24} {found[name]:7.3f} ms", flush=True)
     if as_json:
