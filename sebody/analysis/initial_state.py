@@ -115,11 +115,11 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
         return {}
     triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
     given = [t for t in triplets if t.given]
-    held = [i for triplet in given for i in coordinates(numbering, triplet)]
+    held = np.array([i for triplet in given for i in coordinates(numbering, triplet)], dtype=int)
     added = np.full(len(held), HEAVY * abs(masses.diagonal()).max())
     column = np.repeat(np.arange(numbering.free), np.diff(masses.indptr))
-    places = np.append(masses.indices, held), np.append(column, held)
-    weighted = csc_matrix((np.append(masses.data, added), places), shape=masses.shape)
+    places = np.concatenate([masses.indices, held]), np.concatenate([column, held])
+    weighted = csc_matrix((np.concatenate([masses.data, added]), places), shape=masses.shape)
     demand = np.zeros(numbering.free)
     demand[multipliers] = -rates
     answer = np.zeros(numbering.total)

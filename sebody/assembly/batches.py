@@ -1,6 +1,7 @@
 """Bodies and elements in batches that share a kernel: their index rows and constants."""
 
 from collections.abc import Iterable
+from itertools import accumulate
 from types import ModuleType
 from typing import NamedTuple
 
@@ -148,4 +149,4 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
 
 def starts(sizes: Iterable[int]) -> NDArray:
     """First place of every piece of a row, and the end of the last."""
-    return np.concatenate([[0], np.cumsum(list(sizes))]).astype(np.int64)
+    return np.array([0, *accumulate(sizes)], dtype=np.int64)
