@@ -6,7 +6,7 @@ import pytest
 from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
-    AT_ITEM,
+    AT_PORT,
     COEFFICIENTS,
     ENERGIES,
     FIELD,
@@ -92,7 +92,7 @@ def test_values_that_do_not_fit_are_refused(change, message):
 
 def test_rows_of_integers():
     counts = {"N_ROTATIONS": 2, "n": 3}
-    given = {"unknowns": [7, 8, 9], "constants": 40, "frame": 1, "item": 2, "nodes": [5, 6]}
+    given = {"unknowns": [7, 8, 9], "constants": 40, "frame": 1, "port": 2, "nodes": [5, 6]}
     row = INDEX.pack_integers(counts, given)
     assert row == [40, 1, 2, 5, 6, 7, 8, 9]
     assert {name: row[part] for name, part in INDEX.slices(counts).items()} == {
@@ -100,13 +100,13 @@ def test_rows_of_integers():
 
 
 @pytest.mark.parametrize("change, message", [
-    ({"item": None}, "the kernel reads constants, frame, item, nodes, unknowns; given are constants"
+    ({"port": None}, "the kernel reads constants, frame, port, nodes, unknowns; given are constants"
                      ", frame, nodes, unknowns"),
     ({"nodes": [5]}, r"nodes has shape \(1,\), the kernel reads \(2,\)"),
     ({"frame": [1]}, r"frame has shape \(1,\), the kernel reads \(\)"),
     ({"nodes": 5}, r"nodes has shape \(\), the kernel reads \(2,\)")])
 def test_integers_that_do_not_fit_are_refused(change, message):
-    given = {"constants": 40, "frame": 1, "item": 2, "nodes": [5, 6], "unknowns": [7, 8, 9]}
+    given = {"constants": 40, "frame": 1, "port": 2, "nodes": [5, 6], "unknowns": [7, 8, 9]}
     given = {name: value for name, value in (given | change).items() if value is not None}
     with pytest.raises(ContractError, match="index row of an element: " + message):
         INDEX.pack_integers({"N_ROTATIONS": 2, "n": 3}, given)
@@ -121,12 +121,12 @@ def test_row_without_parts():
 
 def test_named_places_are_those_of_the_rows():
     """Places of the index, coefficients and energies, counted by hand."""
-    assert (AT_CONSTANTS, AT_FRAME, AT_ITEM, HEADER) == (0, 1, 2, 3)
+    assert (AT_CONSTANTS, AT_FRAME, AT_PORT, HEADER) == (0, 1, 2, 3)
     assert INDEX.slices({"N_ROTATIONS": 2, "n": 7})["unknowns"] == slice(5, 12)
     assert FIELD == 5 and COEFFICIENTS.size({}) == 8
     assert (KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS) == (0, 1, 2, 5, 8, 9)
-    assert ENERGIES.size({"items": 4}) == 13
-    assert list(RECORD.slices({"items": 1, "coordinates": 2, "rotations": 1, "bodies": 1}))[:3] == [
+    assert ENERGIES.size({"ports": 4}) == 13
+    assert list(RECORD.slices({"ports": 1, "coordinates": 2, "rotations": 1, "bodies": 1}))[:3] == [
         "t", "iterations", "works"]
 
 
