@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.build import work_size
-from sebody.assembly.numbering import Numbering, coordinates
+from sebody.assembly.numbering import Numbering, stretch
 from sebody.engine.newton import SLOWEST
 from sebody.engine.state import (
     AUX_STEP,
@@ -37,7 +37,8 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     counts = record_counts(numbering)
     n, total, ports = numbering.free, numbering.total, counts["ports"]
     q, v = _start(model, numbering)
-    R = np.tile(np.eye(3).ravel(), counts["rotations"])
+    R = np.zeros(9 * counts["rotations"])
+    R.reshape(-1, 9)[:, ::4] = 1.0
     zeros = np.zeros
     clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
     clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
@@ -63,7 +64,8 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
-    state.frames[:] = state.frames_old[:] = np.tile(np.eye(3).ravel(), counts["bodies"])
+    for frames in (state.frames, state.frames_old):
+        frames.reshape(-1, 9)[:, ::4] = 1.0
     return state
 
 
@@ -73,7 +75,7 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
     for node in (*model.nodes.values(), *model.grounds):
         for triplet in (node.position, node.rotation):
             if triplet is not None and id(triplet) in numbering.triplets:
-                at = coordinates(numbering, triplet)
+                at = stretch(numbering, triplet)
                 q[at] = triplet.start
                 v[at] = triplet.rate if triplet.solved else 0.0
     for body in model.bodies.values():

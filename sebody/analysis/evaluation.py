@@ -54,4 +54,7 @@ def assembled(system: System, state: State) -> csc_matrix:
     """The matrix in `State.matrix` as a sparse one, without padding."""
     n, entries = system.diagonal.size, state.matrix[:-1]
     kept = np.flatnonzero((entries != 0.0) & (system.rows < n))
-    return csc_matrix((entries[kept], (system.rows[kept], system.columns[kept])), shape=(n, n))
+    kept = kept[np.lexsort((system.rows[kept], system.columns[kept]))]
+    starts = np.searchsorted(system.columns[kept], np.arange(n + 1)).astype(np.int32)
+    # in SciPy's own order: sorting it out takes SciPy three times as long
+    return csc_matrix((entries[kept], system.rows[kept], starts), shape=(n, n))

@@ -117,20 +117,20 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     if np.abs(rates).max() <= SMALL * size:
         return {}
     triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
-    weighted = masses.tolil(copy=True)
-    scale = abs(masses.diagonal()).max()
-    for triplet in triplets:
-        for i in coordinates(numbering, triplet) if triplet.given else ():
-            weighted[i, i] += HEAVY * scale
+    given = [t for t in triplets if t.given]
+    held = np.array([i for triplet in given for i in coordinates(numbering, triplet)], dtype=int)
+    added = np.full(len(held), HEAVY * abs(masses.diagonal()).max())
+    column = np.repeat(np.arange(numbering.free), np.diff(masses.indptr))
+    places = np.concatenate([masses.indices, held]), np.concatenate([column, held])
+    weighted = csc_matrix((np.concatenate([masses.data, added]), places), shape=masses.shape)
     demand = np.zeros(numbering.free)
     demand[multipliers] = -rates
     answer = np.zeros(numbering.total)
-    answer[:numbering.free] = least(csc_matrix(weighted), demand, numbering)
+    answer[:numbering.free] = least(weighted, demand, numbering)
     answer[multipliers] = 0.0
     to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
     place_dependent(system.links, state.q, state.v, state.a, state.R)
-    given = [t for t in triplets if t.given]
     for triplet in given:
         change = np.abs(answer[coordinates(numbering, triplet)]).max()
         if change > 1e-6 * size:

@@ -47,12 +47,11 @@ class Watch:
                                "oscillate and grow with every disturbance: use rho 0.9, alpha "
                                "-0.05, or index=2")
         for name, body in bodies.items():
-            spread = _spread(body)
-            if body.frame == "positions" and spread < FLAT:
+            if body.frame == "positions" and _spread(body) < FLAT:
                 self.say(f"flat {name}", f"nodes of body {name!r} lie nearly on a line (spread "
-                         f"{spread:.1e} of their length): its frame turns about it with every "
-                         "small deflection; keep a rotation and take another frame, or a node "
-                         "off the line")
+                         f"{_spread(body):.1e} of their length): its frame turns about it with "
+                         "every small deflection; keep a rotation and take another frame, or a "
+                         "node off the line")
 
     def look(self, model: Mechanism, numbering: Numbering, rows: NDArray) -> None:
         """Compare recorded states with the limits of every body.

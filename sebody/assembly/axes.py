@@ -47,9 +47,11 @@ def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
 
 def summands(batches: Batches, rotated: NDArray, links: Links) -> NDArray:
     """The member `summands` of `System`: where element matrices are, and their special rows."""
-    width = np.repeat([b.width for b in batches.all], [len(b.rows) for b in batches.all])
-    start = starts(width ** 2)
-    linked = np.full(len(width), -1)
-    linked[np.searchsorted(start, links.elements[:, 0])] = np.arange(len(links.elements))
-    return np.column_stack([start[:-1], width, np.searchsorted(rotated[:, 0], start[:-1]),
-                            np.searchsorted(rotated[:, 0], start[1:]), linked])
+    width = [b.width for b in batches.all for _ in b.rows]
+    start = starts(w * w for w in width)
+    found = np.full((len(width), 5), -1)
+    found[:, 0], found[:, 1] = start[:-1], width
+    firsts = np.searchsorted(rotated[:, 0], start)
+    found[:, 2], found[:, 3] = firsts[:-1], firsts[1:]
+    found[np.searchsorted(start, links.elements[:, 0]), 4] = np.arange(len(links.elements))
+    return found

@@ -1,6 +1,7 @@
 """Bodies and elements in batches that share a kernel: their index rows and constants."""
 
 from collections.abc import Iterable
+from itertools import accumulate
 from types import ModuleType
 from typing import NamedTuple
 
@@ -90,7 +91,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         row = index_row(body.name, kernel, unknowns, constants=row_of[key], frame=frame,
                         port=numbering.ports.get(id(body), 0),
                         nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations])
-        _append(batches, kernel, frame, row.tolist(), unknowns, id(body))
+        _append(batches, kernel, frame, row, unknowns, id(body))
     return list(batches.values())
 
 
@@ -107,7 +108,7 @@ def _element_batches(numbering: Numbering, constants: _Constants,
                         nodes=[numbering.rotations[id(t)] for t in element.triplets
                                if id(t) in numbering.rotations])
         function = [] if element.function is None else [element.function.address]
-        _append(batches, kernel, -1, [*row.tolist(), *function], unknowns, id(element))
+        _append(batches, kernel, -1, row + function, unknowns, id(element))
     return list(batches.values())
 
 
@@ -148,4 +149,4 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
 
 def starts(sizes: Iterable[int]) -> NDArray:
     """First index of every piece when pieces of these sizes follow one another, and the end."""
-    return np.concatenate([[0], np.cumsum(list(sizes))]).astype(np.int64)
+    return np.array([0, *accumulate(sizes)], dtype=np.int64)

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from sebody.assembly.axes import body_axes, summands
 from sebody.assembly.batches import Batches, make_batches, starts
 from sebody.assembly.links import link_arrays, with_entries
-from sebody.assembly.numbering import Numbering, coordinates, number
+from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.places import dense_layout, element_places, sparse_layout
 from sebody.assembly.ports import port_arrays
 from sebody.engine.system import System
@@ -36,11 +36,12 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     axes = body_axes(model, numbering, batches)
     own_row, own_column = element_places(batches.all)
     links, linked_row, linked_column = link_arrays(model, numbering, batches.all, axes["rotated"])
-    row, column = np.r_[own_row, linked_row], np.r_[own_column, linked_column]
+    row = np.concatenate([own_row, linked_row])
+    column = np.concatenate([own_column, linked_column])
     entries, matrix = (dense_layout(row, column, numbering.free)
                        if numbering.free <= DENSE_LIMIT else
                        sparse_layout(row, column, numbering))
-    own_entries, linked_entries = np.split(entries, [len(own_row)])
+    own_entries, linked_entries = entries[:len(own_row)], entries[len(own_row):]
     system = System(
         **_batch_arrays(batches), J_entry=own_entries.astype(np.int32), **matrix, **axes,
         is_multiplier=_multipliers(model, numbering), rotation_at=_rotation_starts(numbering),
@@ -101,11 +102,10 @@ def _rotation_starts(numbering: Numbering) -> NDArray:
 
 def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
     """Magnitudes of coordinates: the model's extent for positions, one radian for rotations."""
-    points = np.array([n.point for n in model.nodes.values()])
+    extent = np.abs([n.point for n in model.nodes.values()]).max()
     size = np.zeros(numbering.total)
     for node in model.nodes.values():
-        if node.position is not None and id(node.position) in numbering.triplets:
-            size[coordinates(numbering, node.position)] = np.abs(points).max()
-        if node.rotation is not None and id(node.rotation) in numbering.triplets:
-            size[coordinates(numbering, node.rotation)] = 1.0
+        for triplet, magnitude in ((node.position, extent), (node.rotation, 1.0)):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                size[stretch(numbering, triplet)] = magnitude
     return size

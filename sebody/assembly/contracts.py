@@ -7,7 +7,6 @@ number of unknowns, would go unnoticed.
 from collections.abc import Iterable, Mapping
 from types import ModuleType
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.numbering import Numbering
@@ -84,7 +83,7 @@ def constants_row(name: str, kernel: ModuleType, counts: Counts,
 
 
 def index_row(name: str, kernel: ModuleType, unknowns: list[int],
-              **values: int | list[int]) -> NDArray:
+              **values: int | list[int]) -> list[int]:
     """The index row of an element: where its kernel finds its data.
 
     Raises
@@ -94,7 +93,7 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int],
     """
     counts = {"N_ROTATIONS": kernel.N_ROTATIONS, "n": len(unknowns)}
     try:
-        return INDEX.pack(counts, values | {"unknowns": unknowns}).astype(np.int64)
+        return INDEX.pack_integers(counts, values | {"unknowns": unknowns})
     except ContractError as error:
         raise _misfit(name, kernel, [str(error)]) from error
 

@@ -1,5 +1,6 @@
 """Positions of the blocks of a large sparse matrix and of its factors."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -40,18 +41,19 @@ def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
     elimination tree, the column of the first of them.
     """
     across = -(-n // LANES)
-    below: list[set[int]] = [set() for _ in range(across)]
-    for key in np.unique(column // LANES * across + row // LANES):
-        i, j = key % across, key // across
-        if i > j:
-            below[j].add(int(i))
-    keys = [np.arange(across) * (across + 1)]
-    for j in range(across):
-        rows = np.array(sorted(below[j]), dtype=np.int64)
-        if len(rows):
-            below[rows[0]].update(rows[1:].tolist())
-        keys += [j * across + rows, rows * across + j]
-    keys = np.unique(np.concatenate(keys))
+    i, j = row // LANES, column // LANES
+    j, i = np.divmod(np.unique((j * across + i)[i > j]), across)
+    firsts, i = np.searchsorted(j, np.arange(across + 1)).tolist(), i.tolist()
+    below = [set(i[first:end]) for first, end in pairwise(firsts)]
+    for rows in below:
+        if rows:
+            parent = min(rows)
+            below[parent] |= rows
+            below[parent].discard(parent)
+    i = np.array([i for rows in below for i in rows], dtype=np.int64)
+    j = np.repeat(np.arange(across), [len(rows) for rows in below])
+    keys = np.sort(np.concatenate([np.arange(across) * (across + 1), j * across + i,
+                                   i * across + j]))
     return Pattern(np.searchsorted(keys // across, np.arange(across + 1)), keys % across,
                    np.searchsorted(keys, np.arange(across) * (across + 1)))
 

@@ -37,13 +37,13 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
                                  len(blocks), len(blocks) + len(own_blocks)))
                 maps += own_map
                 blocks += own_blocks
-                rows += np.repeat(wide, len(wide)).tolist()
+                rows += [u for u in wide for _ in wide]
                 columns += wide * len(wide)
             start += batch.width ** 2
     d, rotation_size = ends.sizes
     for _, first in ends.arms:
         own = list(range(first, first + rotation_size))
-        rows += np.repeat(own, rotation_size).tolist()
+        rows += [u for u in own for _ in own]
         columns += own * rotation_size
     none = np.zeros(0, dtype=np.int64)
     links = Links(_table(ends.dependent, 4), _table(ends.arms, 2),
@@ -55,8 +55,8 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
 def with_entries(links: Links, entries: NDArray) -> Links:
     """The links with the places of their matrix entries."""
     rotation_size = 3 if links.arm_vectors.shape[1] == 3 else 1
-    own, of_arms = np.split(entries, [len(entries) - len(links.arms) * rotation_size**2])
-    return replace(links, entries=own, arm_entries=of_arms)
+    own = len(entries) - len(links.arms) * rotation_size**2
+    return replace(links, entries=entries[:own], arm_entries=entries[own:])
 
 
 def _ends(model: Mechanism, numbering: Numbering, rotated: NDArray) -> _Ends:

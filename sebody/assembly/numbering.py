@@ -39,6 +39,12 @@ def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
     return list(range(first, first + triplet.start.size))
 
 
+def stretch(numbering: Numbering, triplet: Triplet) -> slice:
+    """Coordinates of a triplet, as a slice."""
+    first = numbering.triplets[id(triplet)]
+    return slice(first, first + triplet.start.size)
+
+
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates belong to rotations, (total,) of bool."""
     found = np.zeros(numbering.total, dtype=bool)

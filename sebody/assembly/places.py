@@ -14,9 +14,10 @@ def element_places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
     rows, columns = [], []
     for batch in batches:
         unknowns = np.array(batch.unknowns, dtype=np.int64)
-        shape = (len(unknowns), batch.width, batch.width)
-        rows.append(np.broadcast_to(unknowns[:, :, None], shape).ravel())
-        columns.append(np.broadcast_to(unknowns[:, None, :], shape).ravel())
+        row, column = np.empty((2, len(unknowns), batch.width, batch.width), dtype=np.int64)
+        row[:], column[:] = unknowns[:, :, None], unknowns[:, None, :]
+        rows.append(row.ravel())
+        columns.append(column.ravel())
     return np.concatenate(rows), np.concatenate(columns)
 
 

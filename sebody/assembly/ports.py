@@ -1,5 +1,6 @@
 """Power ports of a model: where loads, drives and dampers supply or take energy."""
 
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -46,12 +47,11 @@ def number_ports(model: Mechanism, at: dict[int, int]) -> Ports:
 def port_arrays(histories: list[History],
                 prescribed: list[tuple[int, int, int, float]]) -> dict[str, NDArray]:
     """The members of `System` for histories of ports and for prescribed coordinates."""
-    return {"table_at": np.concatenate([[0], np.cumsum([len(h.times) for h in histories])]
-                                       ).astype(np.int64),
+    return {"table_at": np.array([0, *accumulate(len(h.times) for h in histories)], dtype=np.int64),
             "table_times": np.array([t for h in histories for t in h.times], dtype=float),
             "table_cubics": np.array([c for h in histories for c in h.cubics],
                                      dtype=float).reshape(-1, 4),
-            "corners": np.unique([t for h in histories for t in h.corners]),
+            "corners": np.array(sorted({t for h in histories for t in h.corners}), dtype=float),
             "functions": np.array([h.addresses for h in histories],
                                   dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in prescribed], dtype=np.int64).reshape(-1, 3),

@@ -4,10 +4,12 @@ A named tuple would be passed array by array, seven words each: with a hundred a
 takes a minute. Members are read without reference counts, which cost as much as a small element.
 """
 
+from ctypes import addressof, c_char
 from dataclasses import fields
+from functools import cache
 
 import numpy as np
-from numba import typeof, types
+from numba import types
 from numba.core import cgutils
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import (
@@ -16,14 +18,15 @@ from numba.extending import (
     lower_getattr_generic,
     models,
     register_model,
-    typeof_impl,
     unbox,
 )
+from numba.np.numpy_support import from_dtype
 
 from sebody.kernels.sources import room_hash
 
 # part of every compiled type: what is compiled for other sources is never used
 SOURCES = room_hash("kernels", "engine")
+_PLACE = c_char * 0     # has the address of an array, even of an empty one
 
 
 class Arrays:
@@ -33,27 +36,37 @@ class Arrays:
     """
 
     def __post_init__(self) -> None:
-        members = {f.name: getattr(self, f.name) for f in fields(self)}
-        words = [word for value in members.values() for word in _words(value)]
-        words = np.array(words, dtype=np.int64)
-        kind = View(type(self).__name__,
-                    tuple((name, typeof(value)) for name, value in members.items()))
-        self.__dict__.update(_words=words, _kind=kind, _address=words.ctypes.data)
+        words, facts = [], []
+        for value in tuple(self.__dict__.values()):     # in the order of the fields
+            if isinstance(value, Arrays):
+                words += value._words.tolist()
+                facts.append((type(value), value._facts))
+                continue
+            assert value.flags.c_contiguous
+            # a third of the time of the array's own `ctypes`: a run has a hundred arrays
+            words.append(addressof(_PLACE.from_buffer(value)))
+            words += value.shape
+            facts.append((value.dtype, value.ndim))
+        words, facts = np.array(words, dtype=np.int64), tuple(facts)
+        # compiled functions read the type of an argument from this attribute
+        self.__dict__.update(_words=words, _facts=facts, _address=words.ctypes.data,
+                             _numba_type_=_view(type(self), facts, SOURCES))
 
 
-def _words(value) -> list[int]:
-    """What compiled code reads of a member: of an array its place and its shape."""
-    if isinstance(value, Arrays):
-        return value._words.tolist()
-    assert value.flags.c_contiguous
-    return [value.ctypes.data, *value.shape]
+@cache
+def _view(group: type[Arrays], facts: tuple, sources: str) -> "View":
+    """The type of a group, looked up: typing a hundred arrays takes a millisecond."""
+    members = [_view(kind, own, sources) if isinstance(own, tuple) else
+               types.Array(from_dtype(kind), own, "C") for kind, own in facts]
+    return View(group.__name__, tuple(zip((f.name for f in fields(group)), members, strict=True)),
+                sources)
 
 
 class View(types.Type):
     """The compiled type of a group."""
 
-    def __init__(self, name: str, members: tuple):
-        self.members, self.sources = members, SOURCES
+    def __init__(self, name: str, members: tuple, sources: str):
+        self.members, self.sources = members, sources
         super().__init__(f"View({name})")
 
     @property
@@ -81,11 +94,6 @@ def _size(kind: types.Type) -> int:
 class _Pointer(models.PrimitiveModel):
     def __init__(self, manager, kind):
         super().__init__(manager, kind, cgutils.intp_t.as_pointer())
-
-
-@typeof_impl.register(Arrays)
-def _typeof(group, context):
-    return group._kind
 
 
 @unbox(View)

@@ -1,7 +1,7 @@
 """Data of the compiled loop: state, records, scheme, and the indices of counters."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -166,8 +166,8 @@ class State(Arrays):
             Members that are not recorded.
         """
         now = np.zeros(RECORD.size(counts))
-        names = {field.name for field in fields(cls)}
-        parts = {name: now[part] for name, part in RECORD.slices(counts).items() if name in names}
+        parts = {name: now[part] for name, part in RECORD.slices(counts).items()
+                 if name in cls.__annotations__}
         return cls(now=now, **parts, **others)
 
     @property

@@ -13,6 +13,7 @@ n             unknowns of the element
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -46,7 +47,7 @@ class Part(NamedTuple):
         sizes = [counts[s] if isinstance(s, str) else s for s in self.shape]
         if self.columns:
             return sizes[1] * whole_vectors(sizes[0])
-        return int(np.prod(sizes, dtype=int))
+        return prod(sizes)
 
     def expression(self, known: Counts) -> str:
         """The size as text for a kernel: known counts as numbers, the others by name."""
@@ -82,19 +83,29 @@ class Row(NamedTuple):
         ContractError
             A part without a value, a value of another shape, or one that is no part.
         """
-        names = [part.name for part in self.parts]
-        if set(names) != set(values):
-            raise ContractError(f"{self.title}: the kernel reads {', '.join(names) or 'nothing'}; "
-                                f"given are {', '.join(values) or 'none'}")
+        self._check_names(values)
         pieces = [np.zeros(0)]
         for part in self.parts:
             value = np.asarray(values[part.name], dtype=float)
-            shape = tuple(counts[s] if isinstance(s, str) else s for s in part.shape)
-            if value.shape != shape:
-                raise ContractError(f"{self.title}: {part.name} has shape {value.shape}, the "
-                                    f"kernel reads {shape}")
+            self._check_shape(part, value.shape, counts)
             pieces.append(padded_columns(value) if part.columns else value.ravel())
         return np.concatenate(pieces)
+
+    def pack_integers(self, counts: Counts, values: Mapping[str, int | list[int]]) -> list[int]:
+        """The row of some numbers and lists of numbers, given by name.
+
+        Raises
+        ------
+        ContractError
+            The same as of `pack`.
+        """
+        self._check_names(values)
+        row: list[int] = []
+        for part in self.parts:
+            value = values[part.name]
+            self._check_shape(part, (len(value),) if isinstance(value, list) else (), counts)
+            row += value if isinstance(value, list) else [value]
+        return row
 
     def unpack(self, counts: Counts, row: NDArray) -> dict[str, NDArray]:
         """The values of a row by name, in their shapes."""
@@ -107,6 +118,18 @@ class Row(NamedTuple):
             else:
                 values[part.name] = piece.reshape(shape)
         return values
+
+    def _check_names(self, values: Mapping[str, object]) -> None:
+        names = [part.name for part in self.parts]
+        if values.keys() != set(names):
+            raise ContractError(f"{self.title}: the kernel reads {', '.join(names) or 'nothing'}; "
+                                f"given are {', '.join(values) or 'none'}")
+
+    def _check_shape(self, part: Part, own: tuple[int, ...], counts: Counts) -> None:
+        shape = tuple([counts[s] if isinstance(s, str) else s for s in part.shape])
+        if own != shape:
+            raise ContractError(f"{self.title}: {part.name} has shape {own}, the kernel reads "
+                                f"{shape}")
 
     def _walk(self, counts: Counts) -> Iterator[tuple[str, int, int]]:
         first = 0

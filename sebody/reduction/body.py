@@ -1,6 +1,7 @@
 """The superelement in the form the multibody code takes: reduced matrices and their layout."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -8,6 +9,12 @@ from scipy.linalg import block_diag, eigh
 
 from sebody.errors import InputError
 from sebody.reduction import checks
+
+
+def _read_only(array: NDArray) -> NDArray:
+    """The array itself, refusing changes: what is computed of a body once stays true."""
+    array.flags.writeable = False
+    return array
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,28 +73,27 @@ class ReducedBody:
             checks.check_damping(self.damping, rigid, names)
 
     def _store(self, name: str, array: NDArray) -> None:
-        array.flags.writeable = False
-        object.__setattr__(self, name, array)
+        object.__setattr__(self, name, _read_only(array))
 
     @property
     def planar(self) -> bool:
         """Whether the body lives in the xy plane."""
         return self.coordinates.shape[1] == 2
 
-    @property
+    @cached_property
     def position_nodes(self) -> tuple[int, ...]:
         """Boundary nodes that keep their position."""
         return tuple(i for i, keep in enumerate(self.keeps) if keep != "rotation")
 
-    @property
+    @cached_property
     def rotation_nodes(self) -> tuple[int, ...]:
         """Boundary nodes that keep their rotation."""
         return tuple(i for i, keep in enumerate(self.keeps) if keep != "translation")
 
-    @property
+    @cached_property
     def rigid_modes(self) -> NDArray:
         """Unit rigid translations and rotations about the FE origin, (n, 6), planar (n, 3)."""
-        return self.rigid_modes_about(np.zeros(self.coordinates.shape[1]))
+        return _read_only(self.rigid_modes_about(np.zeros(self.coordinates.shape[1])))
 
     def rigid_modes_about(self, point: ArrayLike) -> NDArray:
         """Rigid modes with rotations about `point`: rows e, e x (X_i - point); e; zero."""
@@ -107,14 +113,14 @@ class ReducedBody:
         internal = np.zeros((self.modes, dimension + axes))
         return np.vstack([positions, rotations, internal])
 
-    @property
+    @cached_property
     def total_mass(self) -> float:
         """Mass from the rigid translations."""
         dimension = self.coordinates.shape[1]
         translations = self.rigid_modes[:, :dimension]
         return float(np.trace(translations.T @ self.mass @ translations) / dimension)
 
-    @property
+    @cached_property
     def centre_of_mass(self) -> NDArray:
         """Centre of mass in the FE axes, (3,), planar (2,) [length]."""
         # About the nodes' mean, so that a body far from the origin loses no digits.
@@ -123,10 +129,11 @@ class ReducedBody:
         dimension = self.coordinates.shape[1]
         moment = modes[:, :dimension].T @ self.mass @ modes[:, dimension:]
         if self.planar:
-            return middle + np.array([moment[1, 0], -moment[0, 0]]) / self.total_mass
+            return _read_only(middle + np.array([moment[1, 0], -moment[0, 0]]) / self.total_mass)
         # e_i . (e_k x c) = epsilon_ikl c_l: the moment is -skew(c) times the mass.
         skew = (moment - moment.T) / 2
-        return middle + np.array([skew[1, 2], skew[2, 0], skew[0, 1]]) / self.total_mass
+        moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
+        return _read_only(middle + moments / self.total_mass)
 
     def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> "ReducedBody":

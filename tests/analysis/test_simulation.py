@@ -1,12 +1,13 @@
 """Time integration: the recurrences of the scheme, resuming, cut steps, failing runs."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from sebody import InputError, Model, Simulation, SimulationError, generalized_alpha
 from sebody.engine.state import CUTS
+from sebody.model.histories import history
 from sebody.scenes.hinged_beam import build
 
 
@@ -97,3 +98,46 @@ def test_a_run_ends_at_the_step_nearest_to_the_wanted_time(h, t_end, steps):
     assert run.result().steps == steps
     assert run.time == pytest.approx(steps * h, rel=1e-14)      # a product and its rounding
     assert run.result()["ball.position"][-1] == pytest.approx([2.0 * steps * h, 0.0], rel=1e-9)
+
+
+def stronger(model):
+    model.loads[0].constants["d"][:] *= 2.0
+
+
+def sooner(model):
+    model.loads[0].history = history([(0.0, 0.0), (1.0, 1.2e4)])
+
+
+def stiffer(model):
+    body = model.element("beam")
+    body.body = replace(body.body, stiffness=2.0 * body.body.stiffness)
+
+
+def heavier(model):
+    body = model.element("beam")
+    body.body = replace(body.body, mass=2.0 * body.body.mass)
+
+
+def another_frame(model):
+    model.element("beam").alpha[:] = 0.8, 0.2
+
+
+def pulled(model):
+    model.force("tip", (0, 0, 1.0), [(0.0, 0.0), (0.1, 100.0)])
+
+
+def falling(model):
+    model.gravity((0, 0, -9.81))
+
+
+@pytest.mark.parametrize("change", [stronger, sooner, stiffer, heavier, another_frame, pulled,
+                                    falling])
+def test_a_model_changed_between_runs_runs_as_it_is(change):
+    """Nothing that the set-up of one run leaves behind is taken for the changed model."""
+    used, fresh = build().model, build().model
+    before = Simulation(used, 0.01).run_to(0.2).result()
+    change(used)
+    change(fresh)
+    after = Simulation(used, 0.01).run_to(0.2).result()
+    assert np.array_equal(after.rows, Simulation(fresh, 0.01).run_to(0.2).result().rows)
+    assert not np.array_equal(after["tip.position"], before["tip.position"])

@@ -1,6 +1,7 @@
 """The benchmarks run: every one of them is imported, and measures something small."""
 
 import importlib.util
+import json
 from pathlib import Path
 
 import pytest
@@ -42,6 +43,13 @@ def test_steps_are_timed_beside_their_errors():
     (spatial, _, error, _), (planar, us, same, _) = imported("bench_kernels").step_times(1.0, 1)
     assert (spatial, planar) == ("spatial", "planar") and us > 0.0
     assert 0.0 < error < 1e-3 and 0.0 < same < 1e-3
+
+
+def test_set_ups_are_timed_by_scene(capsys):
+    bench = imported("bench_setup")
+    bench.main(["--json"], times=1)
+    found = json.loads(capsys.readouterr().out)
+    assert len(found) == len(bench.SCENES) and found["planar-hinged-beam"] > 0.0
 
 
 def test_variable_steps_are_compared_with_the_best_fixed_step():

@@ -4,7 +4,7 @@ from dataclasses import FrozenInstanceError, dataclass
 
 import numpy as np
 import pytest
-from numba import njit
+from numba import njit, typeof
 from numpy.typing import NDArray
 
 from sebody.engine import arrays
@@ -64,9 +64,29 @@ def test_members_are_never_replaced():
         Inner(np.zeros(2), np.zeros((4, 4))[:, ::2])
 
 
+def test_types_are_those_numba_gives_to_the_arrays():
+    """What is looked up for groups alike is true for each of them."""
+    found = [group(), group(), Outer(np.arange(4), *list(vars(group()).values())[1:3]),
+             Outer(np.zeros((4, 1)), *list(vars(group()).values())[1:3])]
+    for one in found:
+        own = dict(one._numba_type_.members)
+        assert own["values"] == typeof(one.values) and own["counts"] == typeof(one.counts)
+        assert own["inner"] == typeof(one.inner)
+        assert dict(own["inner"].members) == {"places": typeof(one.inner.places),
+                                              "table": typeof(one.inner.table)}
+    assert len({one._numba_type_ for one in found}) == 3
+
+
+def test_arrays_that_cannot_be_written_are_no_members():
+    locked = np.zeros(2)
+    locked.flags.writeable = False
+    with pytest.raises(TypeError, match="not writable"):
+        Inner(locked, np.zeros((2, 2)))
+
+
 def test_changed_sources_are_other_types(monkeypatch):
     """Numba's cache must not serve what was compiled from other sources."""
-    before = group()._kind
-    assert before == group()._kind
+    before = group()._numba_type_
+    assert before == group()._numba_type_
     monkeypatch.setattr(arrays, "SOURCES", "changed")
-    assert group()._kind != before
+    assert group()._numba_type_ != before

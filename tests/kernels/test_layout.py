@@ -90,6 +90,28 @@ def test_values_that_do_not_fit_are_refused(change, message):
         ROW.pack(COUNTS, given)
 
 
+def test_rows_of_integers():
+    counts = {"N_ROTATIONS": 2, "n": 3}
+    given = {"unknowns": [7, 8, 9], "constants": 40, "frame": 1, "port": 2, "nodes": [5, 6]}
+    row = INDEX.pack_integers(counts, given)
+    assert row == [40, 1, 2, 5, 6, 7, 8, 9]
+    assert {name: row[part] for name, part in INDEX.slices(counts).items()} == {
+        name: value if isinstance(value, list) else [value] for name, value in given.items()}
+
+
+@pytest.mark.parametrize("change, message", [
+    ({"port": None}, "the kernel reads constants, frame, port, nodes, unknowns; given are constants"
+                     ", frame, nodes, unknowns"),
+    ({"nodes": [5]}, r"nodes has shape \(1,\), the kernel reads \(2,\)"),
+    ({"frame": [1]}, r"frame has shape \(1,\), the kernel reads \(\)"),
+    ({"nodes": 5}, r"nodes has shape \(\), the kernel reads \(2,\)")])
+def test_integers_that_do_not_fit_are_refused(change, message):
+    given = {"constants": 40, "frame": 1, "port": 2, "nodes": [5, 6], "unknowns": [7, 8, 9]}
+    given = {name: value for name, value in (given | change).items() if value is not None}
+    with pytest.raises(ContractError, match="index row of an element: " + message):
+        INDEX.pack_integers({"N_ROTATIONS": 2, "n": 3}, given)
+
+
 def test_row_without_parts():
     nothing = Row("nothing", ())
     assert nothing.pack({}, {}).shape == (0,) and nothing.size({}) == 0

@@ -115,6 +115,16 @@ def test_matrices_are_copied_symmetrised_and_locked(body):
         other.mass[0, 0] = 1.0
 
 
+def test_what_follows_from_the_matrices_is_locked_and_belongs_to_one_body(body):
+    for array in (body.rigid_modes, body.centre_of_mass):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0
+    double = replace(body, mass=2.0 * body.mass)
+    assert double.total_mass == 2.0 * body.total_mass
+    moved = replace(body, coordinates=body.coordinates + [0.0, 0.0, 7.0])
+    assert_allclose(moved.centre_of_mass, body.centre_of_mass + [0.0, 0.0, 7.0], rtol=1e-12)
+
+
 def test_errors_can_be_caught_as_value_errors():
     assert issubclass(InputError, SebodyError)
     assert issubclass(InputError, ValueError)
