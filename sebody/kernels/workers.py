@@ -16,6 +16,7 @@ from threading import Condition, Thread
 from typing import NamedTuple
 
 PROCESSES = max(2, os.cpu_count() or 2)
+DONE = "done"
 
 
 class Task(NamedTuple):
@@ -78,13 +79,16 @@ def call_all(tasks: Sequence[Task], report: Callable[[str, float], None] | None 
         while (task := queue.take()) is not None:
             began = time.perf_counter()
             try:
-                if process is None or process.poll() is not None:
+                if process is None:
                     process = _start()
                     processes.append(process)
-                if _ask(process, task) and report:
+                answer = _ask(process, task)
+                if answer == DONE and report:
                     report(task.name, time.perf_counter() - began)
-            except (OSError, ValueError):
-                pass
+                if not answer:
+                    process = None      # it has ended, the next task gets a new one
+            except OSError:
+                process = None
             finally:
                 queue.done(task)
 
@@ -107,11 +111,11 @@ def _start() -> subprocess.Popen:
                             stderr=subprocess.DEVNULL)
 
 
-def _ask(process: subprocess.Popen, task: Task) -> bool:
-    """Whether a process has done a task."""
+def _ask(process: subprocess.Popen, task: Task) -> str:
+    """What a process answers to a task; nothing if it has ended."""
     process.stdin.write(json.dumps((task.function, task.arguments)) + "\n")
     process.stdin.flush()
-    return process.stdout.readline().strip() == "done"
+    return process.stdout.readline().strip()
 
 
 def main() -> None:
@@ -123,7 +127,7 @@ def main() -> None:
         try:
             module, _, name = function.partition(":")
             getattr(import_module(module), name)(*arguments)
-            answer = "done"
+            answer = DONE
         except Exception as error:      # whoever needs what it makes will meet and report it
             answer = f"failed: {type(error).__name__}"
         print(answer, file=answers, flush=True)
