@@ -14,15 +14,16 @@ from typing import NamedTuple
 
 from numba import typeof
 
+from sebody.analysis import workers
 from sebody.analysis.allocation import allocate
 from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.workers import Task
 from sebody.assembly.build import build
 from sebody.engine import evaluate, links, loop, matrix, newton, step, step_control
 from sebody.engine.state import Record
-from sebody.kernels import store, workers
+from sebody.kernels import loader, store
 from sebody.kernels.loader import USER_FORCE, element_kernel_name, find
 from sebody.kernels.pipeline import is_compiled
-from sebody.kernels.workers import Task
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.results import postprocessing
@@ -98,7 +99,7 @@ def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
                    if name not in _ready and not PARTS[name].function._cache.holds_any()]
         _ready.update(kernels, parts)
         seconds = sum(map(_seconds, missing.values())) + LOOP_SECONDS * ("loop" in lacking)
-        if seconds >= WORTH_IT:
+        if (missing or lacking) and seconds >= WORTH_IT:
             _compile(missing, lacking, seconds, report)
 
 
@@ -144,7 +145,7 @@ def _examples() -> dict:
 
 def _file(name: str) -> Path | None:
     if name == USER_FORCE:
-        return Path(workers.__file__).with_name("user_force.py")
+        return Path(loader.__file__).with_name("user_force.py")
     return find(name)
 
 

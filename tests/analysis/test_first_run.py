@@ -41,11 +41,11 @@ print(len(result.t), sorted(set(compiled)))
 # a kernel that takes half a second, and processes for it all the same
 KERNEL = SPY + """
 from sebody.analysis import first_run
-from sebody.kernels import workers
+from sebody.analysis import workers
 from sebody.kernels.loader import load
 first_run.WORTH_IT = 0.0
 if "broken" in sys.argv:
-    workers.__name__ = "sebody.kernels.no_such_module"
+    workers.__name__ = "sebody.analysis.no_such_module"
 for _ in range(2):
     first_run.compile_missing(["element_planar_force"])
 print(load("element_planar_force").kernel.address > 0, "element_planar_force" in compiled)
