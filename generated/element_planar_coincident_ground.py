@@ -33,7 +33,7 @@ POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (2, 0), "column": (2, 0)}
-ROOM = "196854b5cc6c"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

@@ -50,7 +50,7 @@ PARTS = {
     "forces": Part(evaluate.assemble, "whole whole system state vector"),
     "output": Part(step_control.write_between, "system state record whole"),
     "correction": Part(newton.apply_correction, "system state scheme flag"),
-    "matrix": Part(matrix.renew, "system state whole flag", ("sums",)),
+    "matrix": Part(matrix.refactorize, "system state whole flag", ("sums",)),
     "evaluation": Part(loop._evaluate, "system state scheme whole flag", ("forces",)),
     "conclusion": Part(loop._conclude, "system state record scheme whole"),
     "solution": Part(matrix.solve, "system state flag"),
@@ -67,7 +67,7 @@ PARTS |= {
                       ("forces",)),
     "loads": Part(evaluate.set_loads, "system vector number"),
     "motions": Part(evaluate.move_prescribed, "system state"),
-    "links": Part(links.place_hanging, "links vector vector vector vector"),
+    "links": Part(links.place_dependent, "links vector vector vector vector"),
     "axes": Part(evaluate.to_body_axes, "system vector vector flag"),
     "records": Part(step.write_record, "state record"),
 }

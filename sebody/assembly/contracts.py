@@ -1,7 +1,7 @@
-"""Every body and element of a model against the kernel it is given to, before anything runs.
+"""Checks of every body and element of a model against its kernel, before anything runs.
 
-Kernels read and write through pointers, without bounds: a row that is too short, or a number of
-unknowns that is not the kernel's, would go unnoticed.
+Kernels read and write through pointers without bounds checks: a row that is too short, or a wrong
+number of unknowns, would go unnoticed.
 """
 
 from collections.abc import Iterable, Mapping
@@ -20,16 +20,16 @@ REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebo
 
 def check_element(element: Element, kernel: ModuleType, unknowns: int,
                   numbering: Numbering) -> None:
-    """Counts, history and work of an element.
+    """Check counts, history and power port of an element.
 
     Raises
     ------
     InputError
         What it has is not what its kernel reads; the message names both.
     """
-    turning = sum(t.turns for t in element.triplets)
+    rotations = sum(t.rotational for t in element.triplets)
     matrices = sum(id(t) in numbering.rotations for t in element.triplets)
-    others = len(element.triplets) - turning + (element.mode is not None)
+    others = len(element.triplets) - rotations + (element.mode is not None)
     wrong = _different((("unknowns", unknowns, kernel.WIDTH),
                         ("multipliers", element.multipliers, kernel.MULTIPLIERS),
                         ("positions", others, kernel.N_POSITIONS),
@@ -38,15 +38,15 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
         wrong.append("it has no history and the kernel reads one")
     if element.history is not None and not kernel.POWER:
         wrong.append("it has a history and the kernel reads none")
-    if kernel.POWER != (id(element) in numbering.items):
-        wrong.append("it is no item and the kernel writes the power of one" if kernel.POWER else
-                     "it is an item and the kernel writes no power")
+    if kernel.POWER != (id(element) in numbering.ports):
+        wrong.append("it has no power port and the kernel writes power" if kernel.POWER else
+                     "it has a power port and the kernel writes no power")
     if wrong:
         raise _misfit(element.name, kernel, wrong)
 
 
 def check_superelement(body: Superelement, kernel: ModuleType) -> None:
-    """Counts and damping of a superelement.
+    """Check counts and damping of a superelement.
 
     Raises
     ------
@@ -85,12 +85,12 @@ def constants_row(name: str, kernel: ModuleType, counts: Counts,
 
 def index_row(name: str, kernel: ModuleType, unknowns: list[int],
               **values: int | list[int]) -> NDArray:
-    """The row of integers that a kernel finds an element by.
+    """The index row of an element: where its kernel finds its data.
 
     Raises
     ------
     InputError
-        Its numbers are not as many as the kernel reads.
+        The row is longer or shorter than the kernel reads.
     """
     counts = {"N_ROTATIONS": kernel.N_ROTATIONS, "n": len(unknowns)}
     try:
@@ -111,7 +111,7 @@ def _width(body: Superelement) -> int:
 
 
 def _different(facts: Iterable[tuple[str, int, int | None]]) -> list[str]:
-    """What differs; a kernel that takes any number has None."""
+    """Descriptions of facts that differ; None is of a kernel that takes any number."""
     return [f"it has {own} {what} and the kernel {read}" for what, own, read in facts
             if read is not None and own != read]
 

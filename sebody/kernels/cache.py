@@ -1,9 +1,9 @@
 """Compiled functions kept from run to run, in place of Numba's own cache.
 
-Numba compares the file of a function only, so a function stays as it was when one it calls is
-edited. Here the functions of a room are kept together with the hash of the rooms they may call.
-Numba also stops where no folder can be written, or where a file is damaged; here it compiles.
-Processors have files of their own, so that the first line of one tells whether it is of use.
+Numba compares the file of a function only, so editing a function does not recompile the functions
+that call it. Here compiled code is kept with a hash of all sources it may call. Numba's cache also
+raises an error if no folder can be written or a file is damaged; this one compiles instead.
+Processors have files of their own, so that the first line of a file tells whether it is of use.
 """
 
 import pickle
@@ -23,14 +23,14 @@ from sebody.kernels import store
 
 
 class FunctionCache(NullCache):
-    """What was compiled of a function: a file for each processor, an entry for each signature.
+    """Compiled code of a function: a file for each processor, an entry for each signature.
 
     Parameters
     ----------
     function : callable
         A function of a module.
     made_from : str
-        Hash of all that the machine code depends on.
+        Hash of all sources the machine code depends on.
     """
 
     def __init__(self, function: Callable, made_from: str):
@@ -48,7 +48,7 @@ class FunctionCache(NullCache):
         return store.holds(self._source, self._name, self._made_from)
 
     def load_overload(self, sig, target_context) -> CompileResult | None:
-        """What was compiled for a signature, or None."""
+        """Compiled code for a signature, or None."""
         target_context.refresh()
         for content in store.read(self._source, self._name, self._made_from):
             kept = pickle.loads(content).get(sig)
@@ -57,7 +57,7 @@ class FunctionCache(NullCache):
         return None
 
     def save_overload(self, sig, data: CompileResult) -> None:
-        """Keep what was compiled for a signature."""
+        """Keep the compiled code for a signature."""
         assert not data.library.has_dynamic_globals, f"{self._name} holds addresses"
         entries = {}
         for content in store.read(self._source, self._name, self._made_from):

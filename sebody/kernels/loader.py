@@ -29,7 +29,7 @@ def user_directory() -> Path:
 
 @contextmanager
 def without_collector() -> Iterator[None]:
-    """No garbage collection: it takes a quarter of a compilation and frees nothing there."""
+    """Suspend garbage collection: it takes a quarter of a compilation and frees nothing."""
     collecting = gc.isenabled()
     gc.disable()
     try:
@@ -45,7 +45,7 @@ def find(name: str) -> Path | None:
     Raises
     ------
     InputError
-        The user's was made for other functions than today's in ``kernels/``.
+        The kernel in the user's directory was made by another version of ``kernels/``.
     """
     for folder in find_spec("sebody.generated").submodule_search_locations:
         if (path := Path(folder) / f"{name}.py").exists():
@@ -88,7 +88,9 @@ def load(name: str) -> ModuleType | None:
 
 def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
                              damped: bool = False) -> str:
-    """Name of the kernel of a layout, frame and inertia option: for this number of modes or any.
+    """Name of the kernel of a layout, frame and inertia option.
+
+    A kernel for this number of modes is preferred to one for any number.
 
     Structural damping has kernels of its own. Nothing is imported or compiled.
 

@@ -14,7 +14,7 @@ from sebody.cli import inputs, progress, run, warm
 from sebody.cli.entry import main
 from sebody.scenes import hinged_beam
 from sebody.studies import check
-from sebody.studies.catalogue import kernels, scenes
+from sebody.studies.catalogue import scenes
 from sebody.studies.check.states import CheckRow
 from sebody.studies.references import reference, tip_error
 

@@ -52,7 +52,7 @@ def cases(scene: str) -> list[Case]:
 
 
 def measure(case: Case) -> Measurement:
-    """Run a case several times; time and error are of the same runs."""
+    """Run a case several times; time and error are taken from the same runs."""
     results = [_run(case) for _ in range(case.runs)]
     last = results[-1]
     error = (tip_error(case.reference, last.t, last["tip.position"]) if case.reference else None)

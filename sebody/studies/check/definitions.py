@@ -1,4 +1,4 @@
-"""What a superelement's coordinates are, by other means than the kernels: SciPy and an SVD."""
+"""Coordinates of a superelement computed independently of the kernels: by SciPy and an SVD."""
 
 from types import ModuleType
 
@@ -12,7 +12,7 @@ from sebody.studies.check.states import Case, constants_of
 
 
 def local_coordinates(case: Case) -> NDArray:
-    """``y``, (11), by SciPy's rotations."""
+    """Local coordinates ``y``, (11), by SciPy's rotations."""
     module, constants = case.module, constants_of(case)
     x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
     R0 = frame_rotation(case).as_matrix()[:x.shape[1], :x.shape[1]]
@@ -35,13 +35,13 @@ def local_velocities(case: Case) -> NDArray:
     positions = v[:module.ROTATIONS].reshape(-1, d) @ R0[:d, :d]
     v[:module.ROTATIONS] = positions.ravel()
     if not INERTIA_OPTIONS[module.INERTIA].material:
-        for j, at in enumerate(case.turning):
+        for j, at in enumerate(case.rotations):
             v[at:at + 3] = R0.T @ case.R[9 * j:9 * j + 9].reshape(3, 3) @ v[at:at + 3]
     return v
 
 
 def frame_traits(module: ModuleType) -> FrameTraits:
-    """What the frame of a kernel declares."""
+    """The traits that the frame of a kernel declares."""
     return FRAMES[module.FRAME]
 
 

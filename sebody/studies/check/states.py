@@ -37,12 +37,12 @@ class CheckRow(NamedTuple):
     criterion: str
     state: int
     error: float            # relative to the largest entry
-    slope: float | None     # order of a difference that is there by design
+    slope: float | None     # order of convergence of a difference that the formulation has
     limit: float            # of the error from above, or of the slope from below
 
     @property
     def passed(self) -> bool:
-        """Whether the limit is kept."""
+        """Whether error or slope is within the limit."""
         return self.error <= self.limit if self.slope is None else self.slope > self.limit
 
 
@@ -64,7 +64,7 @@ class Case(NamedTuple):
 
     @property
     def planar(self) -> bool:
-        """Motion in a plane: angles among q in place of rotation matrices."""
+        """Whether the motion is planar: angles among q in place of rotation matrices."""
         return self.module.PLANAR
 
     @property
@@ -74,17 +74,17 @@ class Case(NamedTuple):
 
     @property
     def counts(self) -> dict[str, int]:
-        """What sizes of the constants are products of."""
+        """The counts that sizes of the constants are products of."""
         module = self.module
         return superelement_counts(module.N_POSITIONS, module.N_ROTATIONS, module.PLANAR, self.n)
 
     @property
     def row(self) -> Row:
-        """The constants its kernel reads."""
+        """The row of constants that the kernel reads."""
         return Row(self.module.__name__, self.module.CONSTANTS)
 
     @property
-    def turning(self) -> list[int]:
+    def rotations(self) -> list[int]:
         """First unknown of each rotation triplet."""
         first = self.module.ROTATIONS
         return [] if not self.R.size else [first + 3 * j for j in range(self.module.N_ROTATIONS)]
@@ -92,7 +92,7 @@ class Case(NamedTuple):
 
 def index_row(module: ModuleType, n: int) -> NDArray:
     """The index row of a kernel's only element."""
-    values = {"constants": 0, "frame": 0, "item": 0, "nodes": range(module.N_ROTATIONS),
+    values = {"constants": 0, "frame": 0, "port": 0, "nodes": range(module.N_ROTATIONS),
               "unknowns": range(n)}
     return INDEX.pack({"N_ROTATIONS": module.N_ROTATIONS, "n": n}, values).astype(np.int64)
 
@@ -118,7 +118,7 @@ def _call(address, task, stride, width, arguments):
 
 
 def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Arguments:
-    """What the kernel of a case is called with for one element, results zero."""
+    """Arguments of the kernel of a case for one element, results zero."""
     n, module = case.n, case.module
     return Arguments(
         index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
@@ -142,7 +142,7 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
 
 
 def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:
-    """Matrix with positions in global axes: superelements leave them in those of the frame."""
+    """Matrix with positions rotated to global axes, from those of the frame of a superelement."""
     if not hasattr(module, "FRAME"):        # a joint, rigid body or load
         return J
     turn, d = np.eye(len(J)), 2 if module.PLANAR else 3
@@ -155,7 +155,7 @@ def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:
 def moved(case: Case, direction: NDArray, size: float) -> Case:
     """The case with its configuration moved: rotations multiplied, the rest added."""
     q, R = case.q + size * direction, case.R.copy()
-    for j, at in enumerate(case.turning):
+    for j, at in enumerate(case.rotations):
         turn = Rotation.from_rotvec(size * direction[at:at + 3]).as_matrix()
         R[9 * j:9 * j + 9] = (R[9 * j:9 * j + 9].reshape(3, 3) @ turn).ravel()
     return case._replace(q=q, R=R)
@@ -199,10 +199,10 @@ def momenta(case: Case) -> NDArray:
 
 
 def along_path(case: Case, t: float) -> Case:
-    """The case a time t later on a path with its velocity and acceleration at t = 0."""
+    """The case at time t on a path with the given velocity and acceleration at t = 0."""
     step = case.v * t + case.a * t * t / 2
     v = case.v + case.a * t
-    for at in case.turning:
+    for at in case.rotations:
         psi, rate = step[at:at + 3], v[at:at + 3].copy()
         angle = np.linalg.norm(psi)
         if angle > 0:       # Omega = T(psi) psidot
