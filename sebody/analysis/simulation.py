@@ -10,6 +10,7 @@ from scipy.sparse.linalg import splu
 
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import assembled
+from sebody.analysis.first_run import prepare
 from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
 from sebody.analysis.schemes import generalized_alpha
@@ -81,6 +82,7 @@ class Simulation:
         if output_every != int(output_every) or output_every < 1:
             raise InputError(f"output_every is {output_every}: give a whole number of steps >= 1")
         self.model, self.h, self.every = model, float(h), int(output_every)
+        prepare([model])
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks

@@ -21,6 +21,8 @@ def run(options: argparse.Namespace) -> int:
 
     check_picture(options.output)
     atlas.check_names(options.cases)
+    if not options.cases:
+        atlas.prepare()
     findings = []
     for name in options.cases or atlas.CASES:
         findings.append(atlas.explore(name))

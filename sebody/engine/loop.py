@@ -53,6 +53,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.step import accept, back, begin_step, cut_step
 from sebody.engine.step_control import SHORTEST, accurate, choose_step, write_between
+from sebody.engine.vectors import swap
 from sebody.kernels.layout import OK, RESIDUAL, TANGENT
 from sebody.kernels.pipeline import compiled
 
@@ -172,10 +173,3 @@ def _take_shift(system, state):
     swap(state.residual, state.constraint_residuals)
     for i in range(system.diagonal.size):
         state.shift[i] = state.correction[i] * (1.0 - system.is_multiplier[i])
-
-
-@compiled
-def swap(a, b):
-    """Exchange the contents of two vectors."""
-    for i in range(a.size):
-        a[i], b[i] = b[i], a[i]

@@ -21,6 +21,7 @@ from sebody.engine.state import (
     STEP,
     TIME,
 )
+from sebody.engine.vectors import copy
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.layout import (
     A_PART,
@@ -126,7 +127,7 @@ def write_between(system, state, record, last_grid):
 @compiled
 def _write_row(system, state, row, at, t, s, h):
     """Interpolate the state at a share `s` of the last step, by cubics through values and rates."""
-    row[:] = state.now
+    copy(state.now, row)
     row[RECORD_T], row[RECORD_ITERATIONS] = t, state.control[ITERATIONS]
     for k in range(state.works.size):
         early, late = state.powers_old[k], state.powers[k]

@@ -3,23 +3,27 @@
 Numba compares the file of a function only, so editing a function does not recompile the functions
 that call it. Here compiled code is kept with a hash of all sources it may call. Numba's cache also
 raises an error if no folder can be written or a file is damaged; this one compiles instead.
+Processors have files of their own, so that the first line of a file tells whether it is of use.
 """
 
 import pickle
 import sys
+import zlib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numba
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
+from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
 from sebody.kernels import store
 
 
 class FunctionCache(NullCache):
-    """Compiled code of a function: one file, an entry for each signature and processor.
+    """Compiled code of a function: a file for each processor, an entry for each signature.
 
     Parameters
     ----------
@@ -32,16 +36,22 @@ class FunctionCache(NullCache):
     def __init__(self, function: Callable, made_from: str):
         assert function.__closure__ is None, f"{function.__name__}: the hash sees no closures"
         self._source = Path(function.__code__.co_filename)
-        name = f"{self._source.stem}.{function.__qualname__}".replace("<", "").replace(">", "")
-        self._name = f"{name}.{sys.implementation.cache_tag}.sebody"
-        self._made_from = f"{made_from}, Numba {numba.__version__}"
+        self._function = function.__qualname__
+        self._made_from = _stamp(made_from)
+
+    @property
+    def _name(self) -> str:
+        return _file_name(self._source, self._function)
+
+    def holds_any(self) -> bool:
+        """Whether the function was compiled, for whatever signature."""
+        return store.holds(self._source, self._name, self._made_from)
 
     def load_overload(self, sig, target_context) -> CompileResult | None:
         """Compiled code for a signature, or None."""
         target_context.refresh()
-        key = sig, target_context.codegen().magic_tuple()
         for content in store.read(self._source, self._name, self._made_from):
-            kept = pickle.loads(content).get(key)
+            kept = pickle.loads(content).get(sig)
             if kept is not None:
                 return CompileResult._rebuild(target_context, *pickle.loads(kept))
         return None
@@ -52,9 +62,30 @@ class FunctionCache(NullCache):
         entries = {}
         for content in store.read(self._source, self._name, self._made_from):
             entries = pickle.loads(content) | entries
-        entries[sig, data.codegen.magic_tuple()] = dumps(data._reduce())
+        entries[sig] = dumps(data._reduce())
         if not store.write(self._source, self._name, self._made_from, dumps(entries)):
             tried = ", ".join(map(str, store.folders(self._source)))
             store.say_once("writing", "compiled code cannot be kept, every start compiles it "
                            f"again: no folder of {tried} can be written; set NUMBA_CACHE_DIR to "
                            "one that can")
+
+
+def is_kept(source: Path, function: str, made_from: str) -> bool:
+    """Whether a function of a file that need not be imported was compiled."""
+    return store.holds(source, _file_name(source, function), _stamp(made_from))
+
+
+def _file_name(source: Path, function: str) -> str:
+    name = f"{source.stem}.{function}".replace("<", "").replace(">", "")
+    return f"{name}.{sys.implementation.cache_tag}.{_processor()}.sebody"
+
+
+@cache
+def _processor() -> str:
+    """Short name of the processor that is compiled for."""
+    described = repr(cpu_target.target_context.codegen().magic_tuple())
+    return f"{zlib.crc32(described.encode()):08x}"
+
+
+def _stamp(made_from: str) -> str:
+    return f"{made_from}, Numba {numba.__version__}"

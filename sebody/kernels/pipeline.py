@@ -7,6 +7,7 @@ single static assignment is left to LLVM, and types of operations on floats are 
 
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 from numba import njit
 from numba.core import types
@@ -23,7 +24,7 @@ from numba.core.typed_passes import (
 )
 from numba.core.untyped_passes import FixupArgs, IRProcessing, TranslateByteCode
 
-from sebody.kernels.cache import FunctionCache
+from sebody.kernels.cache import FunctionCache, is_kept
 from sebody.kernels.layout import ARGUMENTS
 from sebody.kernels.sources import KERNELS, function_hash, in_room, kernel_hash
 
@@ -98,6 +99,11 @@ def kernel_function(function: Callable) -> CFunc:
     """
     kernel = CFunc(function, normalize_signature(SIGNATURE), {},
                    {"error_model": "numpy", "fastmath": CONTRACT}, KernelPasses)
-    kernel._cache = FunctionCache(function, kernel_hash(function))
+    kernel._cache = FunctionCache(function, kernel_hash(Path(function.__code__.co_filename)))
     kernel.compile()
     return kernel
+
+
+def is_compiled(path: Path) -> bool:
+    """Whether the kernel in a file was compiled; the file is not imported."""
+    return is_kept(path, "kernel", kernel_hash(path))

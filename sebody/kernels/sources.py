@@ -55,9 +55,8 @@ def function_hash(function: Callable) -> str:
     return f"{room_hash(KERNELS, ENGINE)} {_syntax_hash(path.stem, path)}"
 
 
-def kernel_hash(function: Callable) -> str:
+def kernel_hash(path: Path) -> str:
     """Hash of all sources that a kernel may depend on: ``kernels/`` and its own file."""
-    path = Path(function.__code__.co_filename)
     # byte by byte: nobody edits the comments of generated files, and parsing these takes long
     return f"{room_hash(KERNELS)} {sha256(path.read_bytes()).hexdigest()[:_DIGITS]}"
 

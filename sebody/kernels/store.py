@@ -40,6 +40,30 @@ def read(source: Path, name: str, made_from: str) -> Iterator[bytes]:
             yield content
 
 
+def holds(source: Path, name: str, made_from: str) -> bool:
+    """Whether something is kept, by its first line alone: what follows may still be damaged."""
+    line = made_from.encode() + b"\n"
+    return any(_beginning(folder / name, _CHECKSUM + len(line))[_CHECKSUM:] == line
+               for folder in folders(source))
+
+
+def _beginning(path: Path, size: int) -> bytes:
+    try:
+        with path.open("rb") as file:
+            return file.read(size)
+    except OSError:
+        return b""
+
+
+def writable(source: Path) -> bool:
+    """Whether something about a module could be kept, as far as permissions tell."""
+    for folder in folders(source):
+        existing = next((f for f in (folder, *folder.parents) if f.exists()), folder)
+        if existing.is_dir() and os.access(existing, os.W_OK):
+            return True
+    return False
+
+
 def _content(path: Path, made_from: str) -> bytes | None:
     try:
         data = path.read_bytes()

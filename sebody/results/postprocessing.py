@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sebody.engine.evaluate import assemble, run_kernels, set_loads
 from sebody.engine.state import State
 from sebody.engine.system import System
+from sebody.engine.vectors import copy
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGY, RECORD_T, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
@@ -77,31 +78,33 @@ def _over_records(what: str, evaluate, system: System, state: State, rows: NDArr
 @compiled
 def _evaluate_energies(system, state, rows, out):
     for k in range(len(rows)):
-        state.now[:] = rows[k]
-        state.energy[:] = 0.0
+        copy(rows[k], state.now)
+        for i in range(state.energy.size):
+            state.energy[i] = 0.0
         status = run_kernels(ENERGY, 0, system.address.size, system, state)
         if status != 0:
             return status
-        out[k] = state.energy
+        copy(state.energy, out[k])
     return 0
 
 
 @compiled
 def _evaluate_forces(system, state, rows, elements, sums):
     for k in range(len(rows)):
-        state.now[:] = rows[k]
+        copy(rows[k], state.now)
         set_loads(system, state.loads, state.now[RECORD_T])
         status = assemble(RESIDUAL, RESIDUAL, system, state, state.residual)
         if status != 0:
             return status
-        elements[k], sums[k] = state.g, state.residual
+        copy(state.g, elements[k])
+        copy(state.residual, sums[k])
     return 0
 
 
 @compiled
 def _evaluate_constraints(system, state, rows, out):
     for k in range(len(rows)):
-        state.now[:] = rows[k]
+        copy(rows[k], state.now)
         set_loads(system, state.loads, state.now[RECORD_T])
         for j, task in enumerate((RESIDUAL, VELOCITY)):
             status = assemble(RESIDUAL, task, system, state, state.residual)

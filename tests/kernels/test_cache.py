@@ -4,6 +4,7 @@ Every run is a new process of a small program with a function that calls another
 """
 
 import os
+import re
 import subprocess
 import sys
 import warnings
@@ -58,10 +59,10 @@ def run(*arguments, **options) -> tuple[str, str]:
 
 
 def kept(folder: Path) -> list[str]:
-    """Names in a folder of the cache, of this version of Python."""
-    tag = sys.implementation.cache_tag
-    return sorted(path.name.replace(f".{tag}.", ".") for path in folder.rglob("*")
-                  if path.is_file())
+    """Names in a folder of the cache, without the version of Python and the processor."""
+    tag = re.escape(sys.implementation.cache_tag)
+    return sorted(re.sub(rf"\.{tag}\.[0-9a-f]{{8}}\.", ".", path.name)
+                  for path in folder.rglob("*") if path.is_file())
 
 
 def not_writable(path: Path) -> Path:
@@ -123,13 +124,21 @@ DAMAGES = {"empty": lambda data: b"", "truncated": lambda data: data[:len(data) 
 @pytest.mark.parametrize("name, damage", list(zip(FILES, DAMAGES.values(), strict=True)))
 def test_a_damaged_file_counts_as_absent(program, name, damage):
     run(program)
-    name = name.replace(".sebody", f".{sys.implementation.cache_tag}.sebody")
-    path = program.parent / "__pycache__" / name
+    path, = (program.parent / "__pycache__").glob(name.replace(".sebody", ".*.sebody"))
     path.write_bytes(damage(path.read_bytes()))
     out, errors = run(program, "float")
     assert out == "7.0 0"
     assert errors.count(f"{path} is damaged and not used") == 1
     assert run(program, "float") == ("7.0 1", "")       # written anew
+
+
+def test_what_was_compiled_for_another_processor_is_kept_apart(program, monkeypatch):
+    run(program)
+    monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
+    assert run(program) == ("7 0", "")
+    assert run(program) == ("7 1", "")
+    monkeypatch.delenv("NUMBA_CPU_NAME")
+    assert run(program) == ("7 1", "")
 
 
 @pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)

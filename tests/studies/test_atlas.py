@@ -16,7 +16,7 @@ from sebody.studies import atlas
 from sebody.studies.atlas.beams import arm
 from sebody.studies.atlas.finding import Row
 from sebody.studies.atlas.theory import cantilever, divergence
-from sebody.studies.catalogue import scenes
+from sebody.studies.catalogue import kernel_files, scenes
 
 STRESSED = {"spherical-beam-strong"}    # spins above its limit, on purpose
 
@@ -27,6 +27,10 @@ def test_numbers_known_beforehand_are_measured(name):
     assert finding.rows and finding.curves and finding.theory and finding.program
     wrong = [row for row in finding.rows if not row.passed]
     assert not wrong, wrong
+
+
+def test_kernels_that_are_compiled_at_once_exist():
+    assert set(atlas.KERNELS) <= set(kernel_files())
 
 
 def test_rows_can_fail():

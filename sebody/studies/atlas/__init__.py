@@ -7,7 +7,9 @@ or it says what this program is to do there.
 import warnings
 from collections.abc import Callable, Iterable
 
+from sebody.analysis.first_run import PARTS, compile_missing
 from sebody.errors import InputError, LimitWarning
+from sebody.kernels.names import element_name, superelement_name
 from sebody.studies.atlas import geometry, inertia, integration, spin
 from sebody.studies.atlas.draw import draw
 from sebody.studies.atlas.finding import Finding, Row
@@ -27,8 +29,24 @@ CASES: dict[str, Callable[[], Finding]] = {
     "massless": geometry.massless_rotations,
     "weights": geometry.negative_weights,
 }
+# kernels of all cases, to compile them at once; what a case needs besides it compiles itself
+KERNELS = tuple(
+    superelement_name(*names) for names in (
+        ("f2", "converged_mean", "a"), ("f2", "converged_mean", "b"), ("f2", "mean", "b"),
+        ("f2", "mean_small", "b"), ("f2m4", "converged_mean", "b"), ("f2t1", "positions", "b"),
+        ("planar-f2", "converged_mean", "b"), ("planar-f2m2", "converged_mean", "b"),
+        ("planar-f2m4", "converged_mean", "b"))) + tuple(
+    element_name(kind) for kind in (
+        "force", "torque", "planar_force", "planar_follower_force", "planar_on_line",
+        "planar_point_mass", "planar_torque"))
 
-__all__ = ["CASES", "Finding", "Row", "check_names", "draw", "explore", "report"]
+__all__ = ["CASES", "KERNELS", "Finding", "Row", "check_names", "draw", "explore", "prepare",
+           "report"]
+
+
+def prepare() -> None:
+    """Compile what all cases need, as far as the cache lacks it."""
+    compile_missing(KERNELS, PARTS)
 
 
 def check_names(names: Iterable[str]) -> None:

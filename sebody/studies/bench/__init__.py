@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable
 
+from sebody.analysis.first_run import prepare
 from sebody.errors import InputError
 from sebody.studies.bench import machine, own, peer
 from sebody.studies.bench.measurement import Measurement
@@ -23,6 +24,7 @@ def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
     for name in chosen:
         if name not in SCENES:
             raise InputError(f"there is no benchmark of scene {name!r}: use {', '.join(SCENES)}")
+    prepare(case.build().model for name in chosen for case in own.cases(name)[:2])
     found = []
     for name in chosen:
         found += [own.measure(case) for case in own.cases(name)]

@@ -1,8 +1,7 @@
 """Runs of this package: the shipped scenes with the settings of the table."""
 
 import statistics
-from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from sebody.analysis.simulation import Simulation
 from sebody.engine.system import System
@@ -11,6 +10,9 @@ from sebody.results.result import Result
 from sebody.studies.bench.measurement import Measurement
 from sebody.studies.catalogue import builder
 from sebody.studies.references import tip_error
+
+if TYPE_CHECKING:
+    from sebody.scenes.scene import Scene
 
 CHAINS = (1, 4, 16, 64, 256, 1024)
 LOOPS = (2, 20)
@@ -26,9 +28,16 @@ class Case(NamedTuple):
     reference: str          # name of a file of reference data, or nothing
     runs: int
 
+    def build(self) -> "Scene":
+        """The scene itself."""
+        return builder(self.scene)(**self.parameters)
+
 
 def cases(scene: str) -> list[Case]:
-    """Cases of a scene: chains of several lengths, one of every other scene."""
+    """Cases of a scene: chains of several lengths, one of every other scene.
+
+    The first two have the kernels of all.
+    """
     if scene == "chain":
         return [Case(scene, f"{n} links", {"links": n}, 1.0, "", 9 if n < 256 else 3)
                 for n in CHAINS]
@@ -44,8 +53,7 @@ def cases(scene: str) -> list[Case]:
 
 def measure(case: Case) -> Measurement:
     """Run a case several times; time and error are taken from the same runs."""
-    build = builder(case.scene)
-    results = [_run(build, case) for _ in range(case.runs)]
+    results = [_run(case) for _ in range(case.runs)]
     last = results[-1]
     error = (tip_error(case.reference, last.t, last["tip.position"]) if case.reference else None)
     return Measurement(
@@ -54,8 +62,8 @@ def measure(case: Case) -> Measurement:
         error, statistics.median(r.seconds for r in results), flops_per_step(last))
 
 
-def _run(build: Callable, case: Case) -> Result:
-    scene = build(**case.parameters)
+def _run(case: Case) -> Result:
+    scene = case.build()
     return Simulation(scene.model, scene.h).run_to(case.t_end or scene.t_end).result()
 
 

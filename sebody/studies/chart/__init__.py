@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sebody.analysis.first_run import prepare
 from sebody.analysis.simulation import simulate
 from sebody.errors import SimulationError
 from sebody.results.files import check_target
@@ -27,8 +28,10 @@ def measure(scene: str) -> tuple[list[Point], Reference]:
     InputError
         A scene that has no chart.
     """
+    chosen = variants(scene)
+    prepare(builder(scene)(**v.parameters).model for v in chosen)
     exact = reference(scene)
-    points = [p for v in variants(scene) if (p := _point(scene, v, exact)) is not None]
+    points = [p for v in chosen if (p := _point(scene, v, exact)) is not None]
     if peer.available():
         points += _peer(scene, exact)
     return points, exact

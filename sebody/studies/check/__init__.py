@@ -6,6 +6,7 @@ rotations of the order of one radian, elastic rotations to 0.3, moving and accel
 
 from collections.abc import Iterable
 
+from sebody.analysis.first_run import compile_missing
 from sebody.errors import InputError
 from sebody.kernels.loader import load
 from sebody.kernels.names import SUPERELEMENT
@@ -27,9 +28,12 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
         An unknown name.
     """
     known, rows = list(kernel_files()), []
-    for name in names or known:
+    chosen = list(names or known)
+    for name in chosen:
         if name not in known:
             raise InputError(f"kernel {name!r} is unknown: there are {', '.join(known)}")
+    compile_missing(chosen)
+    for name in chosen:
         check = check_superelement if name.startswith(SUPERELEMENT) else check_element
         rows += check(name, load(name))
     return rows

@@ -1,0 +1,153 @@
+"""What a first run compiles: the kernels of its models and the time loop, side by side.
+
+The parts of the loop are compiled for the types of a small model's arrays, which are those of
+every model. Kernels are known by name. Nothing is said or done where all is in the cache.
+"""
+
+import sys
+import time
+from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+from threading import Lock
+from typing import NamedTuple
+
+from numba import typeof
+
+from sebody.analysis import workers
+from sebody.analysis.allocation import allocate
+from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.workers import Task
+from sebody.assembly.build import build
+from sebody.engine import evaluate, links, loop, matrix, newton, step, step_control
+from sebody.engine.state import Record
+from sebody.kernels import loader, store
+from sebody.kernels.loader import USER_FORCE, element_kernel_name, find
+from sebody.kernels.pipeline import is_compiled
+from sebody.model.mechanism import Mechanism
+from sebody.model.model import Model
+from sebody.results import postprocessing
+
+LOOP_SECONDS = 25.0             # of one processor
+SECONDS_A_LETTER = 1e-4         # of a kernel's file
+WORTH_IT = 4.0                  # seconds of compiling: starting processes takes one or two
+
+_lock = Lock()
+_ready = set()          # kernels and parts of the loop this process need not ask for again
+
+
+class Part(NamedTuple):
+    """A function of the loop, and what it is compiled for."""
+
+    function: Callable
+    arguments: str                  # names in `_examples`
+    after: tuple[str, ...] = ()     # parts it calls, or takes most of
+
+
+# those that take long, then what they are parts of; the loop itself waits for all of them
+PARTS = {
+    "sums": Part(matrix.sum_matrices, "system state vector"),
+    "forces": Part(evaluate.assemble, "whole whole system state vector"),
+    "output": Part(step_control.write_between, "system state record whole"),
+    "correction": Part(newton.apply_correction, "system state scheme flag"),
+    "matrix": Part(matrix.refactorize, "system state whole flag", ("sums",)),
+    "evaluation": Part(loop._evaluate, "system state scheme whole flag", ("forces",)),
+    "conclusion": Part(loop._conclude, "system state record scheme whole"),
+    "solution": Part(matrix.solve, "system state flag"),
+    "beginning": Part(step.begin_step, "system state scheme"),
+    "choice": Part(step_control.choose_step, "system state"),
+}
+PARTS["loop"] = Part(loop.advance, "system state record scheme whole whole flag", tuple(PARTS))
+PARTS |= {
+    "constraints": Part(postprocessing._evaluate_constraints, "system state table table",
+                        ("forces",)),
+    "powers": Part(evaluate.set_powers, "system state", ("forces",)),
+    "energies": Part(postprocessing._evaluate_energies, "system state table table", ("forces",)),
+    "reactions": Part(postprocessing._evaluate_forces, "system state table table table",
+                      ("forces",)),
+    "loads": Part(evaluate.set_loads, "system vector number"),
+    "motions": Part(evaluate.move_prescribed, "system state"),
+    "links": Part(links.place_dependent, "links vector vector vector vector"),
+    "axes": Part(evaluate.to_body_axes, "system vector vector flag"),
+    "records": Part(step.write_record, "state record"),
+}
+
+
+def prepare(models: Iterable[Mechanism]) -> None:
+    """Compile what runs of models need and the cache lacks; a line says so."""
+    models = list(models)
+    kernels = {body.kernel for model in models for body in model.bodies.values()}
+    kernels |= {element_kernel_name(e.kind) for model in models
+                for e in (*model.rigid_bodies.values(), *model.constraints, *model.loads)}
+    if not _ready.issuperset(kernels) or not _ready.issuperset(PARTS):
+        compile_missing(kernels, PARTS)
+
+
+def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
+                    report: Callable[[str, float], None] | None = None) -> None:
+    """Compile kernels and parts of the loop by name, where the cache lacks them.
+
+    Parameters
+    ----------
+    report : callable, optional
+        Called with the name of everything that was compiled and the seconds it took.
+    """
+    with _lock:
+        kernels = {name: path for name in sorted(set(kernels) - _ready) if (path := _file(name))}
+        missing = {name: path for name, path in kernels.items() if not is_compiled(path)}
+        lacking = [name for name in parts
+                   if name not in _ready and not PARTS[name].function._cache.holds_any()]
+        _ready.update(kernels, parts)
+        seconds = sum(map(_seconds, missing.values())) + LOOP_SECONDS * ("loop" in lacking)
+        if (missing or lacking) and seconds >= WORTH_IT:
+            _compile(missing, lacking, seconds, report)
+
+
+def _compile(kernels: dict[str, Path], parts: list[str], seconds: float,
+             report: Callable[[str, float], None] | None) -> None:
+    what = [f"{len(kernels)} kernel{'s' * (len(kernels) > 1)}"] if kernels else []
+    what = " and ".join([*["the time loop"] * ("loop" in parts), *what])
+    if not store.writable(Path(loop.__file__)):
+        print(f"compiling {what}, about {seconds:.0f} s, at every start: there is no folder to "
+              "keep the machine code in", file=sys.stderr, flush=True)
+        return
+    seconds /= workers.PROCESSES
+    print(f"first run: compiling {what} in {workers.PROCESSES} processes, about {seconds:.0f} s",
+          file=sys.stderr, flush=True)
+    began = time.perf_counter()
+    slowest_first = sorted(kernels, key=lambda name: -_seconds(kernels[name]))
+    workers.call_all(
+        [*(Task(name, f"{__name__}:compile_part", (name,), PARTS[name].after) for name in parts),
+         *(Task(name, "sebody.kernels.loader:load", (name,)) for name in slowest_first)], report)
+    print(f"compiled in {time.perf_counter() - began:.0f} s; later runs find it in the cache",
+          file=sys.stderr, flush=True)
+
+
+def compile_part(name: str) -> None:
+    """Compile a part of the loop here, or find it in the cache."""
+    function, arguments, _ = PARTS[name]
+    function.compile(tuple(_examples()[name] for name in arguments.split()))
+
+
+@cache
+def _examples() -> dict:
+    """Types of arguments, by the names in `PARTS`: from a model that compiles next to nothing."""
+    model = Model(planar=True)
+    model.node("point", (0.0, 0.0))
+    model.rigid_body("mass", "point", 1.0, 1.0)
+    system, numbering = build(model)
+    state = allocate(model, system, numbering, 1.0, True)
+    found = {"system": system, "state": state, "record": Record.of(state, 1), "links": system.links,
+             "scheme": generalized_alpha(), "vector": state.residual, "table": state.inverse,
+             "whole": 1, "number": 1.0, "flag": True}
+    return {name: typeof(value) for name, value in found.items()}
+
+
+def _file(name: str) -> Path | None:
+    if name == USER_FORCE:
+        return Path(loader.__file__).with_name("user_force.py")
+    return find(name)
+
+
+def _seconds(path: Path) -> float:
+    return SECONDS_A_LETTER * path.stat().st_size
