@@ -2,7 +2,8 @@
 
 Kernels work on flat arrays. What stands where in these is written here and nowhere else: the
 printer of the kernels, the packers of models, the compiled loop, the checks and the results all
-read these tables. Sizes are products of counts, which specialised kernels know beforehand:
+read these tables. Sizes are products of counts, which specialised kernels know beforehand and
+general ones read from the index row of their elements:
 
 ============  ======================================================================================
 N_POSITIONS   nodes of the element that keep their position
@@ -164,11 +165,13 @@ INDEX = Row("index row of an element", (
     Part("constants", (), "where its row of constants begins"),
     Part("frame", (), "number of its frame"),
     Part("item", (), "number of the item it is: what does work, a load, damper or drive"),
+    Part("positions", (), "N_POSITIONS, the same for all elements of a batch"),
+    Part("rotations", (), "N_ROTATIONS, likewise"),
     Part("nodes", ("N_ROTATIONS",), "numbers of its rotation matrices"),
     Part("unknowns", ("n",), "its coordinates, then its multipliers"),
 ))
-AT_CONSTANTS, AT_FRAME, AT_ITEM, HEADER = (
-    INDEX.first(name) for name in ("constants", "frame", "item", "nodes"))
+AT_CONSTANTS, AT_FRAME, AT_ITEM, AT_POSITIONS, AT_ROTATIONS, HEADER = (
+    INDEX.first(name) for name in ("constants", "frame", "item", "positions", "rotations", "nodes"))
 
 # J = c_mass dG/da + c_rate dG/dv + c_place dG/dq T: rotations vary multiplicatively, and T turns
 # the variation of the step's increment into that of the rotation
@@ -232,6 +235,16 @@ def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: 
     """The counts that sizes of a superelement's rows are products of."""
     return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, "D": 2 if planar else 3,
             "n": unknowns}
+
+
+def first_rotation(positions: int, planar: bool) -> int:
+    """Where rotations begin among a superelement's coordinates: positions, rotations, modes."""
+    return (2 if planar else 3) * positions
+
+
+def first_mode(positions: int, rotations: int, planar: bool) -> int:
+    """Where its internal modes begin."""
+    return first_rotation(positions, planar) + (1 if planar else 3) * rotations
 
 
 class FrameTraits(NamedTuple):

@@ -1,6 +1,7 @@
 """Names of kernels: of the module, and with ``.py`` of its file."""
 
 SUPERELEMENT, ELEMENT = PREFIXES = "superelement_", "element_"
+ANY = "any"         # layout of the general kernels, which read the counts of nodes at run time
 
 
 def superelement_name(layout: str, frame: str, inertia: str) -> str:
@@ -11,6 +12,11 @@ def superelement_name(layout: str, frame: str, inertia: str) -> str:
 def element_name(kind: str) -> str:
     """The kernel of a kind of joint, load or rigid body."""
     return ELEMENT + kind
+
+
+def general_layout(planar: bool) -> str:
+    """Layout of the kernel for any numbers of nodes."""
+    return "planar-" * planar + ANY
 
 
 def layout_variant(layout: str, modes: int | None = None, damped: bool = False) -> str:
