@@ -50,7 +50,7 @@ WORK_ROWS = 31
 OPERATIONS = {"residual": (300, 136, 249, 3),
               "column": (81, 172, 811, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "1aaf519aa2f7"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -93,7 +93,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
-        reference = at(references, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
         alphas = at(constants, index[first + AT_CONSTANTS])
@@ -411,7 +410,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
+                if ROTATIONS <= column < MODES:
+                    # the unknown of a rotation is the increment of the step, varied through T
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):

@@ -50,7 +50,7 @@ WORK_ROWS = 35
 OPERATIONS = {"residual": (337, 136, 153, 3),
               "column": (77, 172, 362, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "1aaf519aa2f7"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -384,7 +384,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through T
+                if ROTATIONS <= column < MODES:
+                    # the unknown of a rotation is the increment of the step, varied through T
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):

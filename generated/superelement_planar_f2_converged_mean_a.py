@@ -49,7 +49,7 @@ WORK_ROWS = 30
 OPERATIONS = {"residual": (212, 61, 11, 3),
               "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "1aaf519aa2f7"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -91,7 +91,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
-        reference = at(references, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
         alphas = at(constants, index[first + AT_CONSTANTS])

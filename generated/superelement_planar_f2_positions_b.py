@@ -49,7 +49,7 @@ WORK_ROWS = 29
 OPERATIONS = {"residual": (414, 86, 2, 3),
               "column": (16, 107, 3, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "1aaf519aa2f7"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -90,7 +90,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
-        reference = at(references, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
         alphas = at(constants, index[first + AT_CONSTANTS])

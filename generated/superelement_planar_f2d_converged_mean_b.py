@@ -52,7 +52,7 @@ WORK_ROWS = 33
 OPERATIONS = {"residual": (212, 72, 6, 4),
               "column": (13, 85, 8, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "1aaf519aa2f7"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -97,7 +97,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
-        reference = at(references, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
         alphas = at(constants, index[first + AT_CONSTANTS])

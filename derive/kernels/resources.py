@@ -20,6 +20,7 @@ class Resources(NamedTuple):
 
     rows: tuple[str, ...]       # scratch memory, in the order of first use
     calls: tuple[str, ...]
+    pointers: tuple[str, ...] = ()      # into the arguments
 
 
 def resources(kernel: Superelement) -> Resources:
@@ -31,7 +32,8 @@ def resources(kernel: Superelement) -> Resources:
                                                *kernel.declared)}
     rows = dict.fromkeys((*STATE, *forces.arrays, *DIRECTIONS, *column.arrays))
     return Resources(tuple(row for row in rows if row not in provided),
-                     tuple(dict.fromkeys((*forces.calls, *column.calls))))
+                     tuple(dict.fromkeys((*forces.calls, *column.calls))),
+                     tuple(row for row in rows if row in GIVEN))
 
 
 def element_resources(element: Element) -> Resources:

@@ -29,6 +29,7 @@ def element_text(element: Element, uses: Resources) -> str:
         imports = f"from math import {', '.join(uses.calls)}\n\n{imports}"
     return templates.ELEMENT.format(
         **_head(element), imports=imports, work_rows=2,
+        constant=templates.CONSTANT * bool(element.constants),
         residual_operations=_operations(element.residual),
         column_operations=_operations(element.linear),
         loads=indented(_loads(element), 2), residual=indented(residual, 2),
@@ -59,7 +60,7 @@ def _names(element: Element) -> set[str]:
     names |= {"VELOCITY", "ACCELERATION"} if element.multipliers else set()
     names |= {"ENERGY"} if element.sums or element.power is not None else set()
     names |= {"AT_ITEM", "POWERS"} if element.power is not None else set()
-    names |= {"Part"} if element.constants else set()
+    names |= {"AT_CONSTANTS", "Part"} if element.constants else set()
     names |= {"AT_ITEM"} if set(AMPLITUDE) & _used(element.printed) else set()
     return names | ({"FIELD"} if set(_field(element)) & _used(element.printed) else set())
 

@@ -27,6 +27,7 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     return templates.SUPERELEMENT.format(
         **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
+        reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows), rows=indented([*_reads(layout), *_rows(uses.rows)], 1),
         residual_operations=in_residual, column_operations=_counted(printer),
         residual=indented(residual, 2), kinetic="0.5*{}[i]*{}[i]".format(

@@ -49,8 +49,7 @@ ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
-        reference = at(references, 9*index[first + AT_FRAME])
-        nodes = at(index, first + HEADER)
+{reference}        nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
 {chain}
         g = at(forces, element*n)
@@ -97,11 +96,13 @@ FRICTION = (
     "energies[POWERS + index[first + AT_ITEM]] = lost",
 )
 
+REFERENCE = "        reference = at(references, 9*index[first + AT_FRAME])\n"
+
 # position rows and columns of a matrix are in the axes of the frame, where it hardly changes
 SEEDS = {
     False: (
-        "if ROTATIONS <= column < MODES:     # its unknown is the step's increment, varied through"
-        " T",
+        "if ROTATIONS <= column < MODES:",
+        "    # the unknown of a rotation is the increment of the step, varied through T",
         "    j = (column - ROTATIONS)//3",
         "    k = column - ROTATIONS - 3*j",
         "    for r in range(3):",
@@ -130,7 +131,8 @@ ENERGY_OUTPUTS = {
            "energies[MOMENT + 2] += H_z"),
 }
 
-ELEMENT_NAMES = "AT_CONSTANTS", "HEADER", "OK", "TANGENT", "at", "kernel_function"
+CONSTANT = "        constant = at(constants, index[first + AT_CONSTANTS])\n"
+ELEMENT_NAMES = "HEADER", "OK", "TANGENT", "at", "kernel_function"
 ELEMENT = '''"""Element kernel: {summary}.
 
 {coordinates} coordinates, {multipliers} multipliers.
@@ -163,8 +165,7 @@ ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of
         first = element*stride
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
-        constant = at(constants, index[first + AT_CONSTANTS])
-        g = at(forces, element*WIDTH)
+{constant}        g = at(forces, element*WIDTH)
 {loads}
 {residual}
 {tasks}

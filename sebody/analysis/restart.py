@@ -15,7 +15,7 @@ from sebody.errors import InputError
 from sebody.model.model import Model
 from sebody.results.files import check_target
 
-VERSION = 1
+VERSION = 2
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 
 
@@ -85,8 +85,11 @@ def _read(path: Path) -> tuple[dict, dict]:
 
 def _fingerprint(run: Simulation) -> str:
     """Hash of what a model is, without addresses of compiled functions."""
-    system = run.system
-    parts = [repr(run.numbering.names).encode()] + [
-        array.tobytes() for array in (system.constants, system.g_unknown, system.table_times,
-                                      system.table_cubics, system.prescribed, run.state.q_start)]
+    system, model = run.system, run.model
+    kinds = [body.kernel for body in model.bodies.values()] + [
+        e.kind for e in (*model.rigid_bodies.values(), *model.constraints, *model.loads)]
+    parts = [repr((run.numbering.names, kinds)).encode()] + [
+        array.tobytes() for array in (
+            system.constants, system.g_unknown, system.table_times, system.table_cubics,
+            system.prescribed, system.prescribed_factor, model.gravity_field, run.state.q_start)]
     return sha256(b"".join(parts)).hexdigest()

@@ -58,7 +58,8 @@ def test_wrong_files(tmp_path):
 
 
 def small(mass=1.0, stiffness=5.0, times=(0.0, 1.0, 2.0), values=(0.0, 0.3, 0.4),
-          direction=(1.0, 0.0), start=(1.0, 0.0), push=2.0, delay=0.0, on="ball"):
+          direction=(1.0, 0.0), start=(1.0, 0.0), push=2.0, delay=0.0, on="ball",
+          gravity=0.0):
     """A mass on a spring whose other end is moved: a model of which any part can be another."""
     model = Model(planar=True)
     model.node("end", (0.0, 0.0))
@@ -68,19 +69,29 @@ def small(mass=1.0, stiffness=5.0, times=(0.0, 1.0, 2.0), values=(0.0, 0.3, 0.4)
         model.rigid_body(name, model.node(name, point), mass, 1.0)
     model.spring("ball", "end", stiffness, length=1.0)
     model.force(on, (1.0, 0.0), [(delay, 0.0), (delay + 1.0, push)])
+    model.gravity((0.0, gravity))
     return model
 
 
 @pytest.mark.parametrize("change", [
     {"mass": 1.5}, {"stiffness": 6.0}, {"times": (0.0, 1.0, 2.5)}, {"values": (0.0, 0.3, 0.5)},
     {"direction": (0.0, 1.0)}, {"start": (1.0, 0.5)}, {"push": 3.0}, {"delay": 1.0},
-    {"on": "second"}], ids=lambda change: next(iter(change)))
+    {"on": "second"}, {"direction": (2.0, 0.0)}, {"gravity": -9.81}],
+    ids=lambda change: next(iter(change)))
 def test_a_state_goes_on_with_its_own_model_only(tmp_path, change):
     """Unknowns and names are those of the saved model; one number, or what it acts on, is not."""
     path = save_state(Simulation(small(), 0.01).run_to(0.1), tmp_path / "state.npz")
     resume(small(), path)
     with pytest.raises(InputError, match="is of another model: build the one it was saved from"):
         resume(small(**change), path)
+
+
+def test_a_state_goes_on_with_its_own_kernels_only(tmp_path):
+    """Two inertia options have the same unknowns and the same constants."""
+    run = Simulation(hinged_beam.build(modes=0, inertia="a").model, 0.01).run_to(0.1)
+    path = save_state(run, tmp_path / "state.npz")
+    with pytest.raises(InputError, match="is of another model"):
+        resume(hinged_beam.build(modes=0, inertia="b").model, path)
 
 
 def test_the_file_says_which_constraints_are_redundant(tmp_path):
