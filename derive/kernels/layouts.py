@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from sebody.kernels.layout import LETTERS, FrameTraits, first_mode, first_rotation, layout_name
-from sebody.kernels.names import ANY, general_layout, layout_variant
+from sebody.kernels.names import ANY, layout_variant
 
 PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?)(d)?")
 NUMBERS = "no", "one", "two", "three", "four", "five", "six"
@@ -52,8 +52,7 @@ class Layout(NamedTuple):
     @property
     def name(self) -> str:
         """Canonical name; the order of the nodes does not enter."""
-        nodes = (general_layout(self.planar) if self.nodes is None else
-                 layout_name(self.nodes, self.planar))
+        nodes = layout_name(self.nodes or (), self.planar) + ANY * (self.nodes is None)
         return layout_variant(nodes, self.modes, self.damped)
 
     @property

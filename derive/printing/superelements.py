@@ -77,7 +77,7 @@ def _nodes(layout: Layout) -> str:
 
 
 def _reads(layout: Layout) -> list[str]:
-    """The counts that are not known beforehand, those of the first element: a batch has the same."""
+    """Counts that are not known beforehand: those of the first element, as all of a batch have."""
     known = {"N_POSITIONS": layout.positions, "N_ROTATIONS": layout.rotations,
              "ROTATIONS": layout.first_rotation, "MODES": layout.first_mode}
     values = {"N_POSITIONS": "index[AT_POSITIONS]", "N_ROTATIONS": "index[AT_ROTATIONS]",

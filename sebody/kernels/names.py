@@ -1,6 +1,7 @@
 """Names of kernels: of the module, and with ``.py`` of its file."""
 
 SUPERELEMENT, ELEMENT = PREFIXES = "superelement_", "element_"
+PLANAR = "planar-"  # begins names of layouts in a plane
 ANY = "any"         # layout of the general kernels, which read the counts of nodes at run time
 
 
@@ -14,9 +15,9 @@ def element_name(kind: str) -> str:
     return ELEMENT + kind
 
 
-def general_layout(planar: bool) -> str:
-    """Layout of the kernel for any numbers of nodes."""
-    return "planar-" * planar + ANY
+def general_layout(layout: str) -> str:
+    """Layout of the general kernels that serve a layout, too."""
+    return PLANAR * layout.startswith(PLANAR) + ANY
 
 
 def layout_variant(layout: str, modes: int | None = None, damped: bool = False) -> str:

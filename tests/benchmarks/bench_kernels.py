@@ -52,7 +52,7 @@ def compare(layout, frame, times=5000):
         They compute different things.
     """
     special = load(superelement_name(layout, frame, "b"))
-    general = load(superelement_name(general_layout(special.PLANAR), frame, "b"))
+    general = load(superelement_name(general_layout(layout), frame, "b"))
     case = superelement_case(special, 0)
     cases = case, case._replace(module=general)
     for one, same in zip(*(evaluate(c, TANGENT) for c in cases), strict=True):

@@ -7,6 +7,8 @@ from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
     AT_ITEM,
+    AT_POSITIONS,
+    AT_ROTATIONS,
     COEFFICIENTS,
     ENERGIES,
     FIELD,
@@ -99,8 +101,8 @@ def test_row_without_parts():
 
 def test_named_places_are_those_of_the_rows():
     """Places of the index, coefficients and energies, counted by hand."""
-    assert (AT_CONSTANTS, AT_FRAME, AT_ITEM, HEADER) == (0, 1, 2, 3)
-    assert INDEX.slices({"N_ROTATIONS": 2, "n": 7})["unknowns"] == slice(5, 12)
+    assert (AT_CONSTANTS, AT_FRAME, AT_ITEM, AT_POSITIONS, AT_ROTATIONS, HEADER) == tuple(range(6))
+    assert INDEX.slices({"N_ROTATIONS": 2, "n": 7})["unknowns"] == slice(7, 14)
     assert FIELD == 5 and COEFFICIENTS.size({}) == 8
     assert (KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS) == (0, 1, 2, 5, 8, 9)
     assert ENERGIES.size({"items": 4}) == 13

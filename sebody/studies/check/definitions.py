@@ -13,7 +13,7 @@ from sebody.studies.check.states import Case, constants_of
 
 def local_coordinates(case: Case) -> NDArray:
     """``y``, (11), by SciPy's rotations."""
-    module, constants = case.module, constants_of(case)
+    constants = constants_of(case)
     x = case.q[:case.first_rotation].reshape(case.positions, -1)
     R0 = frame_rotation(case).as_matrix()[:x.shape[1], :x.shape[1]]
     u = (x - constants["alphas"] @ x) @ R0 - constants["X"]
@@ -47,7 +47,7 @@ def frame_traits(module: ModuleType) -> FrameTraits:
 
 def frame_rotation(case: Case) -> Rotation:
     """``R0`` from its definition, (14)-(16) or the best fit, without the search of the kernels."""
-    module, constants, traits = case.module, constants_of(case), frame_traits(case.module)
+    constants, traits = constants_of(case), frame_traits(case.module)
     if not traits.needs_rotations:
         x = case.q[:case.first_rotation].reshape(case.positions, -1)
         arms, X, fits = x - constants["alphas"] @ x, constants["X"], constants["fits"]

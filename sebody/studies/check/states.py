@@ -43,6 +43,7 @@ class CheckRow(NamedTuple):
     error: float            # relative to the largest entry
     slope: float | None     # order of a difference that is there by design
     limit: float            # of the error from above, or of the slope from below
+    nodes: tuple[int, ...] = ()     # of a general kernel: its positions, rotations and modes
 
     @property
     def passed(self) -> bool:

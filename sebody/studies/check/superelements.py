@@ -249,11 +249,11 @@ TANGENTS = {"tangent, configuration": tangent_place, "tangent, velocity (61)": t
             "tangent, mass (60)": tangent_mass}
 
 
-def small_increment_slope(module: ModuleType, seed: int) -> tuple[float, float]:
+def small_increment_slope(module: ModuleType, seed: int, nodes: Nodes) -> tuple[float, float]:
     """Difference of the force of (20) from dV/dq at beta_0 = 0, and its order in psi."""
     sizes, errors = (0.2, 0.1, 0.05), []
     for psi in sizes:
-        case = superelement_case(module, seed, psi)
+        case = superelement_case(module, seed, psi, nodes=nodes)
         case = case._replace(v=0 * case.v, a=0 * case.a)
         case = case._replace(reference=mean_rotation(case))
         errors.append(elastic_force(case))
@@ -262,12 +262,21 @@ def small_increment_slope(module: ModuleType, seed: int) -> tuple[float, float]:
 
 def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
     """All criteria of a superelement kernel."""
+    if module.N_POSITIONS is not None:
+        return _check(name, module, *nodes_of(module))
+    return [row._replace(nodes=nodes) for nodes in nodes_of(module)
+            for row in _check(name, module, nodes)]
+
+
+def _check(name: str, module: ModuleType, nodes: Nodes) -> list[CheckRow]:
+    """All criteria, with some nodes and modes."""
     rows = []
     traits = frame_traits(module)
     small = not traits.exact
     for seed in range(STATES):
-        case = superelement_case(module, seed, gravity=1.0)
-        damped = superelement_case(module, seed, gravity=1.0, damping=0.1 * module.DAMPED)
+        case = superelement_case(module, seed, gravity=1.0, nodes=nodes)
+        damped = superelement_case(module, seed, gravity=1.0, damping=0.1 * module.DAMPED,
+                                   nodes=nodes)
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
         if module.DAMPED and not small:
             criteria |= DAMPING
@@ -279,6 +288,6 @@ def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
             rows.append(CheckRow(name, criterion, seed, error, None,
                                  LIMITS.get(criterion, LIMIT)))
         if small:
-            error, slope = small_increment_slope(module, seed)
+            error, slope = small_increment_slope(module, seed, nodes)
             rows.append(CheckRow(name, "force of (20) against dV/dq", seed, error, slope, 1.8))
     return rows
