@@ -105,6 +105,19 @@ def test_any_layout_runs_and_keeps_its_energy(model, kernels):
     assert fine < 1e-4 and fine < coarse / 3.5      # of second order in the step
 
 
+def test_a_summary_says_once_where_a_kernel_of_its_own_would_pay():
+    """Small bodies gain by constants; a large one does not, nor one whose kernel has them."""
+    model = planar()
+    line = planar_beam((0, 0), (100, 0), SECTION, 12)
+    for k, keeps in enumerate((["full"] * 4, ["full"] * 9, ["full"] * 2)):
+        place(model, f"more{k} ", reduced(keeps, 2, line), (0, 100 + 50 * k))
+    lines = simulate(model, 0.01, 0.02).summary().splitlines()
+    assert [line for line in lines if line.startswith("general kernel")] == [
+        f"general kernel       of {bodies}: one of the layout's own is faster, made by "
+        f"python -m sebody.derive {variant}:converged_mean:b" for bodies, variant in (
+            ("long, more0 ", "planar-f4m2"), ("mixed", "planar-t2r1m0"))]
+
+
 def test_bodies_of_equal_width_and_other_counts_have_batches_of_their_own():
     """planar-f3t2 and planar-f4r1 with a mode have 14 and 14 unknowns, f2t3 with two as well."""
     model = Model(planar=True)
