@@ -11,7 +11,7 @@ from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     HEADER,
     OK,
     TANGENT,
@@ -35,7 +35,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (32, 0, 0, 0),
               "column": (32, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -88,7 +88,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 (-2*aa_z + 2*ab_z)*(-xa_z + xb_z) + (-2*va_x + 2*vb_x)*(-va_x + vb_x) + (-2*va_y +
                 2*vb_y)*(-va_y + vb_y) + (-2*va_z + 2*vb_z)*(-va_z + vb_z))/length)
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -104,7 +104,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dxb_z = dq[5]
                 t5 = 2*dxa_x - 2*dxb_x
                 t6 = (0.5)/length
-                t7 = c_place*lam_1*t6
+                t7 = c_stiffness*lam_1*t6
                 t8 = 2*dxa_y - 2*dxb_y
                 t9 = 2*dxa_z - 2*dxb_z
                 t10 = -t5

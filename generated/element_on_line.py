@@ -11,7 +11,7 @@ from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     HEADER,
     OK,
     TANGENT,
@@ -36,7 +36,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (157, 0, 0, 0),
               "column": (330, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -180,7 +180,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 n2_z*t918) + t919*(n2_x*t920 + n2_y*t921 + n2_z*t922) + t923*(n2_x*t924 +
                 n2_y*t925 + n2_z*t926))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -223,25 +223,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t27 = -xa_x + xb_x
                 t28 = -xa_y + xb_y
                 t29 = -xa_z + xb_z
-                J[0 + column] = c_place*(-lam_1*t12 - lam_2*t13)
-                J[11 + column] = c_place*(-lam_1*t17 - lam_2*t18)
-                J[22 + column] = c_place*(-lam_1*t22 - lam_2*t23)
-                J[33 + column] = c_place*(lam_1*t12 + lam_2*t13)
-                J[44 + column] = c_place*(lam_1*t17 + lam_2*t18)
-                J[55 + column] = c_place*(lam_1*t22 + lam_2*t23)
-                J[66 + column] = (c_place*(lam_1*(t24*(-Ra_xy*n1_z + Ra_xz*n1_y) +
+                J[0 + column] = c_stiffness*(-lam_1*t12 - lam_2*t13)
+                J[11 + column] = c_stiffness*(-lam_1*t17 - lam_2*t18)
+                J[22 + column] = c_stiffness*(-lam_1*t22 - lam_2*t23)
+                J[33 + column] = c_stiffness*(lam_1*t12 + lam_2*t13)
+                J[44 + column] = c_stiffness*(lam_1*t17 + lam_2*t18)
+                J[55 + column] = c_stiffness*(lam_1*t22 + lam_2*t23)
+                J[66 + column] = (c_stiffness*(lam_1*(t24*(-Ra_xy*n1_z + Ra_xz*n1_y) +
                     t25*(-Ra_yy*n1_z + Ra_yz*n1_y) + t26*(-Ra_zy*n1_z + Ra_zz*n1_y) +
                     t27*(n1_y*t11 - n1_z*t10) + t28*(n1_y*t16 - n1_z*t15) + t29*(n1_y*t21 -
                     n1_z*t20)) + lam_2*(t24*(-Ra_xy*n2_z + Ra_xz*n2_y) + t25*(-Ra_yy*n2_z +
                     Ra_yz*n2_y) + t26*(-Ra_zy*n2_z + Ra_zz*n2_y) + t27*(n2_y*t11 - n2_z*t10) +
                     t28*(n2_y*t16 - n2_z*t15) + t29*(n2_y*t21 - n2_z*t20))))
-                J[77 + column] = (c_place*(lam_1*(t24*(Ra_xx*n1_z - Ra_xz*n1_x) + t25*(Ra_yx*n1_z
-                    - Ra_yz*n1_x) + t26*(Ra_zx*n1_z - Ra_zz*n1_x) + t27*(-n1_x*t11 + n1_z*t9) +
-                    t28*(-n1_x*t16 + n1_z*t14) + t29*(-n1_x*t21 + n1_z*t19)) +
+                J[77 + column] = (c_stiffness*(lam_1*(t24*(Ra_xx*n1_z - Ra_xz*n1_x) +
+                    t25*(Ra_yx*n1_z - Ra_yz*n1_x) + t26*(Ra_zx*n1_z - Ra_zz*n1_x) + t27*(-n1_x*t11
+                    + n1_z*t9) + t28*(-n1_x*t16 + n1_z*t14) + t29*(-n1_x*t21 + n1_z*t19)) +
                     lam_2*(t24*(Ra_xx*n2_z - Ra_xz*n2_x) + t25*(Ra_yx*n2_z - Ra_yz*n2_x) +
                     t26*(Ra_zx*n2_z - Ra_zz*n2_x) + t27*(-n2_x*t11 + n2_z*t9) + t28*(-n2_x*t16 +
                     n2_z*t14) + t29*(-n2_x*t21 + n2_z*t19))))
-                J[88 + column] = (c_place*(lam_1*(t24*(-Ra_xx*n1_y + Ra_xy*n1_x) +
+                J[88 + column] = (c_stiffness*(lam_1*(t24*(-Ra_xx*n1_y + Ra_xy*n1_x) +
                     t25*(-Ra_yx*n1_y + Ra_yy*n1_x) + t26*(-Ra_zx*n1_y + Ra_zy*n1_x) +
                     t27*(n1_x*t10 - n1_y*t9) + t28*(n1_x*t15 - n1_y*t14) + t29*(n1_x*t20 -
                     n1_y*t19)) + lam_2*(t24*(-Ra_xx*n2_y + Ra_xy*n2_x) + t25*(-Ra_yx*n2_y +

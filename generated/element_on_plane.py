@@ -11,7 +11,7 @@ from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     HEADER,
     OK,
     TANGENT,
@@ -35,7 +35,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (77, 0, 0, 0),
               "column": (175, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -135,7 +135,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Aa_z*Ra_zy - Oma_y*t908 + Oma_z*t907) + n1_y*(Aa_x*Ra_zz - Aa_z*Ra_zx + Oma_x*t908
                 - Oma_z*t906) + n1_z*(-Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t907 + Oma_y*t906)))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -161,7 +161,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t7 = -Ra_xx*dtha_z + Ra_xz*dtha_x
                 t8 = Ra_xx*dtha_y - Ra_xy*dtha_x
                 t9 = n1_x*t6 + n1_y*t7 + n1_z*t8
-                t10 = c_place*lam_1
+                t10 = c_stiffness*lam_1
                 t11 = Ra_yy*dtha_z - Ra_yz*dtha_y
                 t12 = -Ra_yx*dtha_z + Ra_yz*dtha_x
                 t13 = Ra_yx*dtha_y - Ra_yy*dtha_x

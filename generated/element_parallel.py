@@ -11,7 +11,7 @@ from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     HEADER,
     OK,
     TANGENT,
@@ -37,7 +37,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (214, 0, 0, 0),
               "column": (486, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -205,7 +205,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 n2_z*t927) + t928*(n2_x*t929 + n2_y*t930 + n2_z*t931) + t932*(n2_x*t933 +
                 n2_y*t934 + n2_z*t935))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -275,32 +275,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t69 = -Rb_xx*e_y + Rb_xy*e_x
                 t70 = -Rb_yx*e_y + Rb_yy*e_x
                 t71 = -Rb_zx*e_y + Rb_zy*e_x
-                J[0 + column] = (c_place*(lam_1*(t18*(n1_y*t19 - n1_z*t20) + t21*(n1_y*t22 -
+                J[0 + column] = (c_stiffness*(lam_1*(t18*(n1_y*t19 - n1_z*t20) + t21*(n1_y*t22 -
                     n1_z*t23) + t24*(n1_y*t25 - n1_z*t26) + t30*(-Ra_xy*n1_z + Ra_xz*n1_y) +
                     t34*(-Ra_yy*n1_z + Ra_yz*n1_y) + t38*(-Ra_zy*n1_z + Ra_zz*n1_y)) +
                     lam_2*(t18*(n2_y*t19 - n2_z*t20) + t21*(n2_y*t22 - n2_z*t23) + t24*(n2_y*t25 -
                     n2_z*t26) + t30*(-Ra_xy*n2_z + Ra_xz*n2_y) + t34*(-Ra_yy*n2_z + Ra_yz*n2_y) +
                     t38*(-Ra_zy*n2_z + Ra_zz*n2_y))))
-                J[8 + column] = (c_place*(lam_1*(t18*(-n1_x*t19 + n1_z*t39) + t21*(-n1_x*t22 +
+                J[8 + column] = (c_stiffness*(lam_1*(t18*(-n1_x*t19 + n1_z*t39) + t21*(-n1_x*t22 +
                     n1_z*t40) + t24*(-n1_x*t25 + n1_z*t41) + t30*(Ra_xx*n1_z - Ra_xz*n1_x) +
                     t34*(Ra_yx*n1_z - Ra_yz*n1_x) + t38*(Ra_zx*n1_z - Ra_zz*n1_x)) +
                     lam_2*(t18*(-n2_x*t19 + n2_z*t39) + t21*(-n2_x*t22 + n2_z*t40) +
                     t24*(-n2_x*t25 + n2_z*t41) + t30*(Ra_xx*n2_z - Ra_xz*n2_x) + t34*(Ra_yx*n2_z -
                     Ra_yz*n2_x) + t38*(Ra_zx*n2_z - Ra_zz*n2_x))))
-                J[16 + column] = (c_place*(lam_1*(t18*(n1_x*t20 - n1_y*t39) + t21*(n1_x*t23 -
+                J[16 + column] = (c_stiffness*(lam_1*(t18*(n1_x*t20 - n1_y*t39) + t21*(n1_x*t23 -
                     n1_y*t40) + t24*(n1_x*t26 - n1_y*t41) + t30*(-Ra_xx*n1_y + Ra_xy*n1_x) +
                     t34*(-Ra_yx*n1_y + Ra_yy*n1_x) + t38*(-Ra_zx*n1_y + Ra_zy*n1_x)) +
                     lam_2*(t18*(n2_x*t20 - n2_y*t39) + t21*(n2_x*t23 - n2_y*t40) + t24*(n2_x*t26 -
                     n2_y*t41) + t30*(-Ra_xx*n2_y + Ra_xy*n2_x) + t34*(-Ra_yx*n2_y + Ra_yy*n2_x) +
                     t38*(-Ra_zx*n2_y + Ra_zy*n2_x))))
-                J[24 + column] = (c_place*(lam_1*(t42*t43 + t44*t45 + t46*t47 + t48*t49 + t50*t51
-                    + t52*t53) + lam_2*(t43*t54 + t45*t55 + t47*t56 + t48*t57 + t50*t58 +
+                J[24 + column] = (c_stiffness*(lam_1*(t42*t43 + t44*t45 + t46*t47 + t48*t49 +
+                    t50*t51 + t52*t53) + lam_2*(t43*t54 + t45*t55 + t47*t56 + t48*t57 + t50*t58 +
                     t52*t59)))
-                J[32 + column] = (c_place*(lam_1*(t42*t60 + t44*t61 + t46*t62 + t49*t63 + t51*t64
-                    + t53*t65) + lam_2*(t54*t60 + t55*t61 + t56*t62 + t57*t63 + t58*t64 +
+                J[32 + column] = (c_stiffness*(lam_1*(t42*t60 + t44*t61 + t46*t62 + t49*t63 +
+                    t51*t64 + t53*t65) + lam_2*(t54*t60 + t55*t61 + t56*t62 + t57*t63 + t58*t64 +
                     t59*t65)))
-                J[40 + column] = (c_place*(lam_1*(t42*t66 + t44*t67 + t46*t68 + t49*t69 + t51*t70
-                    + t53*t71) + lam_2*(t54*t66 + t55*t67 + t56*t68 + t57*t69 + t58*t70 +
+                J[40 + column] = (c_stiffness*(lam_1*(t42*t66 + t44*t67 + t46*t68 + t49*t69 +
+                    t51*t70 + t53*t71) + lam_2*(t54*t66 + t55*t67 + t56*t68 + t57*t69 + t58*t70 +
                     t59*t71)))
                 J[48 + column] = (c_constraint*(t18*t49 + t21*t51 + t24*t53 + t30*t42 + t34*t44 +
                     t38*t46))

@@ -11,7 +11,7 @@ from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     HEADER,
     OK,
     TANGENT,
@@ -37,7 +37,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (133, 0, 0, 0),
               "column": (165, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -126,7 +126,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[4] = (e_x*(n2_x*t902 + n2_y*t904 + n2_z*t905) + e_y*(n2_x*t908 + n2_y*t910 +
                 n2_z*t911) + e_z*(n2_x*t914 + n2_y*t916 + n2_z*t917))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -148,13 +148,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t6 = Ra_xy*dtha_z - Ra_xz*dtha_y
                 t7 = Ra_yy*dtha_z - Ra_yz*dtha_y
                 t8 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                J[0 + column] = (c_place*(lam_1*(e_x*(n1_y*t0 - n1_z*t1) + e_y*(n1_y*t2 - n1_z*t3)
-                    + e_z*(n1_y*t4 - n1_z*t5)) + lam_2*(e_x*(n2_y*t0 - n2_z*t1) + e_y*(n2_y*t2 -
-                    n2_z*t3) + e_z*(n2_y*t4 - n2_z*t5))))
-                J[5 + column] = (c_place*(lam_1*(e_x*(-n1_x*t0 + n1_z*t6) + e_y*(-n1_x*t2 +
+                J[0 + column] = (c_stiffness*(lam_1*(e_x*(n1_y*t0 - n1_z*t1) + e_y*(n1_y*t2 -
+                    n1_z*t3) + e_z*(n1_y*t4 - n1_z*t5)) + lam_2*(e_x*(n2_y*t0 - n2_z*t1) +
+                    e_y*(n2_y*t2 - n2_z*t3) + e_z*(n2_y*t4 - n2_z*t5))))
+                J[5 + column] = (c_stiffness*(lam_1*(e_x*(-n1_x*t0 + n1_z*t6) + e_y*(-n1_x*t2 +
                     n1_z*t7) + e_z*(-n1_x*t4 + n1_z*t8)) + lam_2*(e_x*(-n2_x*t0 + n2_z*t6) +
                     e_y*(-n2_x*t2 + n2_z*t7) + e_z*(-n2_x*t4 + n2_z*t8))))
-                J[10 + column] = (c_place*(lam_1*(e_x*(n1_x*t1 - n1_y*t6) + e_y*(n1_x*t3 -
+                J[10 + column] = (c_stiffness*(lam_1*(e_x*(n1_x*t1 - n1_y*t6) + e_y*(n1_x*t3 -
                     n1_y*t7) + e_z*(n1_x*t5 - n1_y*t8)) + lam_2*(e_x*(n2_x*t1 - n2_y*t6) +
                     e_y*(n2_x*t3 - n2_y*t7) + e_z*(n2_x*t5 - n2_y*t8))))
                 J[15 + column] = (c_constraint*(e_x*(n1_x*t6 + n1_y*t1 + n1_z*t0) + e_y*(n1_x*t7 +

@@ -11,7 +11,7 @@ from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     HEADER,
     OK,
     TANGENT,
@@ -36,7 +36,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (125, 0, 0, 0),
               "column": (307, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -158,7 +158,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e_z*t908)*(n_x*t909 + n_y*t910 + n_z*t911) + 2*(e_x*t912 + e_y*t913 +
                 e_z*t914)*(n_x*t915 + n_y*t916 + n_z*t917))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -195,7 +195,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t24 = -Rb_zx*dthb_z + Rb_zz*dthb_x
                 t25 = Rb_zx*dthb_y - Rb_zy*dthb_x
                 t26 = e_x*t23 + e_y*t24 + e_z*t25
-                t27 = c_place*lam_1
+                t27 = c_stiffness*lam_1
                 t28 = Ra_xy*dtha_z - Ra_xz*dtha_y
                 t29 = Ra_yy*dtha_z - Ra_yz*dtha_y
                 t30 = Ra_zy*dtha_z - Ra_zz*dtha_y

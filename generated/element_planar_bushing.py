@@ -11,9 +11,9 @@ from math import cos, sin
 from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     AT_CONSTANTS,
-    AT_ITEM,
-    C_PLACE,
-    C_RATE,
+    AT_PORT,
+    C_DAMPING,
+    C_STIFFNESS,
     ENERGY,
     HEADER,
     OK,
@@ -42,7 +42,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (63, 0, 0, 0),
               "column": (194, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -124,12 +124,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t912 = c_y*t911
             t913 = Ra_cos*t912 + Ra_sin*t908
             t914 = Ra_cos*t908 - Ra_sin*c_y*t911
-            energies[POWERS + index[first + AT_ITEM]] = (-Oma_z*(t900*t901 + (0.5)*t908*(2*t905 -
+            energies[POWERS + index[first + AT_PORT]] = (-Oma_z*(t900*t901 + (0.5)*t908*(2*t905 -
                 2*t907) + (0.5)*t912*(-2*t909 - 2*t910)) + Omb_z*t900*t901 + t913*va_y - t913*vb_y
                 + t914*va_x - t914*vb_x)
         if task == TANGENT:
-            c_rate = coefficients[C_RATE]
-            c_place = coefficients[C_PLACE]
+            c_damping = coefficients[C_DAMPING]
+            c_stiffness = coefficients[C_STIFFNESS]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -208,13 +208,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t74 = kt_z*(-dtha_z + dthb_z)
                 t75 = 2*Ra_cos*t41 - 2*t46 - 2*t47 - 2*t48
                 t76 = 2*Ra_sin*dtha_z*t26 - 2*t40 - 2*t42 - 2*t43
-                J[0 + column] = c_place*t63 - c_rate*t35
-                J[6 + column] = -c_place*t65 - c_rate*t64
-                J[12 + column] = -c_place*t63 + c_rate*t35
-                J[18 + column] = c_place*t65 + c_rate*t64
-                J[24 + column] = (c_place*((0.5)*t36*t75 + (0.5)*t38*t76 + (0.5)*t45*t68 +
-                    (0.5)*t50*t71 + t56*t69*t75 + t60*t72*t76 + t61*t73 + t62*t70 - t74) +
-                    c_rate*(t29*t70 + t34*t73 + t66*t67))
-                J[30 + column] = c_place*t74 - c_rate*t66*t67
+                J[0 + column] = -c_damping*t35 + c_stiffness*t63
+                J[6 + column] = -c_damping*t64 - c_stiffness*t65
+                J[12 + column] = c_damping*t35 - c_stiffness*t63
+                J[18 + column] = c_damping*t64 + c_stiffness*t65
+                J[24 + column] = (c_damping*(t29*t70 + t34*t73 + t66*t67) +
+                    c_stiffness*((0.5)*t36*t75 + (0.5)*t38*t76 + (0.5)*t45*t68 + (0.5)*t50*t71 +
+                    t56*t69*t75 + t60*t72*t76 + t61*t73 + t62*t70 - t74))
+                J[30 + column] = -c_damping*t66*t67 + c_stiffness*t74
 
     return OK

@@ -11,7 +11,7 @@ from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     HEADER,
     OK,
     TANGENT,
@@ -35,7 +35,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (23, 0, 0, 0),
               "column": (23, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -77,7 +77,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[4] = ((0.5)*((-2*aa_x + 2*ab_x)*(-xa_x + xb_x) + (-2*aa_y + 2*ab_y)*(-xa_y + xb_y) +
                 (-2*va_x + 2*vb_x)*(-va_x + vb_x) + (-2*va_y + 2*vb_y)*(-va_y + vb_y))/length)
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -91,7 +91,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dxb_y = dq[3]
                 t4 = 2*dxa_x - 2*dxb_x
                 t5 = (0.5)/length
-                t6 = c_place*lam_1*t5
+                t6 = c_stiffness*lam_1*t5
                 t7 = 2*dxa_y - 2*dxb_y
                 t8 = -t4
                 t9 = -t7

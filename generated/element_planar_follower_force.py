@@ -11,8 +11,8 @@ from math import cos, sin
 from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     AT_CONSTANTS,
-    AT_ITEM,
-    C_PLACE,
+    AT_PORT,
+    C_STIFFNESS,
     ENERGY,
     HEADER,
     OK,
@@ -37,7 +37,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (10, 0, 0, 0),
               "column": (14, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -55,15 +55,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         va_y = v[unknowns[1]]
         Ra_cos = cos(q[unknowns[2]])
         Ra_sin = sin(q[unknowns[2]])
-        amplitude = loads[3*index[first + AT_ITEM]]
+        amplitude = loads[3*index[first + AT_PORT]]
         g[0] = -amplitude*(Ra_cos*d_x - Ra_sin*d_y)
         g[1] = -amplitude*(Ra_cos*d_y + Ra_sin*d_x)
         g[2] = 0.0
         if task == ENERGY:
-            energies[POWERS + index[first + AT_ITEM]] = (amplitude*(va_x*(Ra_cos*d_x - Ra_sin*d_y)
+            energies[POWERS + index[first + AT_PORT]] = (amplitude*(va_x*(Ra_cos*d_x - Ra_sin*d_y)
                 + va_y*(Ra_cos*d_y + Ra_sin*d_x)))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             for column in range(3):
@@ -73,7 +73,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dtha_z = dq[2]
                 t0 = Ra_cos*dtha_z
                 t1 = Ra_sin*dtha_z
-                t2 = amplitude*c_place
+                t2 = amplitude*c_stiffness
                 J[0 + column] = -t2*(-d_x*t1 - d_y*t0)
                 J[3 + column] = -t2*(d_x*t0 - d_y*t1)
                 J[6 + column] = 0.0

@@ -13,7 +13,7 @@ from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     HEADER,
     OK,
     TANGENT,
@@ -37,7 +37,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (21, 0, 0, 0),
               "column": (40, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -97,7 +97,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 (-xa_x + xb_x)*(-Aa_z*t900 - Aa_z*t901 + Ra_sin*n1_y*t904 - t902*t904) + (-xa_y +
                 xb_y)*(Aa_z*Ra_cos*n1_x - Aa_z*t903 - t900*t904 - t901*t904))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -113,7 +113,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t5 = Ra_cos*n1_y
                 t6 = Ra_sin*n1_x
                 t7 = dtha_z*t5 + dtha_z*t6
-                t8 = c_place*lam_1
+                t8 = c_stiffness*lam_1
                 t9 = Ra_cos*n1_x
                 t10 = -Ra_sin*dtha_z*n1_y + dtha_z*t9
                 t11 = -t10

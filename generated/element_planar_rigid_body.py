@@ -11,9 +11,9 @@ from math import cos, sin
 from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     AT_CONSTANTS,
+    C_DAMPING,
     C_MASS,
-    C_PLACE,
-    C_RATE,
+    C_STIFFNESS,
     ENERGY,
     FIELD,
     HEADER,
@@ -44,7 +44,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (41, 0, 0, 0),
               "column": (79, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -101,8 +101,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             energies[MOMENT + 2] += J_zz*Oma_z - t906*va_x + t907*va_y - t908*xa_y + t909*xa_x
         if task == TANGENT:
             c_mass = coefficients[C_MASS]
-            c_rate = coefficients[C_RATE]
-            c_place = coefficients[C_PLACE]
+            c_damping = coefficients[C_DAMPING]
+            c_stiffness = coefficients[C_STIFFNESS]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -130,11 +130,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t18 = dtha_z*t12
                 t19 = Ra_sin*dtha_z*mc_y - t15
                 t20 = -t17 - t18
-                J[0 + column] = (c_mass*(mass*uxa_x - t11 - t13) + c_place*(Aa_z*dtha_z*t14 -
-                    Aa_z*t15 + t16*t17 + t16*t18) + c_rate*(2*Oma_z*Ra_sin*mc_y*utha_z - t8*t9))
-                J[3 + column] = (c_mass*(mass*uxa_y - t14*utha_z + t8) + c_place*(-Aa_z*t17 -
-                    Aa_z*t18 + Ra_sin*dtha_z*mc_y*t16 - t15*t16) + c_rate*(-t11*t9 - t13*t9))
+                J[0 + column] = (c_damping*(2*Oma_z*Ra_sin*mc_y*utha_z - t8*t9) +
+                    c_mass*(mass*uxa_x - t11 - t13) + c_stiffness*(Aa_z*dtha_z*t14 - Aa_z*t15 +
+                    t16*t17 + t16*t18))
+                J[3 + column] = (c_damping*(-t11*t9 - t13*t9) + c_mass*(mass*uxa_y - t14*utha_z +
+                    t8) + c_stiffness*(-Aa_z*t17 - Aa_z*t18 + Ra_sin*dtha_z*mc_y*t16 - t15*t16))
                 J[6 + column] = (c_mass*(J_zz*utha_z + uxa_x*(-t10 - t12) + uxa_y*(-t14 + t7)) +
-                    c_place*(aa_x*t19 + aa_y*t20 - field_x*t19 - field_y*t20))
+                    c_stiffness*(aa_x*t19 + aa_y*t20 - field_x*t19 - field_y*t20))
 
     return OK

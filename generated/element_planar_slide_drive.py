@@ -12,9 +12,9 @@ from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
-    AT_ITEM,
+    AT_PORT,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     ENERGY,
     HEADER,
     OK,
@@ -41,7 +41,7 @@ DRIVEN = True        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (23, 0, 0, 0),
               "column": (40, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -73,9 +73,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_z = v[unknowns[4]]
         Aa_z = a[unknowns[4]]
         lam_1 = q[unknowns[5]]
-        amplitude = loads[3*index[first + AT_ITEM]]
-        amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
-        amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
+        amplitude = loads[3*index[first + AT_PORT]]
+        amplitude_rate = loads[3*index[first + AT_PORT] + 1]
+        amplitude_acceleration = loads[3*index[first + AT_PORT] + 2]
         t0 = Ra_cos*e_x - Ra_sin*e_y
         t1 = Ra_cos*e_y + Ra_sin*e_x
         t2 = -t1
@@ -111,11 +111,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t901 = Ra_sin*e_x
             t902 = Ra_cos*e_x
             t903 = Ra_sin*e_y
-            energies[POWERS + index[first + AT_ITEM]] = (-lam_1*((t900 + t901)*(-va_y + vb_y) +
+            energies[POWERS + index[first + AT_PORT]] = (-lam_1*((t900 + t901)*(-va_y + vb_y) +
                 (t902 - t903)*(-va_x + vb_x) + (-xa_x + xb_x)*(-Oma_z*t900 - Oma_z*t901) + (-xa_y
                 + xb_y)*(Oma_z*t902 - Oma_z*t903)))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -131,7 +131,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t5 = Ra_cos*e_y
                 t6 = Ra_sin*e_x
                 t7 = dtha_z*t5 + dtha_z*t6
-                t8 = c_place*lam_1
+                t8 = c_stiffness*lam_1
                 t9 = Ra_cos*e_x
                 t10 = -Ra_sin*dtha_z*e_y + dtha_z*t9
                 t11 = -t10

@@ -11,9 +11,9 @@ from math import sqrt
 from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     AT_CONSTANTS,
-    AT_ITEM,
-    C_PLACE,
-    C_RATE,
+    AT_PORT,
+    C_DAMPING,
+    C_STIFFNESS,
     ENERGY,
     HEADER,
     OK,
@@ -42,7 +42,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (52, 0, 0, 0),
               "column": (164, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -96,11 +96,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t902 = -xa_y + xb_y
             t903 = (0.5)*c*(t901*(-va_x + vb_x) + t902*(-va_y + vb_y))/(t901*t901 + t902*t902)
             t904 = 2*xa_y - 2*xb_y
-            energies[POWERS + index[first + AT_ITEM]] = (-t900*t903*va_x + t900*t903*vb_x -
+            energies[POWERS + index[first + AT_PORT]] = (-t900*t903*va_x + t900*t903*vb_x -
                 t903*t904*va_y + t903*t904*vb_y)
         if task == TANGENT:
-            c_rate = coefficients[C_RATE]
-            c_place = coefficients[C_PLACE]
+            c_damping = coefficients[C_DAMPING]
+            c_stiffness = coefficients[C_STIFFNESS]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -126,7 +126,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t22 = t19*t19 + t21*t21
                 t23 = 1/t22
                 t24 = (0.5)*c*t23
-                t25 = c_rate*t24*(t19*(-uxa_x + uxb_x) + t21*(-uxa_y + uxb_y))
+                t25 = c_damping*t24*(t19*(-uxa_x + uxb_x) + t21*(-uxa_y + uxb_y))
                 t26 = sqrt(t22)
                 t27 = 1/t26
                 t28 = dxa_x - dxb_x
@@ -163,13 +163,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t59 = t27*t38
                 t60 = -t54
                 t61 = t27*t40
-                J[0 + column] = (c_place*(t17*t41 + t17*t53 + t18*t51 + t18*t52 + t29*t31 +
+                J[0 + column] = (c_stiffness*(t17*t41 + t17*t53 + t18*t51 + t18*t52 + t29*t31 +
                     t29*t32 + t30*t42*t50 + t33*t37 + t42*t49) + t17*t25)
-                J[4 + column] = (c_place*(t20*t51 + t20*t52 + t20*t56 + t20*t57 + t31*t55 +
+                J[4 + column] = (c_stiffness*(t20*t51 + t20*t52 + t20*t56 + t20*t57 + t31*t55 +
                     t32*t55 + t37*t45 + t41*t54 + t53*t54) + t25*t54)
-                J[8 + column] = (c_place*(t19*t51 + t19*t52 + t19*t56 + t19*t57 + t31*t59 +
+                J[8 + column] = (c_stiffness*(t19*t51 + t19*t52 + t19*t56 + t19*t57 + t31*t59 +
                     t32*t59 + t37*t43 + t41*t58 + t53*t58) + t25*t58)
-                J[12 + column] = (c_place*(t21*t51 + t21*t52 + t21*t56 + t21*t57 + t31*t61 +
+                J[12 + column] = (c_stiffness*(t21*t51 + t21*t52 + t21*t56 + t21*t57 + t31*t61 +
                     t32*t61 + t37*t46 + t41*t60 + t53*t60) + t25*t60)
 
     return OK

@@ -10,9 +10,9 @@ from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
-    AT_ITEM,
+    AT_PORT,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     ENERGY,
     HEADER,
     OK,
@@ -39,7 +39,7 @@ DRIVEN = True        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (79, 0, 0, 0),
               "column": (175, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -89,9 +89,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Aa_y = a[unknowns[7]]
         Aa_z = a[unknowns[8]]
         lam_1 = q[unknowns[9]]
-        amplitude = loads[3*index[first + AT_ITEM]]
-        amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
-        amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
+        amplitude = loads[3*index[first + AT_PORT]]
+        amplitude_rate = loads[3*index[first + AT_PORT] + 1]
+        amplitude_acceleration = loads[3*index[first + AT_PORT] + 2]
         t0 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
         t1 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
         t2 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
@@ -142,7 +142,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Oma_y*t908 + Oma_z*t907) + e_y*(Aa_x*Ra_zz - Aa_z*Ra_zx + Oma_x*t908 - Oma_z*t906)
                 + e_z*(-Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t907 + Oma_y*t906)))
         if task == ENERGY:
-            energies[POWERS + index[first + AT_ITEM]] = (-lam_1*((-va_x + vb_x)*(Ra_xx*e_x +
+            energies[POWERS + index[first + AT_PORT]] = (-lam_1*((-va_x + vb_x)*(Ra_xx*e_x +
                 Ra_xy*e_y + Ra_xz*e_z) + (-va_y + vb_y)*(Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z) +
                 (-va_z + vb_z)*(Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z) + (-xa_x +
                 xb_x)*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz - Oma_z*Ra_xx) +
@@ -151,7 +151,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + (-xa_z + xb_z)*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
                 Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx))))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -177,7 +177,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t7 = -Ra_xx*dtha_z + Ra_xz*dtha_x
                 t8 = Ra_xx*dtha_y - Ra_xy*dtha_x
                 t9 = e_x*t6 + e_y*t7 + e_z*t8
-                t10 = c_place*lam_1
+                t10 = c_stiffness*lam_1
                 t11 = Ra_yy*dtha_z - Ra_yz*dtha_y
                 t12 = -Ra_yx*dtha_z + Ra_yz*dtha_x
                 t13 = Ra_yx*dtha_y - Ra_yy*dtha_x

@@ -11,9 +11,9 @@ from math import sqrt
 from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     AT_CONSTANTS,
-    AT_ITEM,
-    C_PLACE,
-    C_RATE,
+    AT_PORT,
+    C_DAMPING,
+    C_STIFFNESS,
     ENERGY,
     HEADER,
     OK,
@@ -42,7 +42,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (74, 0, 0, 0),
               "column": (232, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -111,11 +111,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 vb_z))/(t901*t901 + t902*t902 + t903*t903))
             t905 = 2*xa_y - 2*xb_y
             t906 = 2*xa_z - 2*xb_z
-            energies[POWERS + index[first + AT_ITEM]] = (-t900*t904*va_x + t900*t904*vb_x -
+            energies[POWERS + index[first + AT_PORT]] = (-t900*t904*va_x + t900*t904*vb_x -
                 t904*t905*va_y + t904*t905*vb_y - t904*t906*va_z + t904*t906*vb_z)
         if task == TANGENT:
-            c_rate = coefficients[C_RATE]
-            c_place = coefficients[C_PLACE]
+            c_damping = coefficients[C_DAMPING]
+            c_stiffness = coefficients[C_STIFFNESS]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -147,7 +147,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t29 = t24*t24 + t26*t26 + t28*t28
                 t30 = 1/t29
                 t31 = (0.5)*c*t30
-                t32 = (c_rate*t31*(t24*(-uxa_x + uxb_x) + t26*(-uxa_y + uxb_y) + t28*(-uxa_z +
+                t32 = (c_damping*t31*(t24*(-uxa_x + uxb_x) + t26*(-uxa_y + uxb_y) + t28*(-uxa_z +
                     uxb_z)))
                 t33 = sqrt(t29)
                 t34 = 1/t33
@@ -195,17 +195,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t76 = t34*t48
                 t77 = -t71
                 t78 = t34*t50
-                J[0 + column] = (c_place*(t22*t51 + t22*t66 + t23*t64 + t23*t65 + t36*t38 +
+                J[0 + column] = (c_stiffness*(t22*t51 + t22*t66 + t23*t64 + t23*t65 + t36*t38 +
                     t36*t39 + t37*t52*t63 + t40*t45 + t52*t62) + t22*t32)
-                J[6 + column] = (c_place*(t25*t64 + t25*t65 + t25*t69 + t25*t70 + t38*t68 +
+                J[6 + column] = (c_stiffness*(t25*t64 + t25*t65 + t25*t69 + t25*t70 + t38*t68 +
                     t39*t68 + t45*t55 + t51*t67 + t66*t67) + t32*t67)
-                J[12 + column] = (c_place*(t27*t64 + t27*t65 + t27*t69 + t27*t70 + t38*t72 +
+                J[12 + column] = (c_stiffness*(t27*t64 + t27*t65 + t27*t69 + t27*t70 + t38*t72 +
                     t39*t72 + t45*t58 + t51*t71 + t66*t71) + t32*t71)
-                J[18 + column] = (c_place*(t24*t64 + t24*t65 + t24*t69 + t24*t70 + t38*t74 +
+                J[18 + column] = (c_stiffness*(t24*t64 + t24*t65 + t24*t69 + t24*t70 + t38*t74 +
                     t39*t74 + t45*t53 + t51*t73 + t66*t73) + t32*t73)
-                J[24 + column] = (c_place*(t26*t64 + t26*t65 + t26*t69 + t26*t70 + t38*t76 +
+                J[24 + column] = (c_stiffness*(t26*t64 + t26*t65 + t26*t69 + t26*t70 + t38*t76 +
                     t39*t76 + t45*t56 + t51*t75 + t66*t75) + t32*t75)
-                J[30 + column] = (c_place*(t28*t64 + t28*t65 + t28*t69 + t28*t70 + t38*t78 +
+                J[30 + column] = (c_stiffness*(t28*t64 + t28*t65 + t28*t69 + t28*t70 + t38*t78 +
                     t39*t78 + t45*t59 + t51*t77 + t66*t77) + t32*t77)
 
     return OK

@@ -11,9 +11,9 @@ from math import atan2
 from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     AT_CONSTANTS,
-    AT_ITEM,
-    C_PLACE,
-    C_RATE,
+    AT_PORT,
+    C_DAMPING,
+    C_STIFFNESS,
     ENERGY,
     HEADER,
     OK,
@@ -44,7 +44,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (361, 0, 0, 0),
               "column": (1060, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -192,14 +192,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Omb_y*Rb_xy - Omb_z*Rb_xz) + t905*(Oma_x*Ra_yx + Oma_y*Ra_yy + Oma_z*Ra_yz -
                 Omb_x*Rb_yx - Omb_y*Rb_yy - Omb_z*Rb_yz) + t907*(Oma_x*Ra_zx + Oma_y*Ra_zy +
                 Oma_z*Ra_zz - Omb_x*Rb_zx - Omb_y*Rb_zy - Omb_z*Rb_zz)))
-            energies[POWERS + index[first + AT_ITEM]] = (-Oma_x*t909*(Ra_xx*t904 + Ra_yx*t906 +
+            energies[POWERS + index[first + AT_PORT]] = (-Oma_x*t909*(Ra_xx*t904 + Ra_yx*t906 +
                 Ra_zx*t908) - Oma_y*t909*(Ra_xy*t904 + Ra_yy*t906 + Ra_zy*t908) -
                 Oma_z*t909*(Ra_xz*t904 + Ra_yz*t906 + Ra_zz*t908) - Omb_x*t909*(-Rb_xx*t904 -
                 Rb_yx*t906 - Rb_zx*t908) - Omb_y*t909*(-Rb_xy*t904 - Rb_yy*t906 - Rb_zy*t908) -
                 Omb_z*t909*(-Rb_xz*t904 - Rb_yz*t906 - Rb_zz*t908))
         if task == TANGENT:
-            c_rate = coefficients[C_RATE]
-            c_place = coefficients[C_PLACE]
+            c_damping = coefficients[C_DAMPING]
+            c_stiffness = coefficients[C_STIFFNESS]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
@@ -234,10 +234,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t72 = 2*Ra_zx
                 t73 = t67*t68 + t69*t70 + t71*t72
                 t74 = (0.5)*c
-                t75 = (c_rate*t74*(t67*(Ra_xx*utha_x + Ra_xy*utha_y + Ra_xz*utha_z - Rb_xx*uthb_x
-                    - Rb_xy*uthb_y - Rb_xz*uthb_z) + t69*(Ra_yx*utha_x + Ra_yy*utha_y +
-                    Ra_yz*utha_z - Rb_yx*uthb_x - Rb_yy*uthb_y - Rb_yz*uthb_z) + t71*(Ra_zx*utha_x
-                    + Ra_zy*utha_y + Ra_zz*utha_z - Rb_zx*uthb_x - Rb_zy*uthb_y - Rb_zz*uthb_z)))
+                t75 = (c_damping*t74*(t67*(Ra_xx*utha_x + Ra_xy*utha_y + Ra_xz*utha_z -
+                    Rb_xx*uthb_x - Rb_xy*uthb_y - Rb_xz*uthb_z) + t69*(Ra_yx*utha_x + Ra_yy*utha_y
+                    + Ra_yz*utha_z - Rb_yx*uthb_x - Rb_yy*uthb_y - Rb_yz*uthb_z) +
+                    t71*(Ra_zx*utha_x + Ra_zy*utha_y + Ra_zz*utha_z - Rb_zx*uthb_x - Rb_zy*uthb_y
+                    - Rb_zz*uthb_z)))
                 t76 = Ra_xy*dtha_z - Ra_xz*dtha_y
                 t77 = 2*t67
                 t78 = Ra_yy*dtha_z - Ra_yz*dtha_y
@@ -431,32 +432,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t259 = t121*(m_x*t142 + m_y*t258)
                 t260 = t130*(n_x*t142 + n_y*t258)
                 t261 = t175*t254
-                J[0 + column] = (c_place*(t104*t73 + t157*(t121*t129 + t130*t133) +
+                J[0 + column] = (c_stiffness*(t104*t73 + t157*(t121*t129 + t130*t133) +
                     t163*(t121*t158 + t130*t160) + t177*(t129*t154 + t129*t174 + t132*t171 +
                     t133*t172 + 2*t170 + 2*t176) + t178*(t154*t158 + t158*t174 + t159*t171 +
                     t160*t172 + 4*t170 + 4*t176) + t94*(t68*t84 + t70*t87 + t72*t90 + t76*t77 +
                     t78*t79 + t80*t81)) + t73*t75)
-                J[6 + column] = (c_place*(t104*t179 + t157*(t121*t190 + t130*t192) +
+                J[6 + column] = (c_stiffness*(t104*t179 + t157*(t121*t190 + t130*t192) +
                     t163*(t121*t193 + t130*t194) + t177*(t132*t202 + t154*t190 + t172*t192 +
                     t174*t190 + 2*t201 + 2*t203) + t178*(t154*t193 + t159*t202 + t172*t194 +
                     t174*t193 + 4*t201 + 4*t203) + t94*(Ra_xy*t180 + Ra_yy*t181 + Ra_zy*t182 +
                     t77*t83 + t79*t86 + t81*t89)) + t179*t75)
-                J[12 + column] = (c_place*(t104*t204 + t157*(t121*t212 + t130*t214) +
+                J[12 + column] = (c_stiffness*(t104*t204 + t157*(t121*t212 + t130*t214) +
                     t163*(t121*t215 + t130*t216) + t177*(t132*t224 + t154*t212 + t172*t214 +
                     t174*t212 + 2*t223 + 2*t225) + t178*(t154*t215 + t159*t224 + t172*t216 +
                     t174*t215 + 4*t223 + 4*t225) + t94*(Ra_xz*t180 + Ra_yz*t181 + Ra_zz*t182 +
                     t77*t82 + t79*t85 + t81*t88)) + t204*t75)
-                J[18 + column] = (c_place*(t104*t226 + t157*(t121*t229 + t130*t231) +
+                J[18 + column] = (c_stiffness*(t104*t226 + t157*(t121*t229 + t130*t231) +
                     t163*(t121*t232 + t130*t233) + t177*(t132*t236 + t154*t229 + t172*t231 +
                     t174*t229 + 2*t235 + 2*t237) + t178*(t154*t232 + t159*t236 + t172*t233 +
                     t174*t232 + 4*t235 + 4*t237) + t94*(-Rb_xx*t180 - Rb_yx*t181 - Rb_zx*t182 -
                     t101*t81 - t77*t95 - t79*t98)) + t226*t75)
-                J[24 + column] = (c_place*(t104*t238 + t157*(t121*t241 + t130*t243) +
+                J[24 + column] = (c_stiffness*(t104*t238 + t157*(t121*t241 + t130*t243) +
                     t163*(t121*t244 + t130*t245) + t177*(t132*t248 + t154*t241 + t172*t243 +
                     t174*t241 + 2*t247 + 2*t249) + t178*(t154*t244 + t159*t248 + t172*t245 +
                     t174*t244 + 4*t247 + 4*t249) + t94*(-Rb_xy*t180 - Rb_yy*t181 - Rb_zy*t182 -
                     t102*t81 - t77*t96 - t79*t99)) + t238*t75)
-                J[30 + column] = (c_place*(t104*t250 + t157*(t121*t253 + t130*t255) +
+                J[30 + column] = (c_stiffness*(t104*t250 + t157*(t121*t253 + t130*t255) +
                     t163*(t121*t256 + t130*t257) + t177*(t132*t260 + t154*t253 + t172*t255 +
                     t174*t253 + 2*t259 + 2*t261) + t178*(t154*t256 + t159*t260 + t172*t257 +
                     t174*t256 + 4*t259 + 4*t261) + t94*(-Rb_xz*t180 - Rb_yz*t181 - Rb_zz*t182 -

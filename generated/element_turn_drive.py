@@ -12,9 +12,9 @@ from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     ACCELERATION,
     AT_CONSTANTS,
-    AT_ITEM,
+    AT_PORT,
     C_CONSTRAINT,
-    C_PLACE,
+    C_STIFFNESS,
     ENERGY,
     HEADER,
     OK,
@@ -41,7 +41,7 @@ DRIVEN = True        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (136, 0, 0, 0),
               "column": (318, 0, 0, 0)}
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -90,9 +90,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Ab_y = a[unknowns[4]]
         Ab_z = a[unknowns[5]]
         lam_1 = q[unknowns[6]]
-        amplitude = loads[3*index[first + AT_ITEM]]
-        amplitude_rate = loads[3*index[first + AT_ITEM] + 1]
-        amplitude_acceleration = loads[3*index[first + AT_ITEM] + 2]
+        amplitude = loads[3*index[first + AT_PORT]]
+        amplitude_rate = loads[3*index[first + AT_PORT] + 1]
+        amplitude_acceleration = loads[3*index[first + AT_PORT] + 2]
         t0 = cos(amplitude)
         t1 = sin(amplitude)
         t2 = m_x*t0 - n_x*t1
@@ -215,7 +215,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t902 = m_z*t900 - n_z*t901
             t903 = m_y*t900 - n_y*t901
             t904 = m_x*t900 - n_x*t901
-            energies[POWERS + index[first + AT_ITEM]] = (-lam_1*((Ra_xx*n_x + Ra_xy*n_y +
+            energies[POWERS + index[first + AT_PORT]] = (-lam_1*((Ra_xx*n_x + Ra_xy*n_y +
                 Ra_xz*n_z)*(t902*(-Omb_x*Rb_xy + Omb_y*Rb_xx) + t903*(Omb_x*Rb_xz - Omb_z*Rb_xx) +
                 t904*(-Omb_y*Rb_xz + Omb_z*Rb_xy)) + (Ra_yx*n_x + Ra_yy*n_y +
                 Ra_yz*n_z)*(t902*(-Omb_x*Rb_yy + Omb_y*Rb_yx) + t903*(Omb_x*Rb_yz - Omb_z*Rb_yx) +
@@ -229,7 +229,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Rb_zz*t902)*(n_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + n_y*(Oma_x*Ra_zz - Oma_z*Ra_zx) +
                 n_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx))))
         if task == TANGENT:
-            c_place = coefficients[C_PLACE]
+            c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
@@ -271,7 +271,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t34 = -Rb_zx*dthb_z + Rb_zz*dthb_x
                 t35 = Rb_zy*dthb_z - Rb_zz*dthb_y
                 t36 = t15*t35 + t16*t34 + t17*t33
-                t37 = c_place*lam_1
+                t37 = c_stiffness*lam_1
                 t38 = Ra_xy*dtha_z - Ra_xz*dtha_y
                 t39 = Ra_yy*dtha_z - Ra_yz*dtha_y
                 t40 = Ra_zy*dtha_z - Ra_zz*dtha_y

@@ -15,11 +15,11 @@ from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
-    AT_ITEM,
+    AT_PORT,
+    C_DAMPING,
     C_GEO,
     C_MASS,
-    C_PLACE,
-    C_RATE,
+    C_STIFFNESS,
     DAMPING_CONSTANTS,
     ENERGY,
     FIELD,
@@ -53,7 +53,7 @@ WORK_ROWS = 35
 OPERATIONS = {"residual": (300, 157, 329, 4),
               "column": (81, 205, 1036, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -429,7 +429,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for i in range(n):
                 strain -= 0.5*y[i]*friction[i]
                 lost -= eta[i]*friction[i]
-            energies[POWERS + index[first + AT_ITEM]] = lost
+            energies[POWERS + index[first + AT_PORT]] = lost
             # energies
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
@@ -475,8 +475,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             energies[MOMENT + 1] += H_y
             energies[MOMENT + 2] += H_z
         if task == TANGENT:
-            c_mass, c_rate = coefficients[C_MASS], coefficients[C_RATE]
-            c_place, c_geo = coefficients[C_PLACE], coefficients[C_GEO]
+            c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
+            c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             for column in range(n):
                 for i in range(n):
@@ -488,10 +488,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
                 else:
-                    dqe[column] = c_place
-                dve[column] = c_rate
+                    dqe[column] = c_stiffness
+                dve[column] = c_damping
                 dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0

@@ -15,10 +15,10 @@ from sebody.kernels.frame_search import planar_mean
 from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
+    C_DAMPING,
     C_GEO,
     C_MASS,
-    C_PLACE,
-    C_RATE,
+    C_STIFFNESS,
     ENERGY,
     FIELD,
     HEADER,
@@ -49,7 +49,7 @@ WORK_ROWS = 29
 OPERATIONS = {"residual": (212, 61, 5, 3),
               "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -281,16 +281,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             energies[MOMENTUM + 1] += P_y
             energies[MOMENT + 2] += H_z
         if task == TANGENT:
-            c_mass, c_rate = coefficients[C_MASS], coefficients[C_RATE]
-            c_place, c_geo = coefficients[C_PLACE], coefficients[C_GEO]
+            c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
+            c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0
                     dve[i] = 0.0
                     dae[i] = 0.0
-                dqe[column] = c_place
-                dve[column] = c_rate
+                dqe[column] = c_stiffness
+                dve[column] = c_damping
                 dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = 0.0

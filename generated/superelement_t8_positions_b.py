@@ -15,10 +15,10 @@ from sebody.kernels.frame_search import best_fit
 from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
+    C_DAMPING,
     C_GEO,
     C_MASS,
-    C_PLACE,
-    C_RATE,
+    C_STIFFNESS,
     ENERGY,
     FIELD,
     HEADER,
@@ -50,7 +50,7 @@ WORK_ROWS = 29
 OPERATIONS = {"residual": (460, 217, 0, 3),
               "column": (81, 277, 0, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "cca792627404"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
@@ -349,8 +349,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             energies[MOMENT + 1] += H_y
             energies[MOMENT + 2] += H_z
         if task == TANGENT:
-            c_mass, c_rate = coefficients[C_MASS], coefficients[C_RATE]
-            c_place, c_geo = coefficients[C_PLACE], coefficients[C_GEO]
+            c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
+            c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             for column in range(n):
                 for i in range(n):
@@ -362,10 +362,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
                 else:
-                    dqe[column] = c_place
-                dve[column] = c_rate
+                    dqe[column] = c_stiffness
+                dve[column] = c_damping
                 dae[column] = c_mass
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0

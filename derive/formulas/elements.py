@@ -17,7 +17,7 @@ import sympy as sp
 from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.symbolic.spaces import Quantity, Space
 from sebody.derive.symbolic.steps import cross
-from sebody.derive.symbolic.variation import Rules, along, check_same, differential, turning
+from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 AMPLITUDE = sp.symbols("amplitude amplitude_rate amplitude_acceleration")
 
@@ -33,7 +33,7 @@ class Block(NamedTuple):
     angle: sp.Symbol | None # of a rotation in a plane
 
     @property
-    def turns(self) -> bool:
+    def rotational(self) -> bool:
         """A rotation."""
         return self.state.kind == "rotation"
 
@@ -121,10 +121,10 @@ def _moved(blocks: Sequence[Block], along_what: str) -> Rules:
     rules: Rules = {}
     for block in blocks:
         by = getattr(block, along_what).symbols
-        if not block.turns:
+        if not block.rotational:
             rules |= along(block.state.symbols, by)
             continue
-        rules |= turning(block.state.symbols, by)
+        rules |= rotating(block.state.symbols, by)
         if block.angle is not None:
             rules[block.angle] = by[2]
     return rules
@@ -166,16 +166,17 @@ def _inertia(kinetic: sp.Expr, block: Block, vary: Rules, time: Rules) -> sp.Mat
     momentum = conjugate_to(kinetic, block.rate.symbols)
     force = differential(momentum, time) - conjugate_to(differential(kinetic, vary),
                                                block.direction.symbols)
-    return force + cross(block.rate.symbols, momentum) if block.turns else force
+    return force + cross(block.rate.symbols, momentum) if block.rotational else force
 
 
 def _column(blocks, force, constraints, vary) -> tuple[sp.Expr, ...]:
-    c_mass, c_rate, c_place, c_constraint = sp.symbols("c_mass c_rate c_place c_constraint")
+    c_mass, c_damping, c_stiffness, c_constraint = sp.symbols(
+        "c_mass c_damping c_stiffness c_constraint")
     rates, accelerations = {}, {}
     for block in blocks:
         rates |= along(block.rate.symbols, block.unit.symbols)
         accelerations |= along(block.acceleration.symbols, block.unit.symbols)
-    on_force = [c_place * differential(f, vary) + c_rate * differential(f, rates)
+    on_force = [c_stiffness * differential(f, vary) + c_damping * differential(f, rates)
                 + c_mass * differential(f, accelerations) for f in force]
     return (*on_force, *(c_constraint * differential(phi, vary) for phi in constraints))
 
@@ -195,7 +196,7 @@ def _sums(blocks, kinetic, strain, potential) -> dict[str, sp.Expr]:
         linear, moment = sp.zeros(3, 1), sp.zeros(3, 1)
         for block in blocks:
             p = conjugate_to(kinetic, block.rate.symbols)
-            if block.turns:
+            if block.rotational:
                 moment += block.state.symbols * p
             else:
                 linear, moment = linear + p, moment + cross(block.state.symbols, p)

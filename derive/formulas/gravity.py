@@ -18,7 +18,7 @@ import sympy as sp
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.linearize import Linearizer
 from sebody.derive.symbolic.steps import Product, Shift, Stage, Step, cross
-from sebody.derive.symbolic.variation import along, check_same, differential, turning
+from sebody.derive.symbolic.variation import along, check_same, differential, rotating
 
 TAKEN_OFF = Shift("force conjugate to y, elastic and gravity", "s", "weight", "-")
 
@@ -56,7 +56,7 @@ def gravity(q: Quantities) -> Gravity:
 def _check_variation(q: Quantities, d: sp.Matrix, mass: sp.Expr) -> None:
     """``delta V`` of the header, by the chain rule."""
     R0, g, x0, dd = q.R0.symbols, q.field.symbols, q.x0.symbols, q.space.d(q.d).symbols
-    rules = turning(R0, q.dth0.symbols) | along(x0, R0 * q.dx0.symbols) | along(q.d.symbols, dd)
+    rules = rotating(R0, q.dth0.symbols) | along(x0, R0 * q.dx0.symbols) | along(q.d.symbols, dd)
     chain = differential(-g.dot(mass * x0 + R0 * d), rules)
     gamma = R0.T * g
     short = -gamma.dot(dd) + cross(gamma, d).dot(q.dth0.symbols) - mass * gamma.dot(q.dx0.symbols)

@@ -107,7 +107,7 @@ def turn_drive(planar: bool) -> Element:
     """The angle of body a against b about the axis they share follows a given motion.
 
     ``phi = (R_a n) . R_b (cos(angle) m - sin(angle) n)``, with m = e x n: the direction n of body a
-    stays normal to where m has turned; zero also half a turn off, where a run does not get to.
+    stays normal to where m has rotated; zero also half a turn off, where a run does not get to.
     """
     space = Space(planar)
     a, b = _pair(rotation, space, False)

@@ -17,7 +17,7 @@ from sebody.derive.symbolic.rotations import (
 )
 from sebody.derive.symbolic.spaces import Space
 from sebody.derive.symbolic.steps import Stage, cross
-from sebody.derive.symbolic.variation import Rules, along, check_same, differential, turning
+from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 
 def unknown_rules(q: Quantities) -> Rules:
@@ -26,7 +26,7 @@ def unknown_rules(q: Quantities) -> Rules:
     The frame's own, ``dx0`` and ``dth0``, are quantities that the frame's stages compute.
     """
     R0 = q.R0.symbols
-    rules = turning(R0, q.dth0.symbols)
+    rules = rotating(R0, q.dth0.symbols)
     for fixed_axes, local in ((q.x, q.dx), (q.x0, q.dx0), (q.v, q.dv), (q.a, q.da)):
         rules |= along(fixed_axes.symbols, R0 * local.symbols)
     return rules | along(q.Om.symbols, q.dOm.symbols) | along(q.A.symbols, q.dA.symbols)
@@ -42,7 +42,7 @@ def local_displacement(q: Quantities) -> Stage:
 
 
 def local_velocity(q: Quantities) -> Stage:
-    """Velocity and acceleration of the nodes, turned into frame axes, (33)."""
+    """Velocity and acceleration of the nodes, rotated into frame axes, (33)."""
     R0, dth0 = q.R0.symbols, q.dth0.symbols
     return Stage(
         "velocity and acceleration of the nodes in frame axes, (33)", "position",
@@ -59,9 +59,9 @@ def elastic_rotation_variation(q: Quantities) -> sp.Matrix:
     """
     psi, dth, dth0 = q.psi.symbols, q.dth.symbols, q.dth0.symbols
     short = inverse_tangent_times(psi, dth) - inverse_tangent_transposed_times(psi, dth0)
-    turned = exp(psi) * skew(dth) - skew(dth0) * exp(psi)
+    rotated = exp(psi) * skew(dth) - skew(dth0) * exp(psi)
     chain = differential(exp(psi), along(psi, short))
-    check_same("variation of the elastic rotation (17)", chain.reshape(9, 1), turned.reshape(9, 1))
+    check_same("variation of the elastic rotation (17)", chain.reshape(9, 1), rotated.reshape(9, 1))
     check_same("inverse of the tangent operator", inverse_tangent(psi) * tangent(psi), sp.eye(3))
     return short
 

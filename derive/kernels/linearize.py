@@ -62,7 +62,7 @@ def node_tangent(planar: bool, frame: FrameOption, inertia: InertiaOption) -> tu
 
 
 def _in_frame_axes(q: Quantities, chain: Linearizer, step: Stage) -> Stage:
-    """Differential of the force on the nodes, turned into frame axes: what the matrix holds."""
+    """Differential of the force on the nodes, rotated into frame axes: what the matrix holds."""
     R0, h = q.R0.symbols, q.h.symbols
     short = q.space.d(q.h).symbols + cross(q.dth0.symbols, h)
     check_same("force on the nodes in frame axes", short,

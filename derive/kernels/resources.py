@@ -43,7 +43,7 @@ def element_resources(element: Element) -> Resources:
     functions = set().union(*map(_functions, (*element.printed, *element.on_multipliers)))
     if element.space.planar:    # entries of a rotation are made of its angle
         used = set().union(*(sp.sympify(e).free_symbols for e in element.printed))
-        entries = [block.state.kept for block in element.blocks if block.turns]
+        entries = [block.state.kept for block in element.blocks if block.rotational]
         functions |= {f for kept in entries for f, s in zip(("cos", "sin"), kept, strict=True)
                       if s in used}
     return Resources(("dq", "du") if varied else ("dq",), tuple(sorted(functions)))

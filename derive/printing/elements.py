@@ -13,7 +13,7 @@ from sebody.kernels.sources import room_hash
 SUMS = {"kinetic": ("KINETIC", 0), "strain": ("STRAIN", 0), "potential": ("POTENTIAL", 0),
         "P_x": ("MOMENTUM", 0), "P_y": ("MOMENTUM", 1), "P_z": ("MOMENTUM", 2),
         "H_x": ("MOMENT", 0), "H_y": ("MOMENT", 1), "H_z": ("MOMENT", 2)}     # among the energies
-COEFFICIENTS = {"c_mass": "C_MASS", "c_rate": "C_RATE", "c_place": "C_PLACE",
+COEFFICIENTS = {"c_mass": "C_MASS", "c_damping": "C_DAMPING", "c_stiffness": "C_STIFFNESS",
                 "c_constraint": "C_CONSTRAINT"}
 
 
@@ -46,7 +46,7 @@ def _head(element: Element) -> dict[str, object]:
             "version": templates.VERSION, "sympy": sp.__version__, "room": room_hash("kernels"),
             "signature": templates.SIGNATURE,
             "planar": element.space.planar,
-            "positions": sum(not b.turns for b in element.blocks),
+            "positions": sum(not b.rotational for b in element.blocks),
             "rotations": _matrices(element), "first_rotation": _first_rotation(element),
             "constants": parts.table(map(_part, element.constants)),
             "inertial": "kinetic" in element.sums, "power": element.power is not None,
@@ -59,9 +59,9 @@ def _names(element: Element) -> set[str]:
     names |= {COEFFICIENTS[name] for name in _used_coefficients(element)}
     names |= {"VELOCITY", "ACCELERATION"} if element.multipliers else set()
     names |= {"ENERGY"} if element.sums or element.power is not None else set()
-    names |= {"AT_ITEM", "POWERS"} if element.power is not None else set()
+    names |= {"AT_PORT", "POWERS"} if element.power is not None else set()
     names |= {"AT_CONSTANTS", "Part"} if element.constants else set()
-    names |= {"AT_ITEM"} if set(AMPLITUDE) & _used(element.printed) else set()
+    names |= {"AT_PORT"} if set(AMPLITUDE) & _used(element.printed) else set()
     return names | ({"FIELD"} if set(_field(element)) & _used(element.printed) else set())
 
 
@@ -73,7 +73,7 @@ def _tasks(element: Element) -> list[str]:
     return [*_task("VELOCITY", element.velocity, constraints),
             *_task("ACCELERATION", element.second, constraints),
             *_task("ENERGY", list(element.sums.values()), sums),
-            *_task("ENERGY", power, ["energies[POWERS + index[first + AT_ITEM]] = "])]
+            *_task("ENERGY", power, ["energies[POWERS + index[first + AT_PORT]] = "])]
 
 
 def _part(constant: Constant) -> Part:
@@ -85,11 +85,11 @@ def _part(constant: Constant) -> Part:
 
 def _matrices(element: Element) -> int:
     """Rotation matrices it reads; in a plane there are angles instead."""
-    return 0 if element.space.planar else sum(b.turns for b in element.blocks)
+    return 0 if element.space.planar else sum(b.rotational for b in element.blocks)
 
 
 def _first_rotation(element: Element) -> int:
-    return sum(len(b.direction.kept) for b in element.blocks if not b.turns)
+    return sum(len(b.direction.kept) for b in element.blocks if not b.rotational)
 
 
 def _operations(expressions) -> int:
@@ -137,16 +137,16 @@ def _loads(element: Element) -> list[str]:
             lines += [f"{s} = {array}[unknowns[{at + k}]]" for k, s in enumerate(quantity.kept)
                       if s in used]
         at += len(block.direction.kept)
-        matrix += block.turns
+        matrix += block.rotational
     lines += [f"{s} = q[unknowns[{element.coordinates + k}]]"
               for k, s in enumerate(element.multipliers)]
-    return lines + [f"{s} = loads[{offset('3*index[first + AT_ITEM]', k)}]"
+    return lines + [f"{s} = loads[{offset('3*index[first + AT_PORT]', k)}]"
                     for k, s in enumerate(AMPLITUDE) if s in used]
 
 
 def _state(block: Block, at: int, matrix: int, used: set) -> list[str]:
     kept = block.state.kept
-    if not block.turns:
+    if not block.rotational:
         return [f"{s} = q[unknowns[{at + k}]]" for k, s in enumerate(kept) if s in used]
     if block.angle is None:
         return [f"{s} = R[9*nodes[{matrix}] + {k}]" for k, s in enumerate(kept) if s in used]

@@ -66,8 +66,8 @@ ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of
                 strain += 0.5*y[i]*s[i]{friction}
 {energy}
         if task == TANGENT:
-            c_mass, c_rate = coefficients[C_MASS], coefficients[C_RATE]
-            c_place, c_geo = coefficients[C_PLACE], coefficients[C_GEO]
+            c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
+            c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             for column in range(n):
                 for i in range(n):
@@ -82,18 +82,18 @@ ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of
 '''
 
 SUPERELEMENT_NAMES = (
-    "AT_CONSTANTS", "AT_FRAME", "C_GEO", "C_MASS", "C_PLACE", "C_RATE", "ENERGY", "FIELD", "HEADER",
-    "KINETIC", "MOMENT", "MOMENTUM", "OK", "POTENTIAL", "STRAIN", "SUPERELEMENT_CONSTANTS",
-    "TANGENT", "at", "kernel_function", "padded")
+    "AT_CONSTANTS", "AT_FRAME", "C_DAMPING", "C_GEO", "C_MASS", "C_STIFFNESS", "ENERGY", "FIELD",
+    "HEADER", "KINETIC", "MOMENT", "MOMENTUM", "OK", "POTENTIAL", "STRAIN",
+    "SUPERELEMENT_CONSTANTS", "TANGENT", "at", "kernel_function", "padded")
 GENERAL_NAMES = "AT_POSITIONS", "AT_ROTATIONS"
-DAMPING_NAMES = "AT_ITEM", "DAMPING_CONSTANTS", "POWERS"
+DAMPING_NAMES = "AT_PORT", "DAMPING_CONSTANTS", "POWERS"
 
 FRICTION = (
     "lost = 0.0",
     "for i in range(n):",
     "    strain -= 0.5*y[i]*friction[i]",
     "    lost -= eta[i]*friction[i]",
-    "energies[POWERS + index[first + AT_ITEM]] = lost",
+    "energies[POWERS + index[first + AT_PORT]] = lost",
 )
 
 REFERENCE = "        reference = at(references, 9*index[first + AT_FRAME])\n"
@@ -106,15 +106,15 @@ SEEDS = {
         "    j = (column - ROTATIONS)//3",
         "    k = column - ROTATIONS - 3*j",
         "    for r in range(3):",
-        "        dqe[ROTATIONS + 3*j + r] = c_place*T[9*nodes[j] + 3*r + k]",
+        "        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]",
         "else:",
-        "    dqe[column] = c_place",
-        "dve[column] = c_rate",
+        "    dqe[column] = c_stiffness",
+        "dve[column] = c_damping",
         "dae[column] = c_mass",
     ),
     True: (
-        "dqe[column] = c_place",
-        "dve[column] = c_rate",
+        "dqe[column] = c_stiffness",
+        "dve[column] = c_damping",
         "dae[column] = c_mass",
     ),
 }

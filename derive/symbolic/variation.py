@@ -26,7 +26,7 @@ def along(vector: sp.Matrix, differential: sp.Matrix) -> Rules:
     return {v: d for v, d in zip(vector, differential, strict=True) if isinstance(v, sp.Symbol)}
 
 
-def turning(R: sp.Matrix, dTheta: sp.Matrix) -> Rules:
+def rotating(R: sp.Matrix, dTheta: sp.Matrix) -> Rules:
     """Rules for a rotation matrix: ``dR = R skew(dTheta)``."""
     return {r: d for r, d in zip(R, R * rotations.skew(dTheta), strict=True)
             if isinstance(r, sp.Symbol)}

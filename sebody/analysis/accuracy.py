@@ -1,4 +1,4 @@
-"""Runs within a tolerance of their own: steps refined until two runs agree."""
+"""Runs within a tolerance of the whole run: steps are refined until two runs agree."""
 
 from collections.abc import Callable
 
@@ -6,17 +6,18 @@ import numpy as np
 
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
-from sebody.assembly.numbering import turning
+from sebody.assembly.numbering import rotational
 from sebody.engine.state import Scheme
 from sebody.errors import SimulationError
 from sebody.model.model import Model
 from sebody.results.result import Result
 
-FIRST, COARSE = 0.3, 1e-3  # local tolerance of the first run: of that of the run, and at most
-REFINED = 3.0       # steps of the second one, of those of the first
-LEAST, MOST = 1.5, 6.0      # of the next ones
-AIM = 0.5           # of the tolerance
-HOPELESS = 0.5      # fall of the difference of two runs in two refinements
+FIRST = 0.3         # local tolerance of the first run, relative to the tolerance of the run
+COARSE = 1e-3       # largest relative local tolerance of the first run
+REFINED = 3.0       # the second run takes so many times the steps of the first
+LEAST, MOST = 1.5, 6.0      # bounds of that factor for further runs
+AIM = 0.5           # share of the tolerance that a further run aims at
+HOPELESS = 0.5      # two refinements must reduce the difference of runs by this factor
 
 
 def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance | None = None,
@@ -24,28 +25,28 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
                     progress: Callable[[float], None] | None = None) -> Result:
     """Run a model so that its error in time is within a tolerance; steps are chosen.
 
-    Steps with a local tolerance are repeated with a finer one until the difference of two runs,
-    which falls with the square of the number of steps, shows that the last is good enough. Errors
-    are root mean squares over the run, of every position and rotation. That of the model itself,
-    its modes and bodies, is not seen.
+    The run is repeated with a finer local tolerance until the difference of the last two runs shows
+    that the last one is good enough: errors fall with the square of the number of steps. Errors
+    are root mean squares over the run, of every position and rotation. The error of the model
+    itself, from too few modes or bodies, is not part of them.
 
     Parameters
     ----------
     h : float
         Output grid [time].
     tolerance : Tolerance
-        Of the run, by default 1e-3 of the extent and 1e-3 rad.
+        Allowed error of the run, by default 1e-3 of the extent and 1e-3 rad.
 
     Returns
     -------
     Result
-        Of the last run, with its estimated `error`, in what is allowed, and `all_seconds`.
+        The last run, with its estimated `error`, relative to the allowed one, and `all_seconds`.
 
     Raises
     ------
     SimulationError
-        A run that fails, or an error that does not fall: the motion may be chaotic. The last run is
-        in the error's `result`.
+        A run fails, or the error does not fall: the motion may be chaotic. The last run is the
+        `result` of the exception.
     """
     wanted = (tolerance or Tolerance()).check()
     share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
@@ -73,12 +74,12 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
 
 
 def difference(one: Result, other: Result, allowed: Tolerance) -> float:
-    """Largest root mean square of the difference of two runs on one grid, in what is allowed."""
-    size, turns = one.system.magnitude, turning(one.model, one.numbering)
+    """Largest root mean square difference of two runs on one grid, relative to the allowed one."""
+    size, rotations = one.system.magnitude, rotational(one.model, one.numbering)
     if not one.model.planar:
-        size = np.where(turns, 0.0, size)       # these are in the matrices
+        size = np.where(rotations, 0.0, size)       # rotations are compared by their matrices
     q = one.recorded("q") - other.recorded("q")
-    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, turns)
+    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, rotations)
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
     return float(max(found.max(), (angles / allowed.allowed(1.0, True)).max(initial=0.0)))

@@ -1,4 +1,4 @@
-"""The arrays of a state before its first step: where a model begins, and scratch memory."""
+"""The arrays of a state before the first step: the initial configuration, and scratch memory."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from sebody.engine.state import (
     CONTRACTION,
     CONTROLS,
     CURRENT_STEP,
-    RENEWED,
+    EVALUATED,
     STEP,
     WANTED,
     State,
@@ -35,28 +35,29 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         Whether the loop keeps an inverse of the iteration matrix.
     """
     counts = record_counts(numbering)
-    n, total, items = numbering.free, numbering.total, counts["items"]
+    n, total, ports = numbering.free, numbering.total, counts["ports"]
     q, v = _start(model, numbering)
     R = np.tile(np.eye(3).ravel(), counts["rotations"])
     zeros = np.zeros
     clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
     clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
     clock[CONTRACTION] = SLOWEST
-    control[WANTED] = RENEWED
+    control[WANTED] = EVALUATED
     coefficients = zeros(COEFFICIENTS.size(counts))
     coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
     state = State.of(
         counts,
         aux=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
         v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total), T=R.copy(),
-        loads=zeros(3 * items), loads_old=zeros(3 * items), powers=zeros(items),
-        powers_old=zeros(items), coefficients=coefficients,
+        loads=zeros(3 * ports), loads_old=zeros(3 * ports), powers=zeros(ports),
+        powers_old=zeros(ports), coefficients=coefficients,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
-        turned=zeros(int(system.width.max()) ** 2), residual=zeros(total), forces=zeros(total),
+        rotated_matrix=zeros(int(system.width.max()) ** 2), residual=zeros(total),
+        forces=zeros(total), constraint_residuals=zeros(total), shift=zeros(total),
         correction=zeros(whole_vectors(total) + LANES), solution=zeros(system.slot_unknowns.size),
         last_correction=zeros(total), last_change=zeros(total),
-        moved=np.ones(len(system.summands), dtype=bool), gaps=zeros(total), shift=zeros(total),
-        strictness=zeros(total), expansion=zeros(_expansion_size(system)),
+        moved=np.ones(len(system.summands), dtype=bool),
+        error_weights=zeros(total), expansion=zeros(_expansion_size(system)),
         matrix=zeros(system.rows.size + 1), scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
@@ -67,7 +68,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
 
 
 def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
-    """Initial places and velocities of all coordinates."""
+    """Initial values and velocities of all coordinates."""
     q, v = np.zeros((2, numbering.total))
     for node in (*model.nodes.values(), *model.grounds):
         for triplet in (node.position, node.rotation):
@@ -82,6 +83,6 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
 
 
 def _expansion_size(system: System) -> int:
-    """Scratch of links: a rotation, and the largest matrix of an element before and after."""
+    """Numbers in `State.expansion`: a 3x3 block, half and wholly expanded element matrices."""
     return 9 + int(max((w * wide + wide * wide for _, w, wide, *_ in system.links.elements),
                        default=0))

@@ -12,7 +12,9 @@ from sebody.kernels.layout import TANGENT
 
 
 def evaluate(system: System, state: State, of_bodies: int, of_others: int, what: str) -> None:
-    """Ask kernels of superelements and the others for their tasks; forces go to `state.residual`.
+    """Evaluate the elements; their forces go to `state.residual`.
+
+    Kernels of superelements are given one task, all others another one.
 
     Raises
     ------
@@ -24,24 +26,24 @@ def evaluate(system: System, state: State, of_bodies: int, of_others: int, what:
         raise InputError(f"{what} cannot be evaluated: {REASONS[status]}")
 
 
-def matrix(system: System, state: State, what: str, *, mass: float, rate: float, place: float,
-           constraint: float) -> csc_matrix:
+def matrix(system: System, state: State, what: str, *, mass: float, damping: float,
+           stiffness: float, constraint: float) -> csc_matrix:
     """Weighted sum of the exact derivatives of the forces, in body axes.
 
     Parameters
     ----------
     what : str
         Name of the state in the message of an error.
-    mass, rate, place, constraint : float
-        Weights of the derivatives by accelerations, velocities, positions and rotations, and of
-        constraints and multipliers.
+    mass, damping, stiffness, constraint : float
+        Weights of the derivatives with respect to accelerations, velocities, positions and
+        rotations, and of constraints and multipliers.
 
     Raises
     ------
     InputError
         The state cannot be evaluated.
     """
-    state.set_coefficients(c_mass=mass, c_rate=rate, c_place=place, c_geo=1.0,
+    state.set_coefficients(c_mass=mass, c_damping=damping, c_stiffness=stiffness, c_geo=1.0,
                            c_constraint=constraint)
     evaluate(system, state, TANGENT, TANGENT, what)
     sum_matrices(system, state, state.residual)
@@ -49,7 +51,7 @@ def matrix(system: System, state: State, what: str, *, mass: float, rate: float,
 
 
 def assembled(system: System, state: State) -> csc_matrix:
-    """The assembled matrix, without padding."""
+    """The matrix in `State.matrix` as a sparse one, without padding."""
     n, entries = system.diagonal.size, state.matrix[:-1]
     kept = np.flatnonzero((entries != 0.0) & (system.rows < n))
     return csc_matrix((entries[kept], (system.rows[kept], system.columns[kept])), shape=(n, n))

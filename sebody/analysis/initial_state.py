@@ -12,9 +12,9 @@ from sebody.engine.evaluate import (
     set_loads,
     set_powers,
     to_body_axes,
-    turn_rotations,
+    update_rotations,
 )
-from sebody.engine.links import place_hanging
+from sebody.engine.links import place_dependent
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -23,8 +23,8 @@ from sebody.model.mechanism import Mechanism
 from sebody.results.recording import Start
 
 WHAT = "the initial state"
-SMALL = 1e-8            # residuals of constraints, relative to lengths and velocities
-HEAVY = 1e10            # mass that keeps velocities the user gave
+SMALL = 1e-8            # largest residual of constraints, relative to positions or velocities
+HEAVY = 1e10            # added mass, relative, that keeps velocities the user gave
 
 
 def start(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
@@ -33,17 +33,17 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     Raises
     ------
     InputError
-        Positions off their joints, given velocities that do not fit, constraints that contradict
-        each other, an unknown without mass.
+        Initial positions violate a joint, given velocities do not fit, constraints contradict
+        each other, or an unknown has no mass.
     """
     set_loads(system, state.loads, 0.0)
     state.loads_old[:] = state.loads
     move_prescribed(system, state)
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
     multipliers = np.flatnonzero(system.is_multiplier)
     masses = _masses(system, state)
-    gaps = state.residual[multipliers]
-    _check(gaps, np.abs(state.q).max(), "position", multipliers, numbering,
+    residuals = state.residual[multipliers]
+    _check(residuals, np.abs(state.q).max(), "position", multipliers, numbering,
            "start from a state the joints allow")
     solver = Solver(masses, numbering, multipliers)
     changed = _fit_velocities(model, system, numbering, state, masses, multipliers)
@@ -56,18 +56,18 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
 
 
 def _accelerate(system: System, numbering: Numbering, state: State, solver: Solver) -> None:
-    """Accelerations and multipliers of a state."""
+    """Solve for accelerations and multipliers of a state."""
     moving = system.is_multiplier[:numbering.total] == 0
     solved = np.arange(numbering.total) < numbering.free
     state.a[solved & moving], state.q[~moving] = 0.0, 0.0
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
     evaluate(system, state, RESIDUAL, ACCELERATION, WHAT)
     to_body_axes(system, state.frames, state.residual, False)
     answer = np.zeros(numbering.total)
     answer[:numbering.free] = -solver(state.residual[:numbering.free].copy())
     to_body_axes(system, state.frames, answer, True)
     state.a[solved & moving], state.q[~moving] = answer[solved & moving], answer[~moving]
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
 
 
 def acceleration_rates(system: System, numbering: Numbering, state: State, dt: float) -> NDArray:
@@ -79,7 +79,7 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
     state.v[:] += dt * state.a
     set_loads(system, state.loads, dt)
     move_prescribed(system, state)
-    turn_rotations(system, state)
+    update_rotations(system, state)
     multipliers = np.flatnonzero(system.is_multiplier)
     _accelerate(system, numbering, state, Solver(_masses(system, state), numbering, multipliers))
     later = state.a.copy()
@@ -90,8 +90,8 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
 
 
 def _masses(system: System, state: State) -> csc_matrix:
-    """Masses and constraints; leaves the forces in `residual`."""
-    return matrix(system, state, WHAT, mass=1.0, rate=0.0, place=0.0, constraint=1.0)
+    """Matrix of masses and constraints; the forces are left in `state.residual`."""
+    return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0)
 
 
 def _check(values: NDArray, size: float, what: str, multipliers: NDArray, numbering: Numbering,
@@ -106,7 +106,10 @@ def _check(values: NDArray, size: float, what: str, multipliers: NDArray, number
 
 def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, state: State,
                     masses: csc_matrix, multipliers: NDArray) -> dict[str, float]:
-    """Change velocities as little as the kinetic energy allows; those given stay."""
+    """Fit velocities by the smallest change in the norm of kinetic energy; given ones stay.
+
+    Returns the triplets whose velocity changed, and by how much.
+    """
     if not multipliers.size:
         return {}
     size = max(np.abs(state.v).max(), 1e-300)
@@ -126,7 +129,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     answer[multipliers] = 0.0
     to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
-    place_hanging(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
     given = [t for t in triplets if t.given]
     for triplet in given:
         change = np.abs(answer[coordinates(numbering, triplet)]).max()

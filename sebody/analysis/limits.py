@@ -1,6 +1,6 @@
-"""What a run is warned of: states in which theory says that its model or its scheme is wrong.
+"""Warnings of a run: states in which theory says that its model or its scheme is wrong.
 
-Checked on few of the recorded states, after the compiled loop: it costs the loop nothing.
+Only few of the recorded states are checked, after the compiled loop, which is not slowed down.
 """
 
 import warnings
@@ -19,9 +19,9 @@ from sebody.model.parts import Superelement
 from sebody.results.recording import record_counts
 
 LINEAR = 0.3            # rad, local rotation up to which stiffness is linear, see README
-STATES = 3000           # of bodies that are looked at in a stretch of a run,
-FEWEST, MOST = 10, 200  # rows of them
-FLAT = 1e-3             # smallest to largest spread of nodes that a frame can live on
+STATES = 3000           # states of bodies that are checked in a piece of a run
+FEWEST, MOST = 10, 200  # bounds of the recorded states these are taken from
+FLAT = 1e-3             # smallest ratio of the spreads of nodes that define a frame
 
 
 class Watch:
@@ -40,7 +40,7 @@ class Watch:
             warnings.warn(message, LimitWarning, stacklevel=4)
 
     def start(self, bodies: dict[str, Superelement], scheme: Scheme, constrained: bool) -> None:
-        """What is known before the first step."""
+        """Give the warnings that are known before the first step."""
         undamped = scheme.gamma == 0.5 and scheme.alpha_f == scheme.alpha_m
         if constrained and undamped and not scheme.stabilized:
             self.say("scheme", "without numerical damping the multipliers of index-3 constraints "
@@ -69,10 +69,10 @@ class Watch:
         rows = rows[::-(-len(rows) // most)]
         parts = RECORD.slices(record_counts(numbering))
         for group in self._groups:
-            turned, spins = _motion(model.planar, group, rows, parts)
-            for k in np.flatnonzero(turned > LINEAR):
+            local, spins = _motion(model.planar, group, rows, parts)
+            for k in np.flatnonzero(local > LINEAR):
                 name = group.bodies[k].name
-                self.say(f"turn {name}", f"local rotation {turned[k]:.2g} rad of body {name!r} "
+                self.say(f"turn {name}", f"local rotation {local[k]:.2g} rad of body {name!r} "
                          f"exceeds the linear range, {LINEAR} rad: divide it")
             speeds = np.linalg.norm(spins, axis=2)
             for k in np.flatnonzero(speeds.max(axis=0) > group.least):
@@ -93,10 +93,10 @@ class Group(NamedTuple):
     """Bodies with the same number of moving rotations, m each."""
 
     bodies: list[Superelement]
-    frames: NDArray         # (b,) which frame is theirs
+    frames: NDArray         # (b,) numbers of their frames
     places: NDArray         # (b, m) first coordinates of the rotations
-    rotations: NDArray      # (b, m) which matrices, in space
-    weights: NDArray        # (b, m)
+    rotations: NDArray      # (b, m) numbers of the rotation matrices, in space
+    weights: NDArray        # (b, m) frame weights of the rotations
     least: NDArray          # (b,) lower bounds of the limits of spin
 
 
@@ -122,8 +122,8 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
 
     With options A and B the kinetic energy of a steady spin W is that of the velocities
     ``W axis x x`` of the nodes, so deflections feel the stiffness ``S - W^2 A^T M A`` with
-    ``A = skew(axis)`` at positions. What the frame follows does not deflect, and one node is the
-    pivot: the worst one.
+    ``A = skew(axis)`` at positions. Motions that the frame follows are no deflections. One node is
+    taken as the pivot of the rotation: the one that gives the lowest limit.
 
     Parameters
     ----------
@@ -134,15 +134,15 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
     planar, count = reduced.planar, len(reduced.position_nodes)
     d, size = (2, 1) if planar else (3, 3)
     n = reduced.stiffness.shape[0]
-    turn = np.zeros((n, n))
+    rotate = np.zeros((n, n))
     if axis is None:
-        turn[:d * count, :d * count] = np.eye(d * count)
+        rotate[:d * count, :d * count] = np.eye(d * count)
     else:
         own = (np.array([[0.0, -1.0], [1.0, 0.0]]) if planar else
                np.cross(np.eye(3), axis).T)
         for i in range(count):
-            turn[d * i:d * i + d, d * i:d * i + d] = own
-    inertia = turn.T @ reduced.mass @ turn
+            rotate[d * i:d * i + d, d * i:d * i + d] = own
+    inertia = rotate.T @ reduced.mass @ rotate
     lowest = np.inf
     for pivot in range(count):
         held = np.zeros((d + size, n))
@@ -160,7 +160,7 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
 
 
 def _fit(reduced) -> NDArray:
-    """Turn of the best fit by small deflections, rows of ``sum X_j x u_j``."""
+    """Rotation of the frame of best fit by small deflections, rows of ``sum X_j x u_j``."""
     points = reduced.coordinates[list(reduced.position_nodes)]
     points = points - points.mean(axis=0)
     rows = np.zeros((3, reduced.stiffness.shape[0]))

@@ -1,6 +1,6 @@
-"""Small motion about a state, at rest or turning steadily: exact matrices and eigenvalues.
+"""Small motion about a state, at rest or in steady rotation: exact matrices and eigenvalues.
 
-In axes that turn with the angular velocity W of the state, a position moves as x + xi, a rotation
+In axes that rotate with the angular velocity W of the state, a position moves as x + xi, a rotation
 as R exp(theta). Then dv = xi' + W x xi, da = xi'' + 2 W x xi' + W x (W x xi), and with the material
 W of the node dOmega = theta' + W x theta, dA = theta'' + W x theta'.
 """
@@ -16,7 +16,7 @@ from sebody.analysis.evaluation import matrix
 from sebody.analysis.simulation import Simulation
 from sebody.assembly.numbering import coordinates
 from sebody.engine.evaluate import to_body_axes
-from sebody.engine.state import RENEWED, WANTED
+from sebody.engine.state import EVALUATED, WANTED
 from sebody.errors import InputError
 from sebody.results.result import Result
 
@@ -34,7 +34,7 @@ class Spin:
         Raises
         ------
         InputError
-            The wrong shape or no numbers, or rigid links that turn.
+            The wrong shape or no numbers, or rigid links that rotate.
         """
         planar = run.model.planar
         shape = () if planar else (3,)
@@ -43,22 +43,22 @@ class Spin:
             raise InputError(f"spin is {velocity}: give "
                              + ("a number" if planar else "three numbers"))
         spin = cls(given, planar)
-        if spin.turns and run.numbering.hanging:
-            raise InputError(f"{run.numbering.hanging[0].name} hangs on a rigid link, which the "
+        if spin.rotates and run.numbering.dependent:
+            raise InputError(f"{run.numbering.dependent[0].name} hangs on a rigid link, which the "
                              "tangents of turning states leave out: give it a body of its own")
         return spin
 
     def times(self, factor: float) -> "Spin":
-        """A faster or slower one."""
+        """The spin multiplied by a factor."""
         return Spin(factor * self.velocity, self.planar)
 
     @property
-    def turns(self) -> bool:
-        """Whether there is any."""
+    def rotates(self) -> bool:
+        """Whether the angular velocity is not zero."""
         return bool(np.any(self.velocity))
 
     def move(self, run: Simulation) -> None:
-        """Velocities and accelerations of the rotation, of fixed nodes, too."""
+        """Set velocities and accelerations to those of the rotation, of fixed nodes, too."""
         state, numbering = run.state, run.numbering
         state.v[:], state.a[:] = 0.0, 0.0
         for node in run.model.nodes.values():
@@ -81,7 +81,7 @@ class Spin:
         return run.state.R[9 * k:9 * k + 9].reshape(3, 3).T @ self.velocity
 
     def operators(self, run: Simulation | Result) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
-        """By a small motion: velocity; acceleration; by its rate: acceleration."""
+        """Derivatives of velocity and acceleration by motion, and of acceleration by its rate."""
         n = run.numbering.free
         velocity, place, rate = (np.zeros((n, n)) for _ in range(3))
         frame_of = dict(run.system.turned.tolist())
@@ -100,7 +100,7 @@ class Spin:
         return csc_matrix(velocity), csc_matrix(place), csc_matrix(rate)
 
     def _in_axes(self, run: Simulation | Result, frame: int | None) -> NDArray:
-        """``W x`` in the axes a position is solved for in."""
+        """The operator ``W x`` in the axes a position is solved for in."""
         if self.planar:
             return float(self.velocity) * np.array([[0.0, -1.0], [1.0, 0.0]])
         if frame is None:
@@ -113,24 +113,27 @@ def _skew(a: NDArray) -> NDArray:
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
-def derivative(run: Simulation | Result, mass: float, rate: float, place: float) -> csc_matrix:
-    """Sum of the exact derivatives by accelerations, velocities and places, in body axes.
+def derivative(run: Simulation | Result, mass: float, damping: float,
+               stiffness: float) -> csc_matrix:
+    """Weighted sum of the exact derivatives, in body axes.
 
-    Constraints belong to the places: a turning state moves the columns of the others.
+    Weights are those of the derivatives with respect to accelerations, velocities, and positions
+    and rotations. Constraints go with the last: in a rotating state the columns of the others are
+    combined with `Spin.operators`.
     """
     state = run.state
-    state.control[WANTED] = RENEWED     # a run that goes on needs its own matrix again
+    state.control[WANTED] = EVALUATED     # a run that goes on needs its own matrix again
     state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
-    return matrix(run.system, state, "the state", mass=mass, rate=rate, place=place,
-                  constraint=place)
+    return matrix(run.system, state, "the state", mass=mass, damping=damping,
+                  stiffness=stiffness, constraint=stiffness)
 
 
 def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
-    """Tangent stiffness in axes that turn, and the residual."""
+    """Tangent stiffness in axes that rotate with the spin, and the residual."""
     stiffness = derivative(run, 0.0, 0.0, 1.0)
     residual = run.state.residual.copy()
     to_body_axes(run.system, run.state.frames, residual, False)
-    if spin.turns:
+    if spin.rotates:
         velocity, place, _ = spin.operators(run)
         stiffness = (stiffness + derivative(run, 0.0, 1.0, 0.0) @ velocity
                      + derivative(run, 1.0, 0.0, 0.0) @ place)
@@ -155,7 +158,7 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     Parameters
     ----------
     spin : (3,) array_like or float, optional
-        Angular velocity of the axes it is described in: that of a steadily turning state.
+        Angular velocity of the axes the motion is described in: that of a steady rotation.
         Without one, the matrices of a moving state are those of the instant.
 
     Raises
@@ -163,11 +166,11 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     InputError
         A state that cannot be evaluated, a wrong spin, or one with rigid links.
     """
-    turning = Spin.of(run, spin)
-    stiffness, _ = rotating(run, turning)
+    steady = Spin.of(run, spin)
+    stiffness, _ = rotating(run, steady)
     mass, damping = derivative(run, 1.0, 0.0, 0.0), derivative(run, 0.0, 1.0, 0.0)
-    if turning.turns:
-        damping = damping + mass @ turning.operators(run)[2]
+    if steady.rotates:
+        damping = damping + mass @ steady.operators(run)[2]
     K, C, M = (A.toarray() for A in (stiffness, damping, mass))
     n = len(K)
     multipliers = np.flatnonzero(run.system.is_multiplier[:n])

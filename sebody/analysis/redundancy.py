@@ -9,7 +9,7 @@ from sebody.analysis.sparse import Scaled
 from sebody.assembly.numbering import Numbering
 from sebody.errors import InputError
 
-LARGEST = 3000          # unknowns up to which redundant constraints are sorted out
+LARGEST = 3000          # unknowns up to which singular systems are analysed by dense algebra
 
 
 def least(matrix: csc_matrix, demand: NDArray, numbering: Numbering) -> NDArray:
@@ -75,7 +75,7 @@ class Solver:
         return answer
 
     def _sort_out(self, multipliers: NDArray) -> None:
-        """Redundant constraints have many answers, mass that is missing has none."""
+        """Find redundant constraints, which allow a solution, and missing mass, which does not."""
         names, weakest = self.names, self.system.weakest
         if len(self.system.scale) > LARGEST:
             raise InputError(f"the constraints or the mass are singular at "
@@ -91,7 +91,7 @@ class Solver:
 
     def _redundant(self, constraints: NDArray, multipliers: NDArray
                    ) -> tuple[int, tuple[str, ...]]:
-        """Rank of the constraints and the joints that add nothing to it."""
+        """Rank of the constraints, and the joints whose constraints do not increase the rank."""
         if not multipliers.size:
             return 0, ()
         names, lengths = self.names, np.linalg.norm(constraints, axis=1)
@@ -105,7 +105,7 @@ class Solver:
                                          for k in order[rank:]))
 
     def _check_mass(self, free: NDArray, mass: NDArray, unknowns: NDArray) -> None:
-        """Whatever the constraints leave free must have mass."""
+        """Refuse a motion that the constraints leave free and that has no mass."""
         if not len(free):
             return
         mass = free @ mass @ free.T

@@ -1,4 +1,4 @@
-"""Stop a run, save it, and go on later as if it had not stopped, bit for bit."""
+"""Save a run to a file and continue it later, bit for bit as if it had not been stopped."""
 
 import json
 from dataclasses import fields

@@ -1,4 +1,4 @@
-"""Runs: a consistent start, and driving the compiled loop."""
+"""Simulations: a consistent initial state, then calls of the compiled loop."""
 
 import time
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from sebody.analysis.limits import Watch
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance
 from sebody.assembly.build import build
-from sebody.assembly.numbering import turning
+from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
 from sebody.engine.state import (
     ADAPTIVE,
@@ -42,11 +42,11 @@ from sebody.model.model import Model
 from sebody.results.recording import Start
 from sebody.results.result import Result
 
-FIRST_STEP = 1e-3       # of the output grid, where nothing is accelerated at the start
+FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerated at the start
 
 
 class Simulation:
-    """A run that can be driven piece by piece: ``run_to(t)`` as often as wanted.
+    """A run that is computed piece by piece: ``run_to(t)`` as often as wanted.
 
     Parameters
     ----------
@@ -58,9 +58,9 @@ class Simulation:
     output_every : int
         Keep every so many steps.
     tolerance : Tolerance, optional
-        Allowed error of a step: steps are chosen, corners of load tables met, and `h` is but the
-        output grid, on which the state is interpolated. Errors of many steps add up: see
-        `simulate_within` for that of the whole run.
+        Allowed error of a step. With a tolerance, step lengths are chosen, steps end at corners of
+        load tables, and `h` is only the output grid, on which the state is interpolated. Errors of
+        many steps add up: see `simulate_within` for the error of the whole run.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class Simulation:
         self.state.control[RECORDED] = 0
         write_record(self.state, first)
         self.rows.append(first.rows)
-        # nothing to do yet: compiles the loop, or reads it from the cache, before time is measured
+        # no steps yet: the loop is compiled, or read from the cache, before time is measured
         advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
 
     @property
@@ -147,13 +147,13 @@ class Simulation:
         return self
 
     def result(self) -> Result:
-        """What has been computed so far."""
+        """The results computed so far."""
         return Result(self.model, self.numbering, self.system, self.state,
                       np.concatenate(self.rows), self.seconds, self.failure, self.start,
                       tuple(self.watch.messages))
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
-        """The scheme, by default one that suits the steps and the constraints."""
+        """The given scheme, or by default one that suits the steps and the constraints."""
         constrained = bool(self.numbering.multipliers)
         if scheme is None:
             return generalized_alpha(index=2 if constrained and variable else 3)
@@ -163,17 +163,20 @@ class Simulation:
         return scheme if constrained else scheme._replace(stabilized=False)
 
     def _choose_steps(self, tolerance: Tolerance) -> None:
-        """Steps by their error; the first one is short against what accelerations allow."""
+        """Switch on variable steps; the first step is short against the accelerations."""
         n, state = self.numbering.free, self.state
-        turns = turning(self.model, self.numbering)[:n]
-        state.strictness[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], turns)
-        bend = np.abs(state.a[:n] * state.strictness[:n]).max()
+        rotations = rotational(self.model, self.numbering)[:n]
+        state.error_weights[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], rotations)
+        bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
         state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock[LARGEST_ERROR] = 0.0
         state.control[ADAPTIVE] = 1
 
     def _offset_accelerations(self) -> None:
-        """Auxiliary accelerations are those of a later time, which multipliers show."""
+        """Set auxiliary accelerations to those of the later time they belong to.
+
+        Multipliers of the first steps would show the difference.
+        """
         scheme, state = self.scheme, self.state
         h = state.clock[CHOSEN] if self.tolerance else self.h
         state.clock[AUX_STEP] = h
@@ -181,7 +184,7 @@ class Simulation:
             self.system, self.numbering, state, 1e-3 * h)
 
     def factorize(self) -> None:
-        """Factors with exchanges of rows, where elimination in order met a small pivot."""
+        """Factorize with row exchanges, where elimination by blocks met a small pivot."""
         scale = diags(self.state.scale[:self.numbering.free])
         matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
         self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)

@@ -1,15 +1,15 @@
-"""Solution of sparse systems in units of their own, outside the loop."""
+"""Solution of scaled sparse systems, outside the loop."""
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-SINGULAR = 1e-13    # smallest pivot of a regular matrix, of the largest
+SINGULAR = 1e-13    # smallest pivot of a regular matrix, relative to the largest
 
 
 class Scaled:
-    """A matrix scaled alike by rows and columns, and its factors where SuperLU finds any.
+    """A matrix with symmetrically scaled rows and columns, and its factors if it has any.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Scaled:
 
     @property
     def weakest(self) -> int | None:
-        """The unknown of the smallest pivot, None where elimination did not get that far."""
+        """The unknown of the smallest pivot, None if a pivot is exactly zero."""
         if self.factors is None:
             return None
         pivot = int(np.argmin(np.abs(self.factors.U.diagonal())))
@@ -47,7 +47,7 @@ class Scaled:
         return self.scale * self.factors.solve(self.scale * right)
 
     def least(self, right: NDArray) -> tuple[NDArray, NDArray]:
-        """Solution of least norm by dense arithmetic, and the scaled residuals it leaves."""
+        """Solution of least norm by dense algebra, and the scaled residuals that remain."""
         demand = self.scale * right
         answer = np.linalg.lstsq(self.matrix.toarray(), demand, rcond=1e-11)[0]
         return self.scale * answer, np.abs(self.matrix @ answer - demand)

@@ -6,15 +6,15 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.analysis.linearization import Spin, rotating
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.sparse import Scaled
-from sebody.engine.evaluate import set_loads, to_body_axes, turn_rotations
+from sebody.engine.evaluate import set_loads, to_body_axes, update_rotations
 from sebody.errors import InputError, SimulationError
 from sebody.kernels.layout import FIELD, RECORD_T
 from sebody.model.model import Model
 from sebody.results.result import Result
 
 ITERATIONS = 25
-SMALLEST = 1.0 / 1024       # share of the load, below which its step is not cut
-PUSH = 1e-6                 # of the forces: that acts on what nothing holds
+SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
+PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 
 
 def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = 1e-11,
@@ -50,7 +50,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         raise InputError(f"steps is {steps}: give a whole number >= 1")
     run = Simulation(model, 1.0)
     state, field = run.state, run.state.coefficients[FIELD:].copy()
-    turning = Spin.of(run, spin)
+    steady = Spin.of(run, spin)
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
     state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
     set_loads(run.system, state.loads, t)
@@ -61,7 +61,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         kept = state.now.copy()
         target = min(share + step, 1.0)
         state.loads[:], state.coefficients[FIELD:] = target * loads, target * field
-        if _balance(run, tolerance, turning.times(np.sqrt(target))):
+        if _balance(run, tolerance, steady.times(np.sqrt(target))):
             share = target
             state.now[RECORD_T] = share
             run.rows.append(state.now[None].copy())
@@ -79,7 +79,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
     """Newton's iteration with the exact tangent; False where it does not converge."""
     system, state, n = run.system, run.state, run.numbering.free
     size = system.magnitude[:n]
-    sized = size > 0.0              # modes and multipliers follow
+    sized = size > 0.0              # not modes and multipliers, which have no magnitude
     state.frames_old[:] = state.frames
     for _ in range(ITERATIONS):
         spin.move(run)
@@ -93,7 +93,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
             return False
         state.R_old[:], state.dq[:] = state.R, -correction
         state.q[:] -= correction
-        turn_rotations(system, state)
+        update_rotations(system, state)
         if change < tolerance:
             spin.move(run)
             return True
@@ -101,7 +101,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
 
 
 def _solution(solver: Scaled, residual: NDArray) -> NDArray:
-    """Correction; what nothing holds and nothing pushes, such as the angle of a spin, stays."""
+    """Correction; motions without stiffness and load, such as the angle of a spin, are kept."""
     if solver.regular:
         return solver.solve(residual)
     answer, left = solver.least(residual)

@@ -34,8 +34,8 @@ class Tolerance(NamedTuple):
                              "of positions and of rotations")
         return self
 
-    def allowed(self, magnitude: ArrayLike, turning: ArrayLike) -> NDArray:
+    def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
         """Allowed error of coordinates of a magnitude; infinite where that is zero."""
-        absolute = np.where(turning, self.rotation, self.position)
+        absolute = np.where(rotational, self.rotation, self.position)
         size = np.asarray(magnitude)
         return np.where(size > 0.0, absolute + self.relative * size, np.inf)

@@ -1,8 +1,8 @@
-"""The axes that unknowns are solved for in, and what turns element matrices into them.
+"""The axes that unknowns are solved for in, and which element matrices are rotated into them.
 
-Free positions are solved for in the axes of the first body they belong to. There the tangent of a
-body hardly changes, so one factorization serves many steps. Matrices of superelements are in the
-axes of their own frame, those of joints and loads in global ones (-1).
+Free positions are solved for in the frame of the first body they belong to. In these axes the
+tangent of the body hardly changes, so one factorization serves many steps. Element matrices of
+superelements are in the axes of their own frame, all others in global axes (-1).
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from sebody.model.mechanism import Mechanism
 
 
 def body_axes(model: Mechanism, numbering: Numbering, batches: Batches) -> dict[str, NDArray]:
-    """The members `turned`, `turned_blocks` and `linked` of `System`."""
+    """The members `rotated`, `rotated_blocks` and `linked` of `System`."""
     frame_of = _frames(model, numbering)
     blocks, start = [], 0
     for batch in batches.all:
@@ -28,28 +28,28 @@ def body_axes(model: Mechanism, numbering: Numbering, batches: Batches) -> dict[
     linked = (any(block[0] < first_load for block in blocks)
               or any(len(equation.triplets) > 1 for equation in model.constraints))
     return {"linked": np.array([int(linked)]),
-            "turned": np.array([item for item in frame_of.items() if item[1] >= 0],
+            "rotated": np.array([item for item in frame_of.items() if item[1] >= 0],
                                dtype=np.int64).reshape(-1, 2),
-            "turned_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
+            "rotated_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
 
 
 def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
-    """Of first coordinates of positions the frame they are solved for in."""
+    """First coordinates of positions -> number of the frame they are solved for in."""
     frame_of: dict[int, int] = {}
     for k, body in enumerate(model.bodies.values()):
         for triplet in body.positions:
             if triplet.solved:
                 frame_of.setdefault(numbering.triplets[id(triplet)], k)
-    for triplet in numbering.hanging:
+    for triplet in numbering.dependent:
         frame_of[numbering.triplets[id(triplet)]] = -1
     return frame_of
 
 
-def summands(batches: Batches, turned: NDArray, links: Links) -> NDArray:
-    """Element matrices, and what is done to them before they are summed."""
+def summands(batches: Batches, rotated: NDArray, links: Links) -> NDArray:
+    """The member `summands` of `System`: where element matrices are, and their special rows."""
     width = np.repeat([b.width for b in batches.all], [len(b.rows) for b in batches.all])
     start = starts(width ** 2)
     linked = np.full(len(width), -1)
     linked[np.searchsorted(start, links.elements[:, 0])] = np.arange(len(links.elements))
-    return np.column_stack([start[:-1], width, np.searchsorted(turned[:, 0], start[:-1]),
-                            np.searchsorted(turned[:, 0], start[1:]), linked])
+    return np.column_stack([start[:-1], width, np.searchsorted(rotated[:, 0], start[:-1]),
+                            np.searchsorted(rotated[:, 0], start[1:]), linked])

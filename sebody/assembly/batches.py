@@ -30,15 +30,15 @@ class Batch(NamedTuple):
     frames: list[int]               # number of the frame of each element, -1 for global axes
     rows: list[list[int]]           # index rows
     unknowns: list[list[int]]       # unknowns of each element
-    owners: list[int]               # id of what each element stands for
+    owners: list[int]               # id of the body, constraint or load of each element
 
 
 class Batches(NamedTuple):
-    """All of a model: superelements, then what does no work, then what does."""
+    """All of a model: superelements, then elements without a power port, then those with one."""
 
     all: list[Batch]
-    first_joint: int        # first batch that is none of superelements
-    first_power: int        # first batch of what does work
+    first_joint: int        # first batch that is not of superelements
+    first_power: int        # first batch of elements with a power port
     constants: NDArray
 
 
@@ -50,7 +50,7 @@ class _Constants:
         self.size = 0
 
     def add(self, row: NDArray) -> int:
-        """Where the row begins."""
+        """Append a row; returns where it begins."""
         self.rows.append(row)
         self.size += len(row)
         return self.size - len(row)
@@ -90,7 +90,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         first = numbering.modes[body.name]
         unknowns += range(first, first + body.body.modes)
         row = index_row(body.name, kernel, unknowns, constants=row_of[key], frame=frame,
-                        item=numbering.items.get(id(body), 0), positions=len(body.positions),
+                        port=numbering.ports.get(id(body), 0), positions=len(body.positions),
                         nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations])
         _append(batches, kernel, frame, row.tolist(), unknowns, id(body))
     return list(batches.values())
@@ -105,7 +105,7 @@ def _element_batches(numbering: Numbering, constants: _Constants,
         row = index_row(element.name, kernel, unknowns, frame=0,
                         constants=constants.add(constants_row(element.name, kernel, {},
                                                               element.constants)),
-                        item=numbering.items.get(id(element), 0), positions=positions_of(element),
+                        port=numbering.ports.get(id(element), 0), positions=positions_of(element),
                         nodes=[numbering.rotations[id(t)] for t in element.triplets
                                if id(t) in numbering.rotations])
         function = [] if element.function is None else [element.function.address]
@@ -135,7 +135,7 @@ def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
 
 
 def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
-    """What the kernel of a superelement reads, by name."""
+    """Values of the constants that the kernel of a superelement reads, by name."""
     reduced = body.body
     points = reduced.coordinates[list(reduced.position_nodes)]
     origin = body.alpha @ points
@@ -149,5 +149,5 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
 
 
 def starts(sizes: Iterable[int]) -> NDArray:
-    """First place of every piece of a row, and the end of the last."""
+    """First index of every piece when pieces of these sizes follow one another, and the end."""
     return np.concatenate([[0], np.cumsum(list(sizes))]).astype(np.int64)

@@ -1,21 +1,21 @@
-"""A model as the flat arrays the compiled loop runs on."""
+"""From a model to the flat arrays that the compiled loop runs on."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.axes import body_axes, summands
 from sebody.assembly.batches import Batches, make_batches, starts
-from sebody.assembly.items import item_arrays
 from sebody.assembly.links import link_arrays, with_entries
 from sebody.assembly.numbering import Numbering, coordinates, number
 from sebody.assembly.places import dense_layout, element_places, sparse_layout
+from sebody.assembly.ports import port_arrays
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.kernels.layout import LANES, whole_vectors
 from sebody.kernels.loader import load
 from sebody.model.mechanism import Mechanism
 
-DENSE_LIMIT = 24        # above this many unknowns elimination by blocks is faster than an inverse
+DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
 
 
 def build(model: Mechanism) -> tuple[System, Numbering]:
@@ -35,7 +35,7 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     batches = make_batches(model, numbering)
     axes = body_axes(model, numbering, batches)
     own_row, own_column = element_places(batches.all)
-    links, linked_row, linked_column = link_arrays(model, numbering, batches.all, axes["turned"])
+    links, linked_row, linked_column = link_arrays(model, numbering, batches.all, axes["rotated"])
     row, column = np.r_[own_row, linked_row], np.r_[own_column, linked_column]
     entries, matrix = (dense_layout(row, column, numbering.free)
                        if numbering.free <= DENSE_LIMIT else
@@ -44,9 +44,9 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     system = System(
         **_batch_arrays(batches), J_entry=own_entries.astype(np.int32), **matrix, **axes,
         is_multiplier=_multipliers(model, numbering), rotation_at=_rotation_starts(numbering),
-        summands=summands(batches, axes["turned_blocks"], links),
+        summands=summands(batches, axes["rotated_blocks"], links),
         dimension=np.array([model.dimension]), magnitude=_magnitude(model, numbering),
-        **item_arrays(numbering.histories, numbering.prescribed),
+        **port_arrays(numbering.histories, numbering.prescribed),
         links=with_entries(links, linked_entries), relaxed=np.zeros(1, dtype=np.int64),
         damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for batch in batches.all for owner in batch.owners]
@@ -100,7 +100,7 @@ def _rotation_starts(numbering: Numbering) -> NDArray:
 
 
 def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
-    """Sizes that rounding acts on: the model's extent for positions, one radian for rotations."""
+    """Magnitudes of coordinates: the model's extent for positions, one radian for rotations."""
     points = np.array([n.point for n in model.nodes.values()])
     size = np.zeros(numbering.total)
     for node in model.nodes.values():

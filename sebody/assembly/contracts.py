@@ -1,7 +1,7 @@
-"""Every body and element of a model against the kernel it is given to, before anything runs.
+"""Checks of every body and element of a model against its kernel, before anything runs.
 
-Kernels read and write through pointers, without bounds: a row that is too short, or a number of
-unknowns that is not the kernel's, would go unnoticed.
+Kernels read and write through pointers without bounds checks: a row that is too short, or a wrong
+number of unknowns, would go unnoticed.
 """
 
 from collections.abc import Iterable, Mapping
@@ -27,7 +27,7 @@ REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebo
 
 def check_element(element: Element, kernel: ModuleType, unknowns: int,
                   numbering: Numbering) -> None:
-    """Counts, history and work of an element.
+    """Check counts, history and power port of an element.
 
     Raises
     ------
@@ -43,15 +43,15 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
         wrong.append("it has no history and the kernel reads one")
     if element.history is not None and not kernel.POWER:
         wrong.append("it has a history and the kernel reads none")
-    if kernel.POWER != (id(element) in numbering.items):
-        wrong.append("it is no item and the kernel writes the power of one" if kernel.POWER else
-                     "it is an item and the kernel writes no power")
+    if kernel.POWER != (id(element) in numbering.ports):
+        wrong.append("it has no power port and the kernel writes power" if kernel.POWER else
+                     "it has a power port and the kernel writes no power")
     if wrong:
         raise _misfit(element.name, kernel, wrong)
 
 
 def check_superelement(body: Superelement, kernel: ModuleType) -> None:
-    """Counts and damping of a superelement.
+    """Check counts and damping of a superelement.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def constants_row(name: str, kernel: ModuleType, counts: Counts,
 
 def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[int],
               **values: int) -> NDArray:
-    """The row of integers that a kernel finds an element by.
+    """The index row of an element: where its kernel finds its data.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[in
     Raises
     ------
     InputError
-        Its numbers are not as many as the kernel reads.
+        The row is longer or shorter than the kernel reads.
     """
     rotations = len(nodes) if kernel.N_ROTATIONS is None else kernel.N_ROTATIONS
     lists = {"rotations": rotations, "nodes": nodes, "unknowns": unknowns}
@@ -116,7 +116,7 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[in
 
 def positions_of(element: Element) -> int:
     """How many positions an element is on; an internal mode counts as one."""
-    return sum(not t.turns for t in element.triplets) + (element.mode is not None)
+    return sum(not t.rotational for t in element.triplets) + (element.mode is not None)
 
 
 def counts_of(body: Superelement) -> Counts:
@@ -131,7 +131,7 @@ def _width(body: Superelement) -> int:
 
 
 def _different(facts: Iterable[tuple[str, int, int | None]]) -> list[str]:
-    """What differs; a kernel that takes any number has None."""
+    """Descriptions of facts that differ; None is of a kernel that takes any number."""
     return [f"it has {own} {what} and the kernel {read}" for what, own, read in facts
             if read is not None and own != read]
 

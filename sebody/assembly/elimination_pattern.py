@@ -1,4 +1,4 @@
-"""Where the blocks of a large sparse matrix and of its factors are."""
+"""Positions of the blocks of a large sparse matrix and of its factors."""
 
 from typing import NamedTuple
 
@@ -18,16 +18,16 @@ class Pattern(NamedTuple):
 
     @property
     def products(self) -> int:
-        """Products of blocks that an elimination takes."""
+        """Number of products of blocks in an elimination."""
         return int(((self.starts[1:] - self.diagonal - 1) ** 2).sum())
 
 
 def best_slots(row: NDArray, column: NDArray, groups: NDArray, n: int) -> tuple[NDArray, Pattern]:
-    """Slots of n unknowns: one after the other, or groups on whole blocks if that is less work."""
+    """Slots of n unknowns: contiguous, or each group from a new block on if that is cheaper."""
     groups = np.unique(groups[groups < n])
-    gaps = np.zeros(n, dtype=np.int64)
-    gaps[groups[1:]] = -np.diff(groups) % LANES
-    choices = [np.arange(n), np.arange(n) + np.cumsum(gaps)]
+    padding = np.zeros(n, dtype=np.int64)
+    padding[groups[1:]] = -np.diff(groups) % LANES
+    choices = [np.arange(n), np.arange(n) + np.cumsum(padding)]
     patterns = [block_pattern(slot[row], slot[column], slot[-1] + 1) for slot in choices]
     best = int(patterns[1].products < patterns[0].products)
     return choices[best], patterns[best]
@@ -36,7 +36,8 @@ def best_slots(row: NDArray, column: NDArray, groups: NDArray, n: int) -> tuple[
 def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
     """Pattern of a structurally symmetric n x n matrix with its fill.
 
-    What a column has below the diagonal, its parent (the first of these rows) gets, too.
+    Fill: the blocks that a column has below the diagonal are added to its parent in the
+    elimination tree, the column of the first of them.
     """
     across = -(-n // LANES)
     below: list[set[int]] = [set() for _ in range(across)]

@@ -13,20 +13,20 @@ from sebody.model.mechanism import Mechanism
 
 
 class _Ends(NamedTuple):
-    """The ends of all links, and what positions are solved for in."""
+    """Dependent positions at the ends of links, and the axes of all positions."""
 
-    hanging: list[tuple[int, int, int, int]]    # rows of `Links.hanging`
+    dependent: list[tuple[int, int, int, int]]    # rows of `Links.dependent`
     arms: list[tuple[int, int]]                 # and of `Links.arms`
     vectors: list[NDArray]
-    number: dict[int, int]                      # first coordinate -> row of hanging
+    number: dict[int, int]                      # first coordinate -> row of `dependent`
     frame_of: dict[int, int]                    # first coordinate -> frame it is solved for in
     sizes: tuple[int, int]                      # coordinates of a position and of a rotation
 
 
 def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
-                turned: NDArray) -> tuple[Links, NDArray, NDArray]:
-    """Links without their matrix entries, and rows and columns of these."""
-    ends = _ends(model, numbering, turned)
+                rotated: NDArray) -> tuple[Links, NDArray, NDArray]:
+    """Links without their matrix entries, and rows and columns of these entries."""
+    ends = _ends(model, numbering, rotated)
     elements, maps, blocks, rows, columns = [], [], [], [], []
     start = 0
     for batch in batches:
@@ -40,13 +40,13 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
                 rows += np.repeat(wide, len(wide)).tolist()
                 columns += wide * len(wide)
             start += batch.width ** 2
-    d, turning = ends.sizes
+    d, rotation_size = ends.sizes
     for _, first in ends.arms:
-        own = list(range(first, first + turning))
-        rows += np.repeat(own, turning).tolist()
-        columns += own * turning
+        own = list(range(first, first + rotation_size))
+        rows += np.repeat(own, rotation_size).tolist()
+        columns += own * rotation_size
     none = np.zeros(0, dtype=np.int64)
-    links = Links(_table(ends.hanging, 4), _table(ends.arms, 2),
+    links = Links(_table(ends.dependent, 4), _table(ends.arms, 2),
                   np.array(ends.vectors, dtype=float).reshape(-1, d), _table(elements, 7),
                   _table(maps, 1).ravel(), _table(blocks, 4), none, none)
     return links, _table(rows, 1).ravel(), _table(columns, 1).ravel()
@@ -54,29 +54,29 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
 
 def with_entries(links: Links, entries: NDArray) -> Links:
     """The links with the places of their matrix entries."""
-    turning = 3 if links.arm_vectors.shape[1] == 3 else 1
-    own, of_arms = np.split(entries, [len(entries) - len(links.arms) * turning**2])
+    rotation_size = 3 if links.arm_vectors.shape[1] == 3 else 1
+    own, of_arms = np.split(entries, [len(entries) - len(links.arms) * rotation_size**2])
     return replace(links, entries=own, arm_entries=of_arms)
 
 
-def _ends(model: Mechanism, numbering: Numbering, turned: NDArray) -> _Ends:
-    hanging, arms, vectors = [], [], []
-    for triplet in numbering.hanging:
+def _ends(model: Mechanism, numbering: Numbering, rotated: NDArray) -> _Ends:
+    dependent, arms, vectors = [], [], []
+    for triplet in numbering.dependent:
         first = len(arms)
         for rotation, arm in triplet.arms:
             arms.append((numbering.rotations.get(id(rotation), 0),
                          numbering.triplets[id(rotation)]))
             vectors.append(arm)
-        hanging.append((numbering.triplets[id(triplet)], numbering.triplets[id(triplet.root)],
+        dependent.append((numbering.triplets[id(triplet)], numbering.triplets[id(triplet.root)],
                         first, len(arms)))
-    return _Ends(hanging, arms, vectors, {row[0]: k for k, row in enumerate(hanging)},
-                 dict(turned.tolist()), (model.dimension, model.rotation_size))
+    return _Ends(dependent, arms, vectors, {row[0]: k for k, row in enumerate(dependent)},
+                 dict(rotated.tolist()), (model.dimension, model.rotation_size))
 
 
 def _expanded(unknowns: list[int], ends: _Ends,
               at_map: int) -> tuple[list[int], list[int], list[tuple[int, int, int, int]]]:
-    """Unknowns of an element with links replaced; see `sebody.engine.links` for map and blocks."""
-    d, turning = ends.sizes
+    """Unknowns of an element after replacement; `sebody.engine.links` has map and blocks."""
+    d, rotation_size = ends.sizes
     inner = {u + k for u in unknowns if u in ends.number for k in range(d)}
     wide = [u for u in dict.fromkeys(unknowns) if u not in inner]
 
@@ -89,10 +89,10 @@ def _expanded(unknowns: list[int], ends: _Ends,
     blocks = []
     for i, u in enumerate(unknowns):
         if u in ends.number:
-            _, root, first, last = ends.hanging[ends.number[u]]
+            _, root, first, last = ends.dependent[ends.number[u]]
             blocks.append((i, ends.number[u], at_map + len(local), ends.frame_of.get(root, -1)))
             local.append(first_of(root, d))
-            local += [first_of(ends.arms[k][1], turning) for k in range(first, last)]
+            local += [first_of(ends.arms[k][1], rotation_size) for k in range(first, last)]
     return wide, local, blocks
 
 

@@ -1,4 +1,4 @@
-"""Where the things of a model are among the unknowns."""
+"""Numbers of coordinates, multipliers and power ports of a model."""
 
 from collections import defaultdict
 from collections.abc import Iterable
@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.items import number_items
+from sebody.assembly.ports import number_ports
 from sebody.errors import InputError
 from sebody.model.histories import History
 from sebody.model.mechanism import Mechanism
@@ -15,20 +15,20 @@ from sebody.model.parts import Element, Triplet
 
 
 class Numbering(NamedTuple):
-    """Unknowns first, then fixed and prescribed coordinates, then those at rigid links."""
+    """Coordinates: unknowns first, then fixed and prescribed ones, then dependent positions."""
 
     free: int                           # number of unknowns
-    total: int
+    total: int                          # number of coordinates
     triplets: dict[int, int]            # id(triplet) -> first coordinate
     rotations: dict[int, int]           # id(triplet) -> number of its rotation matrix
     modes: dict[str, int]               # superelement -> first modal amplitude
     multipliers: dict[int, int]         # id(constraint) -> first multiplier
     names: list[str]                    # of every coordinate
-    hanging: list[Triplet]              # positions at the ends of rigid links
-    items: dict[int, int]               # id(constraint, load, spring, body) -> item
-    item_names: list[str]               # of what has a history or does work
-    histories: list[History]            # of every item
-    prescribed: list[tuple[int, int, int, float]]   # coordinate, item, 1 if it turns R, factor
+    dependent: list[Triplet]              # positions at the ends of rigid links
+    ports: dict[int, int]               # id(constraint, load, spring, body) -> power port
+    port_names: list[str]               # of every power port
+    histories: list[History]            # of every power port
+    prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
 
@@ -39,8 +39,8 @@ def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
     return list(range(first, first + triplet.start.size))
 
 
-def turning(model: Mechanism, numbering: Numbering) -> NDArray:
-    """Which coordinates are those of rotations."""
+def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Which coordinates belong to rotations, (total,) of bool."""
     found = np.zeros(numbering.total, dtype=bool)
     for node in model.nodes.values():
         if node.rotation is not None and id(node.rotation) in numbering.triplets:
@@ -49,11 +49,11 @@ def turning(model: Mechanism, numbering: Numbering) -> NDArray:
 
 
 def number(model: Mechanism) -> Numbering:
-    """Number the unknowns body by body; what bodies share waits for the last one that has it.
+    """Number the unknowns body by body; a triplet that bodies share belongs to the last of them.
 
-    Of a body's own those come last that joints couple to later bodies. Multipliers follow the
-    unknowns they act on. So an elimination in this order meets no zero pivot, and keeps its fill
-    close to the diagonal.
+    Of the triplets of a body, those that joints couple to later bodies come last. Multipliers
+    follow the unknowns they act on. An elimination in this order meets no zero pivot, and its fill
+    stays close to the diagonal.
 
     Raises
     ------
@@ -79,17 +79,17 @@ def number(model: Mechanism) -> Numbering:
     for triplet in used:
         if id(triplet) not in order.at and triplet.root is None:
             order.place(triplet, " (fixed)")
-    hanging = [t for t in used if t.root is not None]
-    for triplet in hanging:
+    dependent = [t for t in used if t.root is not None]
+    for triplet in dependent:
         order.place(triplet)
-    turning = [] if model.planar else [t for t in used if t.turns]
-    rotations = {id(t): k for k, t in enumerate(turning)}
+    matrices = [] if model.planar else [t for t in used if t.rotational]
+    rotations = {id(t): k for k, t in enumerate(matrices)}
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
-                     order.names, hanging, *number_items(model, order.at), np.array(groups))
+                     order.names, dependent, *number_ports(model, order.at), np.array(groups))
 
 
 class _Order:
-    """Coordinates in the order they are numbered in."""
+    """Coordinates in the order of their numbers."""
 
     def __init__(self, model: Mechanism) -> None:
         self.names: list[str] = []
@@ -109,7 +109,7 @@ class _Order:
         self.names.extend(f"{triplet.name}[{k}]{remark}" for k in range(triplet.start.size))
 
     def place_multipliers(self, triplet: Triplet) -> None:
-        """Number the multipliers of the constraints of which this was the last triplet."""
+        """Number the multipliers of constraints whose triplets are all numbered with this one."""
         for constraint in self._constraints[id(triplet)]:
             if all(id(p) in self.at or not p.solved for p in _parents(constraint.triplets)):
                 self._place(constraint)
@@ -121,7 +121,7 @@ class _Order:
 
 
 def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:
-    """The last body that a triplet is coupled to, by joints, too."""
+    """Of every triplet the last body it belongs to or is coupled to by a joint."""
     found = dict(last)
     for joint in model.constraints:
         parents = [id(p) for p in _parents(joint.triplets) if id(p) in last]
@@ -131,12 +131,12 @@ def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:
 
 
 def _parents(triplets: Iterable[Triplet]) -> list[Triplet]:
-    """The triplets that the places of these depend on."""
+    """The triplets that positions and rotations of some triplets depend on."""
     return [p for t in triplets for p in t.parents()]
 
 
 def _parts(model: Mechanism) -> list[tuple[str, list[Triplet], int]]:
-    """Bodies: name, triplets with rotations first, number of modes."""
+    """Of every body its name, its triplets with rotations first, its number of modes."""
     parts = [(b.name, [*b.rotations, *b.positions], b.body.modes) for b in model.bodies.values()]
     return parts + [(e.name, list(e.triplets[::-1]), 0) for e in model.rigid_bodies.values()]
 
@@ -155,7 +155,7 @@ def _refuse_loose(model: Mechanism, held: dict) -> None:
 
 
 def _used(model: Mechanism) -> list[Triplet]:
-    """Triplets of nodes, of bodies, and those of the ground that joints need."""
+    """Triplets of nodes and elements, those of the ground included, and their parents."""
     elements = (*model.rigid_bodies.values(), *model.constraints, *model.loads)
     found = [t for n in model.nodes.values() for t in (n.position, n.rotation) if t is not None]
     found += [t for e in elements for t in e.triplets]

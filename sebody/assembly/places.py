@@ -1,4 +1,4 @@
-"""Where entries of the element matrices go in the matrix of the system."""
+"""Positions of the entries of element matrices in the matrix of the system."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ def element_places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
 def dense_layout(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, dict[str, NDArray]]:
     """Matrix entry of each element entry, and the members of `System` that describe the matrix.
 
-    Entries of fixed coordinates go behind the end.
+    Entries of fixed coordinates go to one place behind the matrix.
     """
     columns, rows = np.divmod(np.arange(n * n, dtype=np.int32), n)
     none = np.zeros(0, dtype=np.int64)
@@ -34,7 +34,7 @@ def dense_layout(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, dict[s
 
 def sparse_layout(row: NDArray, column: NDArray,
                   numbering: Numbering) -> tuple[NDArray, dict[str, NDArray]]:
-    """The same in the blocks of an elimination."""
+    """The same as `dense_layout`, in the blocks of an elimination."""
     n = numbering.free
     free = (row < n) & (column < n)
     slot, pattern = elimination_pattern.best_slots(row[free], column[free], numbering.groups, n)

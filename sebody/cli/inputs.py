@@ -1,4 +1,4 @@
-"""What users type, read and checked: scenes with their parameters, files to be written."""
+"""Reading and checking of arguments: scenes with their parameters, files to be written."""
 
 import ast
 import inspect
@@ -26,7 +26,7 @@ def build_scene(name: str, changes: Sequence[str]) -> "Scene":
 
 
 def check_picture(path: Path | None) -> None:
-    """Refuse a picture that cannot be written, before what it shows is computed."""
+    """Refuse a picture that cannot be written before anything is computed for it."""
     if path:
         from sebody.results import plots
 

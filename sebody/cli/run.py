@@ -42,7 +42,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the scene; 1 if it fails, with what it has until then."""
+    """Run the scene; 1 if the run fails, with the results computed until then."""
     scene = build_scene(options.scene, options.changes)
     _check(options)
     print(f"{scene.name}: {scene.summary}")
@@ -74,7 +74,7 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
         raise InputError(f"the end time is {t_end}: give a number >= 0")
     rho = 0.9 if options.rho is None else options.rho
     progress = Progress()
-    warnings.simplefilter("ignore", LimitWarning)   # the summary has them
+    warnings.simplefilter("ignore", LimitWarning)   # the summary prints them
     try:
         if options.accuracy is not None:
             scheme = generalized_alpha(rho, index=2 if options.index is None else options.index)

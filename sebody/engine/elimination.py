@@ -1,12 +1,12 @@
 """Elimination of large sparse systems inside the loop, block by block in the order of the unknowns.
 
-The numbering puts unknowns behind what they act on, so no rows are exchanged across blocks and the
-pattern of the factors is known beforehand: what is left is arithmetic on small full blocks, linear
-in the number of bodies of a chain. Where a pivot is small all the same, the loop asks for a
-factorization with exchanges (SuperLU).
+Multipliers are numbered after the unknowns they act on, so no row exchanges between blocks are
+needed and the pattern of the factors, fill included, is known beforehand. The cost of a chain is
+linear in its number of bodies. If a pivot is small nevertheless, the loop asks for a factorization
+with row exchanges (SuperLU).
 
-Blocks have `LANES` rows and columns, stored by columns. Unknowns have slots in them; free slots
-have ones on the diagonal.
+Blocks have `LANES` rows and columns, stored by columns. Every unknown has a slot, a row and column
+of the blocks; free slots have ones on the diagonal.
 """
 
 
@@ -16,14 +16,15 @@ from sebody.kernels.layout import LANES
 from sebody.kernels.pipeline import compiled
 
 BLOCK = LANES * LANES
-SMALL_PIVOT = 1e-9      # of the scaled matrix
+SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
 
 
 @compiled
 def eliminate(across, starts, rows, diagonal, unknowns, matrix, column, scale):
-    """Factors L (unit diagonal blocks) and U (inverted ones) in place; False at a small pivot.
+    """Factorize in place: L with unit diagonal blocks, U with inverted ones.
 
-    Pointers; `column` is scratch for one block column, `scale` the scales of the unknowns.
+    All arguments but the first are pointers; `column` is scratch memory for one column of blocks,
+    `scale` the scales of the unknowns. Returns False at a small pivot.
     """
     for j in range(across):
         first, middle, end = starts[j], diagonal[j], starts[j + 1]
@@ -51,7 +52,7 @@ def eliminate(across, starts, rows, diagonal, unknowns, matrix, column, scale):
 
 @compiled(forceinline=True)
 def _subtract_negative(C, A, B):
-    """``C = A B`` for C zero at the start."""
+    """``C = -(C - A B)``: the product A B for a C of zeros."""
     subtract_product(C, A, B)
     for i in range(BLOCK):
         C[i] = -C[i]
@@ -59,7 +60,7 @@ def _subtract_negative(C, A, B):
 
 @compiled
 def _invert_block(D, inverse, unknowns, scale):
-    """Inverse of a block by Gauss and Jordan in order; False at a small pivot."""
+    """Invert a block by Gauss-Jordan elimination without exchanges; False at a small pivot."""
     for i in range(BLOCK):
         inverse[i] = D[i]
     for k in range(LANES):
@@ -81,7 +82,7 @@ def _invert_block(D, inverse, unknowns, scale):
 
 @compiled
 def substitute(across, starts, rows, diagonal, factors, x):
-    """Solve in place with the factors; x is by slots."""
+    """Solve in place with the factors; x is in the order of the slots."""
     for j in range(across):
         for p in range(diagonal[j] + 1, starts[j + 1]):
             subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), at(x, LANES * j))

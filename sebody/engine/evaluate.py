@@ -4,12 +4,12 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from sebody.engine.links import place_hanging, pull_back
+from sebody.engine.links import place_dependent, pull_back
 from sebody.engine.tables import cubic_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
-from sebody.kernels.layout import C_RATE, ENERGY, OK, POWERS, RESIDUAL, VELOCITY
+from sebody.kernels.layout import C_DAMPING, ENERGY, OK, POWERS, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
-from sebody.kernels.rotations import tangent_operator, turn
+from sebody.kernels.rotations import rotate, tangent_operator
 
 
 @intrinsic
@@ -47,7 +47,7 @@ def _run_part(task, b, first, count, system, state):
 
 @compiled(forceinline=True)
 def set_loads(system, loads, t):
-    """Amplitudes of the items and their rates at a time."""
+    """Amplitudes of the power ports at a time, and their first two derivatives."""
     for k in range(system.functions.shape[0]):
         if system.functions[k, 0] == 0:
             cubic_at(system.table_times, system.table_cubics, system.table_at[k],
@@ -60,38 +60,38 @@ def set_loads(system, loads, t):
 
 @compiled(forceinline=True)
 def move_prescribed(system, state):
-    """Motion of the prescribed coordinates; of rotations the increment of the step."""
+    """Set prescribed coordinates and their rates; of rotations, the increment of the step."""
     loads, old = state.loads, state.loads_old
     for k in range(system.prescribed.shape[0]):
         i = system.prescribed[k, 0]
         state.q[i], state.v[i], state.a[i], state.dq[i] = state.q_start[i], 0.0, 0.0, 0.0
     for k in range(system.prescribed.shape[0]):
-        i, item, factor = (system.prescribed[k, 0], 3 * system.prescribed[k, 1],
+        i, port, factor = (system.prescribed[k, 0], 3 * system.prescribed[k, 1],
                            system.prescribed_factor[k])
         if system.prescribed[k, 2] == 1:
-            state.dq[i] += factor * (loads[item] - old[item])
+            state.dq[i] += factor * (loads[port] - old[port])
         else:
-            state.q[i] += factor * loads[item]
-        state.v[i] += factor * loads[item + 1]
-        state.a[i] += factor * loads[item + 2]
+            state.q[i] += factor * loads[port]
+        state.v[i] += factor * loads[port + 1]
+        state.a[i] += factor * loads[port + 2]
 
 
 @compiled(forceinline=True)
-def turn_rotations(system, state):
-    """Rotations from their increments of the step."""
+def update_rotations(system, state):
+    """Set rotation matrices from the increments of the step, then the dependent positions."""
     places, dq, q = pointer_to(system.rotation_at), pointer_to(state.dq), pointer_to(state.q)
     for r in range(system.rotation_at.size):
         first = places[r]
         x, y, z = dq[first], dq[first + 1], dq[first + 2]
         q[first], q[first + 1], q[first + 2] = x, y, z
-        turn(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
-    if system.links.hanging.shape[0] > 0:
-        place_hanging(system.links, state.q, state.v, state.a, state.R)
+        rotate(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
+    if system.links.dependent.shape[0] > 0:
+        place_dependent(system.links, state.q, state.v, state.a, state.R)
 
 
 @compiled
 def set_tangent_operators(system, state):
-    """``T(dTheta)`` of the rotation increments, for the columns of the matrix."""
+    """Set ``T(dTheta)`` of the rotation increments, for the columns of the matrix."""
     for r in range(system.rotation_at.size):
         at = system.rotation_at[r]
         (state.T[9 * r], state.T[9 * r + 1], state.T[9 * r + 2], state.T[9 * r + 3],
@@ -102,10 +102,10 @@ def set_tangent_operators(system, state):
 
 @compiled(forceinline=True)
 def assemble(of_bodies, of_others, system, state, residual):
-    """Sum of the element forces in `residual`; element matrices, see `matrix` for their sum.
+    """Evaluate the elements and sum their forces in `residual`; `matrix` sums their matrices.
 
-    Kernels of superelements are asked for one task, those of joints, loads and all else for
-    another: VELOCITY and ACCELERATION of the constraints go with the RESIDUAL of the bodies.
+    Kernels of superelements are given one task, all others another one: VELOCITY and ACCELERATION
+    of the constraints are combined with the RESIDUAL of the superelements.
     """
     bodies, batches = system.first_joint[0], system.address.size
     status = run_kernels(of_bodies, 0, bodies, system, state)
@@ -120,19 +120,19 @@ def assemble(of_bodies, of_others, system, state, residual):
 
 @compiled(forceinline=True)
 def sum_forces(system, state, residual):
-    """Sum of the element forces, those on rigid links pulled back."""
+    """Sum the element forces; those on dependent positions are pulled back."""
     for i in range(residual.size):
         residual[i] = 0.0
     sums, unknowns = pointer_to(residual), pointer_to(system.g_unknown)
     for k in range(system.g_unknown.size):
         sums[unknowns[k]] += state.g[k]
-    if system.links.hanging.shape[0] > 0:
+    if system.links.dependent.shape[0] > 0:
         pull_back(system.links, state.q, state.R, residual)
 
 
 @compiled
 def _find_moved(system, state, limit):
-    """Which elements the last correction moved; it moved all others by less than `limit`."""
+    """Find the elements that the last correction moved; all others move less than `limit`."""
     k = first = 0
     limit *= limit / state.moved.size
     for b in range(system.address.size):
@@ -149,8 +149,8 @@ def _find_moved(system, state, limit):
 
 @compiled
 def _run_moved(system, state):
-    """Forces of the elements that moved; those of the others are kept."""
-    first = 0                   # of the elements, for `moved`
+    """Evaluate the forces of the elements that moved; the others keep theirs."""
+    first = 0                   # element of the batch in `moved`
     for b in range(system.address.size):
         begin = 0
         while begin < system.count[b]:
@@ -170,7 +170,7 @@ def _run_moved(system, state):
 
 @compiled
 def assemble_moved(system, state, limit):
-    """Sum of the forces, new ones of the elements that moved by more than a share of `limit`."""
+    """Sum the element forces; elements that all together moved less than `limit` keep theirs."""
     _find_moved(system, state, limit)
     status = _run_moved(system, state)
     sum_forces(system, state, state.residual)
@@ -179,32 +179,33 @@ def assemble_moved(system, state, limit):
 
 @compiled
 def take_rates(system, state):
-    """Residuals of the constraints' rates in place of those of the constraints.
+    """Put residuals of the constraints' rates in the place of those of the constraints.
 
-    Rates are divided by their derivative by an increment: the matrix stays as it is. In `gaps` is
-    what the correction of the rates will leave of the constraints.
+    Rates are divided by their derivative with respect to an increment, so the same matrix serves
+    for both. `constraint_residuals` gets the residuals of the constraints themselves that the
+    correction of their rates leaves.
     """
     status = run_kernels(VELOCITY, system.first_joint[0], system.address.size, system, state)
     n, residual = system.diagonal.size, state.residual
     for i in range(n):
-        state.gaps[i] = residual[i] * system.is_multiplier[i]
-        residual[i] -= state.gaps[i]
+        state.constraint_residuals[i] = residual[i] * system.is_multiplier[i]
+        residual[i] -= state.constraint_residuals[i]
     for k in range(system.g_unknown.size):
         unknown = system.g_unknown[k]
         if system.is_multiplier[unknown] > 0.0:
-            residual[unknown] += state.g[k] / state.coefficients[C_RATE]
+            residual[unknown] += state.g[k] / state.coefficients[C_DAMPING]
     for i in range(n):
-        state.gaps[i] -= residual[i] * system.is_multiplier[i]
+        state.constraint_residuals[i] -= residual[i] * system.is_multiplier[i]
     return status
 
 
 @compiled(forceinline=True)
 def to_body_axes(system, frames, vector, back):
-    """Turn the free positions of a vector into body axes, or back."""
-    turned, spatial = pointer_to(system.turned), system.dimension[0] == 3
-    for k in range(system.turned.shape[0]):
-        p = at(pointer_to(vector), turned[2 * k])
-        R = at(pointer_to(frames), 9 * turned[2 * k + 1])
+    """Rotate the free positions of a vector into body axes, or back."""
+    rotated, spatial = pointer_to(system.rotated), system.dimension[0] == 3
+    for k in range(system.rotated.shape[0]):
+        p = at(pointer_to(vector), rotated[2 * k])
+        R = at(pointer_to(frames), 9 * rotated[2 * k + 1])
         x, y = p[0], p[1]
         if not spatial:
             c, s = R[0], -R[3] if back else R[3]
@@ -223,7 +224,7 @@ def to_body_axes(system, frames, vector, back):
 
 @compiled(forceinline=True)
 def set_powers(system, state):
-    """Rate of work of the items in the current state."""
+    """Power of every power port in the current state."""
     if state.powers.size == 0:
         return
     if system.damped[0] == 1:
@@ -237,12 +238,12 @@ def set_powers(system, state):
 
 @compiled
 def add_prescribed_powers(system, state):
-    """What moves coordinates in a prescribed way bears the forces on them."""
+    """Power of prescribed motions: the forces on their coordinates times the velocities."""
     run_kernels(RESIDUAL, 0, system.address.size, system, state)
     sum_forces(system, state, state.residual)
     for k in range(system.prescribed.shape[0]):
         state.powers[system.prescribed[k, 1]] = 0.0
     for k in range(system.prescribed.shape[0]):
-        item = system.prescribed[k, 1]
-        state.powers[item] += (state.residual[system.prescribed[k, 0]]
-                               * system.prescribed_factor[k] * state.loads[3 * item + 1])
+        port = system.prescribed[k, 1]
+        state.powers[port] += (state.residual[system.prescribed[k, 0]]
+                               * system.prescribed_factor[k] * state.loads[3 * port + 1])

@@ -1,11 +1,12 @@
-"""Rigid links: positions at the ends of arms that turn with rotations take no part in the solution.
+"""Rigid links: positions at the ends of arms that rotate with a node are dependent coordinates.
 
-Such a position is ``x = x_root + sum_k R_k r_k``. Its motion follows from that of the unknowns, its
-forces are pulled back to them, and in element matrices its rows and columns are replaced:
-``dx = dx_root - sum_k R_k skew(r_k) T_k dq_k``.
+A dependent position is ``x = x_root + sum_k R_k r_k``. Its motion follows from that of the
+unknowns, forces on it are pulled back to root and rotations, and in element matrices its rows and
+columns are replaced by ``dx = dx_root - sum_k R_k skew(r_k) T_k dq_k``.
 
-The second-order term of the force is in the matrix, gyroscopic terms of the position's velocity and
-acceleration are not: of order h in an iteration matrix, nothing in a converged step.
+The derivative of the pull-back itself is part of the matrix. Gyroscopic terms, by which velocity
+and acceleration of a dependent position depend on the unknowns, are left out: of order h in an
+iteration matrix, without influence on a converged step.
 """
 
 from dataclasses import dataclass
@@ -22,22 +23,26 @@ from sebody.kernels.pipeline import compiled
 class Links(Arrays):
     """Rigid links as arrays: constant during a run.
 
+    Of k dependent positions with m arms in all, coordinates of a position d, and e elements that
+    act on dependent positions. Such an element has w unknowns, and W with links replaced: all that
+    are not dependent, then roots and rotations that are not among them.
+
     ==================  ============================================================================
-    hanging             (k, 4) first coordinate, that of the root, first and last + 1 of the arms
+    dependent           (k, 4) first coordinate, that of the root, first and last + 1 row of `arms`
     arms                (m, 2) number of the rotation matrix, first coordinate of the rotation
-    arm_vectors         (m, d)
-    elements            (e, 7) start of the matrix among the element matrices, width w, width W with
-                        links replaced, start in maps, in entries, first and last + 1 of the blocks
-    maps                of w local unknowns, which of the W it is; -1 for hanging ones; then of each
-                        block that of its root and of its arms
-    blocks              (b, 4) first local unknown, which of `hanging`, start in maps, frame in
-                        whose axes the root is solved for, or -1
-    entries             matrix entries of the elements with links, W x W each
-    arm_entries         matrix entries of the second-order terms, of each arm
+    arm_vectors         (m, d) the arms in the axes of their rotation
+    elements            (e, 7) start of the matrix in `State.J`, w, W, start in `maps`, start in
+                        `entries`, first and last + 1 row of `blocks`
+    maps                places among the W: of the w unknowns, -1 for dependent ones; then of the
+                        root and the rotations of each block
+    blocks              (b, 4) dependent positions of elements: first of the w unknowns, row of
+                        `dependent`, start in `maps`, axes the root is solved for in or -1
+    entries             matrix entries of these elements, W x W each
+    arm_entries         matrix entries of the derivative of the pull-back, of each arm
     ==================  ============================================================================
     """
 
-    hanging: NDArray
+    dependent: NDArray
     arms: NDArray
     arm_vectors: NDArray
     elements: NDArray
@@ -48,19 +53,19 @@ class Links(Arrays):
 
 
 @compiled
-def place_hanging(links, q, v, a, R):
-    """Positions, velocities and accelerations at the ends of the links."""
+def place_dependent(links, q, v, a, R):
+    """Set positions, velocities and accelerations of the dependent positions."""
     spatial = links.arm_vectors.shape[1] == 3
-    for k in range(links.hanging.shape[0]):
-        x, root = links.hanging[k, 0], links.hanging[k, 1]
+    for k in range(links.dependent.shape[0]):
+        x, root = links.dependent[k, 0], links.dependent[k, 1]
         for i in range(links.arm_vectors.shape[1]):
             q[x + i], v[x + i], a[x + i] = q[root + i], v[root + i], a[root + i]
-        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+        for m in range(links.dependent[k, 2], links.dependent[k, 3]):
             c, r = links.arms[m, 1], links.arm_vectors[m]
             if spatial:
                 _place_in_space(at(pointer_to(R), 9 * links.arms[m, 0]), r, c, x, q, v, a)
             else:
-                s, t = _turned(q[c], r)
+                s, t = _rotated(q[c], r)
                 q[x] += s
                 q[x + 1] += t
                 v[x] -= v[c] * t
@@ -87,20 +92,20 @@ def _cross(a, b, c, x, y, z):
 
 
 @compiled(forceinline=True)
-def _turned(angle, r):
+def _rotated(angle, r):
     c, s = np.cos(angle), np.sin(angle)
     return c * r[0] - s * r[1], s * r[0] + c * r[1]
 
 
 @compiled
 def pull_back(links, q, R, residual):
-    """Add the forces at the ends of the links to those on root and rotations."""
+    """Add the forces on dependent positions to those on their roots and rotations."""
     spatial = links.arm_vectors.shape[1] == 3
-    for k in range(links.hanging.shape[0]):
-        x, root = links.hanging[k, 0], links.hanging[k, 1]
+    for k in range(links.dependent.shape[0]):
+        x, root = links.dependent[k, 0], links.dependent[k, 1]
         for i in range(links.arm_vectors.shape[1]):
             residual[root + i] += residual[x + i]
-        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+        for m in range(links.dependent[k, 2], links.dependent[k, 3]):
             c, r = links.arms[m, 1], links.arm_vectors[m]
             if spatial:
                 f = _in_body(at(pointer_to(R), 9 * links.arms[m, 0]), residual, x)
@@ -108,7 +113,7 @@ def pull_back(links, q, R, residual):
                 for i in range(3):
                     residual[c + i] += moment[i]
             else:
-                s, t = _turned(q[c], r)
+                s, t = _rotated(q[c], r)
                 residual[c] += s * residual[x + 1] - t * residual[x]
 
 
@@ -121,7 +126,7 @@ def _in_body(R, f, x):
 
 @compiled
 def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
-    """Add the matrix J of an element with links, its rows and columns replaced."""
+    """Add the matrix J of an element, rows and columns of dependent positions replaced."""
     w, wide = links.elements[k, 1], links.elements[k, 2]
     maps, entry = links.elements[k, 3], links.elements[k, 4]
     G = pointer_to(expansion)
@@ -146,11 +151,11 @@ def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
 
 @compiled
 def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
-    """Columns, then rows, of a hanging position, given to root and rotations."""
+    """Add the columns, or the rows, of a dependent position to those of root and rotations."""
     d = links.arm_vectors.shape[1]
-    first, hung, maps = (links.blocks[b, 0], links.blocks[b, 1],
+    first, dependent, maps = (links.blocks[b, 0], links.blocks[b, 1],
                          links.blocks[b, 2])
-    arms = links.hanging[hung, 3] - links.hanging[hung, 2]
+    arms = links.dependent[dependent, 3] - links.dependent[dependent, 2]
     for part in range(arms + 1):
         count = _replacement(links, b, part, column, frames, q, R, T, G)
         to = links.maps[maps + part]
@@ -167,20 +172,20 @@ def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
 
 @compiled
 def _replacement(links, b, part, column, frames, q, rotations, operators, G):
-    """Derivative of a hanging position by its root (part 0) or the rotation of an arm.
+    """Derivative of a dependent position by its root (part 0) or the rotation of an arm.
 
-    Returns its number of columns; three numbers a row in G.
+    The derivative goes to G, three numbers a row; returns its number of columns.
     """
-    d, hung, frame = links.arm_vectors.shape[1], links.blocks[b, 1], links.blocks[b, 3]
+    d, dependent, frame = links.arm_vectors.shape[1], links.blocks[b, 1], links.blocks[b, 3]
     if part == 0:
         for i in range(d):
             for j in range(d):
                 G[3 * i + j] = 1.0 * (i == j) if frame < 0 else frames[9 * frame + 3 * i + j]
         return d
-    m = links.hanging[hung, 2] + part - 1
+    m = links.dependent[dependent, 2] + part - 1
     r = links.arm_vectors[m]
     if d == 2:
-        s, t = _turned(q[links.arms[m, 1]], r)
+        s, t = _rotated(q[links.arms[m, 1]], r)
         G[0], G[3] = -t, s
         return 1
     R, T = (at(pointer_to(rotations), 9 * links.arms[m, 0]),
@@ -197,14 +202,14 @@ def _replacement(links, b, part, column, frames, q, rotations, operators, G):
 
 @compiled
 def add_second_order(links, place, q, rotations, operators, forces, matrix):
-    """Change of the pulled-back moments as the arms turn and the forces stay."""
+    """Add the derivative of the pull-back: moments of constant forces as the arms rotate."""
     d = links.arm_vectors.shape[1]
-    for k in range(links.hanging.shape[0]):
-        x = links.hanging[k, 0]
-        for m in range(links.hanging[k, 2], links.hanging[k, 3]):
+    for k in range(links.dependent.shape[0]):
+        x = links.dependent[k, 0]
+        for m in range(links.dependent[k, 2], links.dependent[k, 3]):
             r = links.arm_vectors[m]
             if d == 2:
-                s, t = _turned(q[links.arms[m, 1]], r)
+                s, t = _rotated(q[links.arms[m, 1]], r)
                 matrix[links.arm_entries[m]] -= place * (s * forces[x] + t * forces[x + 1])
                 continue
             R, T = (at(pointer_to(rotations), 9 * links.arms[m, 0]),

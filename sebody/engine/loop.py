@@ -1,7 +1,8 @@
 """The compiled time loop: generalized-alpha on the Lie group, modified Newton, step control.
 
-One loop for every scene, resumable: it works on flat arrays and returns a code. Small systems are
-solved inside; for large ones it returns FACTOR and SOLVE and is called again with the answer.
+One loop for every scene: it works on flat arrays, returns a code and can be called again to go on.
+Where the matrix needs row exchanges, it returns FACTOR and SOLVE: the caller factorizes or solves
+and calls it again.
 """
 
 import numpy as np
@@ -13,7 +14,7 @@ from sebody.engine.evaluate import (
     take_rates,
     to_body_axes,
 )
-from sebody.engine.matrix import renew, solve
+from sebody.engine.matrix import refactorize, solve
 from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
 from sebody.engine.state import (
     ADAPTIVE,
@@ -22,6 +23,7 @@ from sebody.engine.state import (
     CHUNK,
     CONVERGED,
     DONE,
+    EVALUATED,
     FACTOR,
     FACTORED,
     FAILED,
@@ -42,7 +44,6 @@ from sebody.engine.state import (
     PROJECTED,
     READY,
     REASON,
-    RENEWED,
     SLOW,
     SOLVE,
     SOLVED,
@@ -55,14 +56,14 @@ from sebody.engine.step_control import SHORTEST, accurate, choose_step, write_be
 from sebody.kernels.layout import OK, RESIDUAL, TANGENT
 from sebody.kernels.pipeline import compiled
 
-UNMOVED = 0.03          # of the tolerance: what all elements may move and keep their forces
+UNMOVED = 0.03          # share of the tolerance that elements may move and keep their forces
 
 
 @compiled(nogil=True)
 def advance(system, state, record, scheme, last_grid, chunk, dense):
-    """Run until `last_grid`, for at most `chunk` steps, or until Python is asked for something.
+    """Run until `last_grid`, for at most `chunk` steps, or until Python has to factorize or solve.
 
-    Other threads of Python run meanwhile: two simulations share nothing that is written to.
+    Other threads of Python run meanwhile: no two simulations write to the same memory.
     """
     control = state.control
     mixed = not dense and not scheme.stabilized
@@ -72,7 +73,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
         if reason != NO_REASON:
             control[REASON] = reason
             back(state)
-            if reason == INACCURATE or not cut_step(state):     # steps that err are cut already
+            if reason == INACCURATE or not cut_step(state):     # an inaccurate step is cut already
                 return FAILED
             reason = np.int64(NO_REASON)
         if control[PHASE] == BEGIN:
@@ -96,7 +97,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             control[PHASE] = FACTORED
             if wanted != KEPT:
                 count_matrix(state, wanted)
-                if not renew(system, state, wanted, dense):
+                if not refactorize(system, state, wanted, dense):
                     reason = np.int64(NOT_FINITE)
                     continue
                 if control[PIVOTED] == 1:
@@ -104,13 +105,13 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
         if control[PHASE] == FACTORED:
             control[PHASE] = READY
             if scheme.stabilized:
-                swap(state.residual, state.gaps)
+                swap(state.residual, state.constraint_residuals)
                 control[PHASE] = PROJECT
         if control[PHASE] == PROJECT or control[PHASE] == READY:
             control[PHASE] = PROJECTED if control[PHASE] == PROJECT else SOLVED
             if control[PIVOTED] == 1:
                 return SOLVE
-            solve(system, state, dense)     # the one place: where there are two it is not inlined
+            solve(system, state, dense)     # the only call: with two calls it would not be inlined
         if control[PHASE] == PROJECTED:
             _take_shift(system, state)
             control[PHASE] = READY
@@ -121,18 +122,18 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
 
 @compiled(forceinline=True)
 def _evaluate(system, state, scheme, wanted, mixed):
-    """Forces of the iterate and the wanted element matrices; returns the answer of the kernels."""
-    if wanted == RENEWED:
+    """Evaluate forces and wanted element matrices of the iterate; returns the kernels' status."""
+    if wanted == EVALUATED:
         set_tangent_operators(system, state)
     if (wanted == KEPT and state.control[ITERATION] > 1 and mixed
-            and system.links.hanging.shape[0] == 0):
+            and system.links.dependent.shape[0] == 0):
         status = assemble_moved(system, state, UNMOVED * state.clock[TARGET])
     else:
-        status = assemble(TANGENT if wanted == RENEWED else RESIDUAL,
+        status = assemble(TANGENT if wanted == EVALUATED else RESIDUAL,
                           RESIDUAL if wanted == KEPT else TANGENT, system, state, state.residual)
     if status != OK:
         return status
-    if wanted != KEPT and system.links.hanging.shape[0] > 0:
+    if wanted != KEPT and system.links.dependent.shape[0] > 0:
         for i in range(state.residual.size):
             state.forces[i] = state.residual[i]
     if scheme.stabilized:
@@ -145,7 +146,7 @@ def _evaluate(system, state, scheme, wanted, mixed):
 
 @compiled(forceinline=True)
 def _conclude(system, state, record, scheme, verdict):
-    """Do what follows from a correction; returns why the step fails, if it does."""
+    """Act on the verdict about a correction; returns the reason if the step fails."""
     control, clock = state.control, state.clock
     control[PHASE] = ITERATE
     if verdict == CONVERGED:
@@ -161,14 +162,14 @@ def _conclude(system, state, record, scheme, verdict):
             return NOT_FINITE
         if control[FRESH] > 0:
             return SLOW
-        back(state)         # the old matrix may be to blame: the same step again with a new one
+        back(state)         # perhaps because of the old matrix: repeat the step with a new one
     return NO_REASON
 
 
 @compiled(forceinline=True)
 def _take_shift(system, state):
-    """What was solved for the constraints themselves moves positions alone; then their rates."""
-    swap(state.residual, state.gaps)
+    """Take the correction for the constraints as a shift of positions; the rates are next."""
+    swap(state.residual, state.constraint_residuals)
     for i in range(system.diagonal.size):
         state.shift[i] = state.correction[i] * (1.0 - system.is_multiplier[i])
 

@@ -4,19 +4,19 @@ import numpy as np
 
 from sebody.engine import elimination
 from sebody.engine.links import add_expanded, add_second_order
-from sebody.engine.state import FLOOR, PIVOTED, RENEWED
+from sebody.engine.state import EVALUATED, FLOOR, PIVOTED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
-from sebody.kernels.layout import C_PLACE
+from sebody.kernels.layout import C_STIFFNESS
 from sebody.kernels.pipeline import compiled
 
 SUMMAND = 5             # numbers of an element in System.summands
-RELAXATION = 1e-7       # of redundant constraints, in the scaled iteration matrix alone
+RELAXATION = 1e-7       # regularizes redundant constraints, in the scaled iteration matrix alone
 
 
 @compiled
 def sum_matrices(system, state, forces):
-    """The matrix from the element matrices, which stay as they are; links need the forces."""
+    """Sum the element matrices, which are not changed; links need the forces, too."""
     for k in range(state.matrix.size):
         state.matrix[k] = 0.0
     for k in range(system.padding.size):
@@ -24,22 +24,22 @@ def sum_matrices(system, state, forces):
     for element in range(system.summands.shape[0]):
         _sum_element(system, state, element)
     if system.links.elements.shape[0] > 0:
-        add_second_order(system.links, state.coefficients[C_PLACE], state.q, state.R, state.T,
+        add_second_order(system.links, state.coefficients[C_STIFFNESS], state.q, state.R, state.T,
                          forces, state.matrix)
 
 
 @compiled
 def _sum_element(system, state, element):
-    """Add an element matrix, positions turned to the axes they are solved for in."""
+    """Add an element matrix, its positions rotated to the axes they are solved for in."""
     summand = at(pointer_to(system.summands), SUMMAND * element)
-    start, width, first_turned, end_turned, linked = (summand[0], summand[1], summand[2],
+    start, width, first_rotated, end_rotated, linked = (summand[0], summand[1], summand[2],
                                                       summand[3], summand[4])
-    own, J = at(pointer_to(state.J), start), pointer_to(state.turned)
-    if first_turned < end_turned or linked >= 0:
+    own, J = at(pointer_to(state.J), start), pointer_to(state.rotated_matrix)
+    if first_rotated < end_rotated or linked >= 0:
         for k in range(width * width):
             J[k] = own[k]
-        for k in range(first_turned, end_turned):
-            _turn_block(system.turned_blocks[k], system.dimension[0], J, state.frames)
+        for k in range(first_rotated, end_rotated):
+            _rotate_block(system.rotated_blocks[k], system.dimension[0], J, state.frames)
         own = J
     if linked >= 0:
         add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
@@ -52,7 +52,7 @@ def _sum_element(system, state, element):
 
 @compiled(forceinline=True)
 def _product_row(to, own, block, i):
-    """Row of ``to^T own``, of frames that may be global axes."""
+    """Row i of ``to^T own``; either frame may be global axes (-1)."""
     if block[3] < 0:
         return own[3 * i], own[3 * i + 1], own[3 * i + 2]
     x, y, z = to[i], to[3 + i], to[6 + i]
@@ -63,8 +63,8 @@ def _product_row(to, own, block, i):
 
 
 @compiled
-def _turn_block(block, dimension, J, frames):
-    """Rows and columns of a position in an element matrix, to the axes it is solved for in."""
+def _rotate_block(block, dimension, J, frames):
+    """Rotate rows and columns of a position in J to the axes the position is solved for in."""
     width, row = block[1], block[2]
     to, own = at(pointer_to(frames), 9 * block[3]), at(pointer_to(frames), 9 * block[4])
     a, b, c = _product_row(to, own, block, 0)
@@ -85,7 +85,7 @@ def _turn_block(block, dimension, J, frames):
 
 @compiled
 def equilibrate(system, state):
-    """Scales that give the matrix a unit diagonal and unit constraint rows: free of units and h."""
+    """Scale the matrix to a unit diagonal and unit constraint rows: free of units and of h."""
     n = system.diagonal.size
     for i in range(n):
         diagonal = abs(state.matrix[system.diagonal[i]])
@@ -105,15 +105,16 @@ def equilibrate(system, state):
         state.weight[i] = 1.0 / state.scale[i]
         size = system.magnitude[i] * state.weight[i]
         floor += size * size
-    state.clock[FLOOR] = 8.0 * 2.2e-16 * np.sqrt(floor)     # what rounding of positions leaves
+    state.clock[FLOOR] = 8.0 * 2.2e-16 * np.sqrt(floor)     # left by rounding of positions
 
 
 @compiled
 def relax(system, state):
-    """Make the matrix of redundant constraints regular.
+    """Make a matrix with redundant constraints regular.
 
-    Their residuals are consistent and so is the answer: multipliers of least norm. Iterations go on
-    until the constraints hold, so nothing is changed but the way there.
+    Residuals of redundant constraints are consistent, so the regularized system has a solution,
+    with multipliers of least norm. The iteration goes on until the constraints hold: regularization
+    changes its convergence, not its result.
     """
     for i in range(system.diagonal.size):
         if system.is_multiplier[i] > 0.0:
@@ -122,7 +123,7 @@ def relax(system, state):
 
 @compiled
 def invert_dense(system, state, n):
-    """Inverse of a small system, by columns, scales included; False if it is singular."""
+    """Invert a small matrix, by columns, scales included; False if it is singular."""
     dense = np.empty((n, n))
     size = inverse_size = 0.0
     for j in range(n):
@@ -143,14 +144,16 @@ def invert_dense(system, state, n):
 
 
 @compiled
-def renew(system, state, wanted, dense):
-    """Sum and factorize; False if a small matrix is singular, PIVOTED and the sum at small pivots.
+def refactorize(system, state, wanted, dense):
+    """Sum the element matrices and factorize the sum, or invert it if it is small (dense).
 
-    Scales are those of the last matrix with new ones of all elements.
+    Returns False if a small matrix is singular. Where elimination meets a small pivot, PIVOTED is
+    set and `State.matrix` holds the sum, for a factorization with row exchanges. The scales are
+    those of the last matrix of new element matrices.
     """
     relaxed = system.relaxed[0] == 1
     sum_matrices(system, state, state.forces)
-    if wanted == RENEWED:
+    if wanted == EVALUATED:
         equilibrate(system, state)
     if relaxed:
         relax(system, state)
@@ -170,7 +173,7 @@ def renew(system, state, wanted, dense):
 
 @compiled(forceinline=True)
 def solve(system, state, dense):
-    """Correction from the residual."""
+    """Solve for the correction from the residual."""
     if dense:
         n = system.diagonal.size
         columns_times(pointer_to(state.inverse), pointer_to(state.residual),

@@ -1,19 +1,21 @@
-"""Newton's iteration in a step: corrections, when they are good enough, when matrices are renewed.
+"""Modified Newton iteration of a step: corrections, convergence, when to refactorize.
 
-The matrix is kept in body axes and reused until convergence asks for a new one.
+The factorized matrix is kept in body axes and reused until slow convergence asks for a new one.
 """
 
 import numpy as np
 
-from sebody.engine.evaluate import to_body_axes, turn_rotations
+from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.state import (
+    ACCELERATION_NORM,
     AGE,
-    BEND,
+    BACK_OFF,
+    BACK_OFF_LEFT,
+    BASELINE_CONTRACTION,
     CONTRACTION,
     CONVERGED,
     CURRENT_STEP,
-    EAGER,
-    EAGER_LEFT,
+    EVALUATED,
     EXCESS,
     FACTOR_STEP,
     FLOOR,
@@ -26,51 +28,51 @@ from sebody.engine.state import (
     LAST_NORM,
     MATRICES,
     NEW_MATRIX,
-    RENEWED,
+    ROTATED,
     SECANT,
     SPAN,
     TARGET,
-    TURNED,
     WANTED,
-    YOUNG_RATE,
 )
-from sebody.kernels.layout import C_MASS, C_RATE
+from sebody.kernels.layout import C_DAMPING, C_MASS
 from sebody.kernels.pipeline import compiled
 
-MAX_ITERATIONS = 12
-SLOWEST = 0.95          # contraction that is assumed where nothing is known, and believed at most
-FASTEST = 1e-3          # and at least
-YOUNG = 3               # steps with new matrices that tell how fast the iteration can be
-WORTH = 30.0            # new matrices cost about so many iterations,
-TURNED_WORTH = 4.0      # and one of the bodies' old ones
-LONGEST_HABIT = 32      # steps that begin with a new matrix before reuse is tried again
-POOR = 0.3              # contraction so slow asks for a new matrix at once
-MOST_MATRICES = 4       # of a step
-STRICT = 100.0          # tolerance of what accelerations move, in that of the increment
-QUICK = 0.05            # contraction so good needs no acceleration
+MAX_ITERATIONS = 12     # of a step
+SLOWEST = 0.95          # contraction rate assumed where none is known, and upper bound of estimates
+FASTEST = 1e-3          # lower bound of estimated contraction rates
+BASELINE_STEPS = 3      # steps after a refactorization whose best contraction rate is the baseline
+REFACTORIZATION_COST = 30.0     # of a matrix with new element matrices, in iterations
+ROTATED_COST = 4.0      # of a matrix with the bodies' old element matrices, rotated, in iterations
+LONGEST_BACK_OFF = 32   # at most so many steps refresh the matrix before reuse is tried again
+POOR = 0.3              # a contraction rate above this asks for a new matrix at once
+MOST_MATRICES = 4       # factorizations in a step
+ACCELERATION_TOLERANCE = 100.0  # tolerance relative to accelerations, over that of the increment
+QUICK = 0.05            # a contraction rate below this needs no acceleration by mixing
 
 
 @compiled(forceinline=True)
 def apply_correction(system, state, scheme, mixed):
-    """Subtract the solved correction; returns what it says of the step, CONVERGED to GIVE_UP."""
+    """Subtract the solved correction; returns the verdict on the step, CONVERGED to GIVE_UP."""
     n = system.diagonal.size
-    norm, size, bend = _norms(system, state, n)
+    norm, size, accelerations = _norms(system, state, n)
     if not np.isfinite(norm):
         state.clock[LAST_NORM] = norm
         return GIVE_UP
     left_norm = accelerate(state, n, norm) if mixed else norm
     _subtract(system, state, scheme, n)
-    bend = max(scheme.beta * state.clock[CURRENT_STEP] * state.clock[CURRENT_STEP] * bend,
-               state.clock[BEND])
-    target = min(scheme.tolerance * size, STRICT * scheme.tolerance * bend) + state.clock[FLOOR]
-    state.clock[BEND], state.clock[TARGET] = bend, target
+    accelerations = max(
+        scheme.beta * state.clock[CURRENT_STEP] * state.clock[CURRENT_STEP] * accelerations,
+        state.clock[ACCELERATION_NORM])
+    target = min(scheme.tolerance * size,
+                 ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock[FLOOR]
+    state.clock[ACCELERATION_NORM], state.clock[TARGET] = accelerations, target
     return _verdict(system, state, norm, left_norm, target)
 
 
 @compiled(forceinline=True)
 def _norms(system, state, n):
-    """Of the correction, of the increment with the multipliers, and of the accelerations."""
-    norm = size = bend = 0.0
+    """Norms of the correction, of the increment with the multipliers, and of the accelerations."""
+    norm = size = accelerations = 0.0
     for i in range(n):
         d = state.correction[i] * state.weight[i]
         x = state.dq[i] + system.is_multiplier[i] * state.q_old[i]      # a multiplier itself
@@ -78,8 +80,8 @@ def _norms(system, state, n):
         s = state.shift[i] * state.weight[i]
         norm += d * d + s * s
         size += x * x * state.weight[i] * state.weight[i]
-        bend += z * z
-    return np.sqrt(norm), np.sqrt(size), np.sqrt(bend)
+        accelerations += z * z
+    return np.sqrt(norm), np.sqrt(size), np.sqrt(accelerations)
 
 
 @compiled(forceinline=True)
@@ -89,7 +91,7 @@ def _subtract(system, state, scheme, n):
     to_body_axes(system, state.frames, state.correction, True)
     if scheme.stabilized:
         to_body_axes(system, state.frames, state.shift, True)
-    to_a, to_v = state.coefficients[C_MASS], state.coefficients[C_RATE]
+    to_a, to_v = state.coefficients[C_MASS], state.coefficients[C_DAMPING]
     to_aux = 1 / (scheme.beta * h * h)
     for i in range(n):
         d = state.correction[i]
@@ -99,12 +101,12 @@ def _subtract(system, state, scheme, n):
         state.v[i] -= to_v * moving
         state.a[i] -= to_a * moving
         state.aux[i] -= to_aux * moving
-    turn_rotations(system, state)
+    update_rotations(system, state)
 
 
 @compiled(forceinline=True)
 def _verdict(system, state, norm, left_norm, target):
-    """Count the iteration and judge its contraction."""
+    """Count the iteration; convergence or the next action from its contraction rate."""
     clock, control = state.clock, state.control
     iteration, last, rate = control[ITERATION], clock[LAST_NORM], clock[CONTRACTION]
     if iteration == 0:
@@ -123,16 +125,17 @@ def _verdict(system, state, norm, left_norm, target):
         return GIVE_UP
     if iteration == 0 or control[FRESH] >= MOST_MATRICES:
         return GO_ON
-    price = WORTH if next_matrix(system, state) == RENEWED else TURNED_WORTH
-    slow = rate > POOR or np.log(target / norm) / np.log(rate) > min(price, left)
+    cost = REFACTORIZATION_COST if next_matrix(system, state) == EVALUATED else ROTATED_COST
+    slow = rate > POOR or np.log(target / norm) / np.log(rate) > min(cost, left)
     return NEW_MATRIX if slow else GO_ON
 
 
 @compiled
 def accelerate(state, n, norm):
-    """Anderson's mixing with the last correction; returns the norm of what is left to iterate.
+    """Anderson mixing with the last correction; returns the norm of the mixed correction.
 
-    Matrices of the predicted state leave one slow direction where links of a taut chain turn.
+    With matrices of the predicted state the error of a taut chain that rotates decays slowly in
+    one direction, which mixing with one correction removes.
     """
     correction, last, change = state.correction, state.last_correction, state.last_change
     along = square = mix = 0.0
@@ -155,38 +158,42 @@ def accelerate(state, n, norm):
 
 @compiled(forceinline=True)
 def next_matrix(system, state):
-    """First the bodies' old matrices in their new places, where that helps, then new ones."""
-    return TURNED if system.linked[0] == 1 and state.control[FRESH] == 0 else RENEWED
+    """Matrices of a refactorization within a step: rotated ones first, if they help, then new."""
+    return ROTATED if system.linked[0] == 1 and state.control[FRESH] == 0 else EVALUATED
 
 
 @compiled(forceinline=True)
 def begin_with_matrix(state):
-    """Which matrices a step makes anew before its first iteration."""
+    """Choose whether a step refactorizes before its first iteration, and from which matrices."""
     clock, control = state.clock, state.control
     control[FRESH] = 0
     if clock[FACTOR_STEP] != clock[CURRENT_STEP]:
-        control[WANTED] = RENEWED
-    if control[WANTED] == KEPT and control[EAGER_LEFT] > 0:
-        control[EAGER_LEFT] -= 1
-        control[WANTED] = TURNED
+        control[WANTED] = EVALUATED
+    if control[WANTED] == KEPT and control[BACK_OFF_LEFT] > 0:
+        control[BACK_OFF_LEFT] -= 1
+        control[WANTED] = ROTATED
 
 
 @compiled(forceinline=True)
 def want_matrix(system, state):
-    """Ask for a new matrix within a step; where turned ones help, the next steps begin with one."""
+    """Ask for a refactorization within a step.
+
+    If rotated body matrices are enough, the next steps begin with such a refresh. The back-off,
+    their number, doubles until a step converges without any refactorization.
+    """
     control = state.control
     control[WANTED] = next_matrix(system, state)
-    if control[WANTED] == TURNED:
-        control[EAGER] = min(2 * control[EAGER] + 1, LONGEST_HABIT)
-        control[EAGER_LEFT] = control[EAGER]
+    if control[WANTED] == ROTATED:
+        control[BACK_OFF] = min(2 * control[BACK_OFF] + 1, LONGEST_BACK_OFF)
+        control[BACK_OFF_LEFT] = control[BACK_OFF]
 
 
 @compiled(forceinline=True)
 def count_matrix(state, wanted):
-    """What changes with a new matrix, before it is made."""
+    """Reset what belongs to the old matrix, before the new one is factorized."""
     clock, control = state.clock, state.control
-    if wanted == RENEWED:
-        control[AGE], clock[YOUNG_RATE], clock[EXCESS] = 0, 0.5, 0.0
+    if wanted == EVALUATED:
+        control[AGE], clock[BASELINE_CONTRACTION], clock[EXCESS] = 0, 0.5, 0.0
         clock[FACTOR_STEP] = clock[CURRENT_STEP]
     control[WANTED] = KEPT
     control[SECANT] = 0
@@ -196,18 +203,19 @@ def count_matrix(state, wanted):
 
 @compiled(forceinline=True)
 def watch_age(state):
-    """Ask for new matrices once the old ones have cost as many extra iterations as these would.
+    """Ask for new element matrices once the old ones have cost as much as a refactorization.
 
-    Extra is what exceeds the iterations that the contraction of their youth would have needed.
+    Counted are the iterations beyond those that the baseline contraction would have needed.
     """
     clock, control = state.clock, state.control
     control[AGE] += 1
     if control[ITERATION] < 2:
         return
-    if control[AGE] <= YOUNG:
-        clock[YOUNG_RATE] = min(clock[YOUNG_RATE], max(clock[CONTRACTION], FASTEST))
+    if control[AGE] <= BASELINE_STEPS:
+        clock[BASELINE_CONTRACTION] = min(clock[BASELINE_CONTRACTION],
+                                          max(clock[CONTRACTION], FASTEST))
         return
-    needed = 1.0 + max(clock[SPAN], 0.0) / -np.log(clock[YOUNG_RATE])
+    needed = 1.0 + max(clock[SPAN], 0.0) / -np.log(clock[BASELINE_CONTRACTION])
     clock[EXCESS] += max(control[ITERATION] - np.ceil(needed), 0.0)
-    if clock[EXCESS] > WORTH:
-        control[WANTED] = RENEWED
+    if clock[EXCESS] > REFACTORIZATION_COST:
+        control[WANTED] = EVALUATED

@@ -1,4 +1,4 @@
-"""What the compiled loop works on: state, records, scheme, and the names of its numbers."""
+"""What the compiled loop works on: state, records, scheme, and the indices of its counters."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -11,29 +11,104 @@ from sebody.engine.arrays import Arrays
 from sebody.kernels.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OK, RECORD
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
-BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)      # where it goes on
-# which element matrices are made anew: none, those of joints and loads while the bodies' old ones
-# are turned to their new places, or all
-KEPT, TURNED, RENEWED = range(3)
-CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP = range(4)        # what a correction says of its step
-# why a step failed: the answers of kernels come first, so that such an answer is a reason
+# phases of the loop: where it continues when it is called again
+BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)
+# what an iteration needs: the factors as they are; factors of a matrix in which the bodies' old
+# element matrices are rotated with them and all others are new; or of new element matrices only
+KEPT, ROTATED, EVALUATED = range(3)
+CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP = range(4)        # verdicts on a step after a correction
+# why a step failed: answers of kernels keep their numbers, further reasons follow
 NO_REASON = OK
 NOT_FINITE, SLOW, INACCURATE = range(max(HALF_TURN, NO_FRAME) + 1, max(HALF_TURN, NO_FRAME) + 4)
 REASONS = {
-    HALF_TURN: "a node is turned by nearly half a turn against its body's frame",
+    HALF_TURN: "a node is rotated by nearly half a turn against its body's frame",
     NO_FRAME: "the search for a body's frame did not end",
     NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
     SLOW: "Newton's iteration did not converge",
     INACCURATE: "the error of a step is above the tolerance",
 }
-FINEST = 4096           # a grid step is cut into at most this many parts
+FINEST = 4096           # largest number of equal parts that a grid step is cut into
 
 
 @dataclass(frozen=True, eq=False)
 class State(Arrays):
-    """Everything a restart needs, and scratch memory."""
+    """What the loop reads and writes: all that a restart needs, and scratch memory.
 
-    now: NDArray            # the row RECORD of the present state; these are parts of it:
+    Of a model with N coordinates, the first n of them unknowns, with r rotation matrices, b
+    superelements and p power ports. Rates are derivatives with respect to time; of rotations,
+    angular velocities and accelerations in material axes. The suffix ``_old`` is for values at the
+    last accepted step.
+
+    ====================  ==========================================================================
+    recorded, see `layout.RECORD`
+    ------------------------------------------------------------------------------------------------
+    now                   the whole row of the present state; the members down to `frames_old` are
+                          views of its parts
+    works                 (p,) work of every power port since the start
+    q                     (N,) positions, modes, multipliers; of rotations increments of the step
+    R                     (9 r,) rotation matrices, row by row
+    v, a                  (N,) velocities and accelerations; zeros at multipliers
+    frames                (9 b,) frames of the superelements, row by row, in the current iterate
+    frames_old            (9 b,) the same at the last accepted step
+    --------------------  --------------------------------------------------------------------------
+    integrator
+    ------------------------------------------------------------------------------------------------
+    aux                   (N,) auxiliary accelerations of generalized-alpha
+    q_start               (N,) coordinates at t = 0
+    q_old, v_old, a_old   (N,) coordinates, velocities, accelerations
+    aux_old               (N,) auxiliary accelerations
+    R_old                 (9 r,) rotation matrices
+    dq                    (N,) increments of the coordinates in the step
+    T                     (9 r,) tangent operators of the rotation increments
+    error_weights         (N,) one over the error that is allowed of an unknown in a step
+    --------------------  --------------------------------------------------------------------------
+    power ports
+    ------------------------------------------------------------------------------------------------
+    loads                 (3 p,) amplitude of every port and its first two rates
+    loads_old             (3 p,) the same
+    powers                (p,) power of every port at the last accepted step
+    powers_old            (p,) the same one step earlier
+    --------------------  --------------------------------------------------------------------------
+    elements
+    ------------------------------------------------------------------------------------------------
+    coefficients          the row `layout.COEFFICIENTS`
+    g                     forces of the elements, one after the other
+    J                     matrices of the elements; of superelements in the axes of their frame
+    rotated_matrix        one element matrix, positions in the axes they are solved for in
+    energy                the row `layout.ENERGIES`
+    work                  scratch memory of kernels
+    moved                 (elements,) whether the last correction moved the element
+    expansion             scratch memory for element matrices with rigid links
+    --------------------  --------------------------------------------------------------------------
+    Newton's iteration
+    ------------------------------------------------------------------------------------------------
+    residual              (N,) sum of the element forces, free positions in body axes
+    constraint_residuals  (N,) residuals of the constraints, while `residual` holds those of the
+                          constraints' rates (index 2)
+    forces                (N,) the residual at the last factorization, in global axes: for links
+    correction            (N, padded) solution of the linear system
+    solution              (slots,) the same in the order of the elimination
+    last_correction       (N,) solution of the last iteration, before mixing
+    last_change           (N,) correction of the last iteration, after mixing
+    shift                 (N,) correction of positions alone, which velocities do not follow
+    --------------------  --------------------------------------------------------------------------
+    iteration matrix
+    ------------------------------------------------------------------------------------------------
+    matrix                entries by columns, or by blocks that are replaced by their factors; one
+                          entry more collects what belongs to fixed coordinates
+    scale                 (N, padded) of the unknowns: the scaled matrix has a unit diagonal
+    weight                (N,) one over `scale`: norms of corrections are weighted by these
+    inverse               (n, padded n) inverse of a small matrix, scales included, by columns
+    column                scratch memory of the elimination for a column of blocks
+    --------------------  --------------------------------------------------------------------------
+    counters
+    ------------------------------------------------------------------------------------------------
+    clock                 floats, see the CLOCK indices
+    control               integers, see the CONTROL indices
+    ====================  ==========================================================================
+    """
+
+    now: NDArray
     works: NDArray
     q: NDArray
     R: NDArray
@@ -41,44 +116,43 @@ class State(Arrays):
     a: NDArray
     frames: NDArray
     frames_old: NDArray
-    # the rest is not recorded
-    aux: NDArray            # auxiliary accelerations of the integrator
-    q_start: NDArray        # at t = 0
-    q_old: NDArray          # the last accepted step
+    aux: NDArray
+    q_start: NDArray
+    q_old: NDArray
     R_old: NDArray
     v_old: NDArray
     a_old: NDArray
     aux_old: NDArray
-    dq: NDArray             # increment of the step
-    T: NDArray              # tangent operators of the rotation increments
-    loads: NDArray          # of every item its amplitude and two rates
-    loads_old: NDArray      # at the last accepted step
-    powers: NDArray         # of the items, there
-    powers_old: NDArray     # a step before
-    coefficients: NDArray   # the row COEFFICIENTS
-    g: NDArray              # element forces
-    J: NDArray              # element matrices, of superelements in the axes of their frame
-    turned: NDArray         # one of them, positions in the axes they are solved for in
-    residual: NDArray       # in body axes
-    forces: NDArray         # the same, of the last matrix and in global axes, for links
+    dq: NDArray
+    T: NDArray
+    loads: NDArray
+    loads_old: NDArray
+    powers: NDArray
+    powers_old: NDArray
+    coefficients: NDArray
+    g: NDArray
+    J: NDArray
+    rotated_matrix: NDArray
+    residual: NDArray
+    forces: NDArray
     correction: NDArray
-    solution: NDArray       # the same by slots of the elimination
-    last_correction: NDArray    # what the matrix gave in the last iteration,
-    last_change: NDArray    # and what was made of it and subtracted
-    moved: NDArray          # of every element, whether that moved it
-    gaps: NDArray           # of the constraints, where `residual` has those of their rates
-    shift: NDArray          # correction of positions that velocities do not follow
-    expansion: NDArray      # scratch of links
-    matrix: NDArray         # entries by columns or in blocks, there its factors; in body axes
-    scale: NDArray          # of the unknowns: the scaled matrix has a unit diagonal
-    weight: NDArray         # its inverse: corrections are measured in it, multipliers included
-    inverse: NDArray        # of small systems, by padded columns, scales included
-    column: NDArray         # scratch of the elimination
+    solution: NDArray
+    last_correction: NDArray
+    last_change: NDArray
+    moved: NDArray
+    constraint_residuals: NDArray
+    shift: NDArray
+    expansion: NDArray
+    matrix: NDArray
+    scale: NDArray
+    weight: NDArray
+    inverse: NDArray
+    column: NDArray
     work: NDArray
-    energy: NDArray         # the row ENERGIES
-    strictness: NDArray     # inverse of the error that is allowed of an unknown in a step
-    clock: NDArray          # see the CLOCK indices
-    control: NDArray        # see the CONTROL indices
+    energy: NDArray
+    error_weights: NDArray
+    clock: NDArray
+    control: NDArray
 
     @classmethod
     def of(cls, counts: Mapping[str, int], **others: NDArray) -> "State":
@@ -87,7 +161,7 @@ class State(Arrays):
         Parameters
         ----------
         counts : mapping
-            Numbers of items, coordinates, rotations and bodies, as `RECORD` names them.
+            Numbers of power ports, coordinates, rotations and bodies, as `RECORD` names them.
         **others : ndarray
             Members that are not recorded.
         """
@@ -99,7 +173,7 @@ class State(Arrays):
     @property
     def recorded_parts(self) -> dict[str, slice]:
         """Where the parts of `RECORD` are in `now` and in the rows of a record."""
-        return RECORD.slices({"items": self.works.size, "coordinates": self.q.size,
+        return RECORD.slices({"ports": self.works.size, "coordinates": self.q.size,
                               "rotations": self.R.size // 9, "bodies": self.frames.size // 9})
 
     def set_coefficients(self, **values: float) -> None:
@@ -109,29 +183,62 @@ class State(Arrays):
             self.coefficients[places[name]] = value
 
 
-# State.clock; CURRENT_STEP is the one under way, AUX_STEP the one the auxiliary accelerations
-# belong to, CHOSEN the one the error asks for
-(TIME, STEP, CURRENT_STEP, LAST_NORM, CONTRACTION, FACTOR_STEP, FLOOR, SPAN, YOUNG_RATE,
- EXCESS, BEND, AUX_STEP, CHOSEN, LARGEST_ERROR, TARGET) = range(15)
+# State.clock: indices of floats
+(TIME,                  # reached
+ STEP,                  # of the output grid
+ CURRENT_STEP,          # length of the step under way
+ LAST_NORM,             # of the last correction, after mixing
+ CONTRACTION,           # rate of the last two corrections, carried over to the next step
+ FACTOR_STEP,           # step length of the last matrix with new element matrices
+ FLOOR,                 # norm that rounding of positions leaves
+ SPAN,                  # logarithm of the first correction's norm over its target
+ BASELINE_CONTRACTION,  # best rate of the first steps with new element matrices
+ EXCESS,                # iterations since then that the baseline rate would have saved
+ ACCELERATION_NORM,     # largest norm of beta h^2 a so far, slowly forgotten
+ AUX_STEP,              # step length that the auxiliary accelerations belong to
+ CHOSEN,                # step length that the error allows (variable steps)
+ LARGEST_ERROR,         # of a step with that length, slowly forgotten; 1 is allowed
+ TARGET,                # norm below which a correction counts as converged
+ ) = range(15)
 CLOCKS = TARGET + 1
-# State.control; SECANT where the last correction belongs to this step and its matrix
-(PHASE, GRID, UNIT, LEVEL, ITERATION, FRESH, WANTED, REASON, ITERATIONS, MATRICES, STEPS, CUTS,
- RECORDED, AGE, PIVOTED, EAGER, EAGER_LEFT, ADAPTIVE, CORNER, HELD, REJECTED,
- SECANT) = range(22)
+# State.control: indices of integers
+(PHASE,                 # where the loop continues: BEGIN to SOLVED
+ GRID,                  # output steps completed
+ UNIT,                  # parts of the next output step completed, of FINEST
+ LEVEL,                 # how often the output step is halved
+ ITERATION,             # corrections in this step
+ FRESH,                 # factorizations in this step
+ WANTED,                # what the next iteration needs: KEPT, ROTATED or EVALUATED
+ REASON,                # why the last step failed
+ ITERATIONS,            # corrections since the start
+ MATRICES,              # factorizations since the start
+ STEPS,                 # accepted
+ CUTS,                  # steps repeated with a shorter one since the start
+ RECORDED,              # rows written to the record
+ AGE,                   # steps since all element matrices were evaluated
+ PIVOTED,               # 1 where the matrix needs row exchanges: SuperLU factorizes it
+ BACK_OFF,              # steps that begin with a refreshed matrix after reuse failed
+ BACK_OFF_LEFT,         # of these, still to come
+ ADAPTIVE,              # 1 for variable steps
+ CORNER,                # next entry of System.corners
+ HELD,                  # steps since the step length changed
+ REJECTED,              # steps repeated because of their error
+ SECANT,                # 1 where the last correction belongs to this step and its matrix
+ ) = range(22)
 CONTROLS = SECANT + 1
 
 
 @dataclass(frozen=True, eq=False)
 class Record(Arrays):
-    """What is kept of the output steps."""
+    """Recorded states of a run."""
 
-    rows: NDArray           # a copy of State.now each
+    rows: NDArray           # (records, size of RECORD) copies of State.now
     every: NDArray          # (1,) grid steps between records
-    at: NDArray             # where each part of RECORD begins, see its PART names
+    at: NDArray             # (parts of RECORD,) first column of each; Q_PART and others count them
 
     @classmethod
     def of(cls, state: State, steps: int, every: int = 1) -> "Record":
-        """Room for so many output steps."""
+        """An empty record with room for some number of states."""
         return cls(np.zeros((steps, state.now.size)), np.array([every]),
                    np.array([part.start for part in state.recorded_parts.values()]))
 
@@ -144,5 +251,5 @@ class Scheme(NamedTuple):
     beta: float
     gamma: float
     tolerance: float
-    geometric: float        # 1 for consistent tangents, 0 for the paper's
-    stabilized: bool        # constraints hold for velocities, too: index 2
+    geometric: float        # 1 for consistent tangents, 0 for those of the paper
+    stabilized: bool        # index 2: constraints hold for velocities, too

@@ -1,20 +1,21 @@
-"""One step of the loop: prediction and acceptance, output, and the way back.
+"""One step of the loop: prediction and acceptance, output, and return to the last state.
 
 The unknowns of a step are the increments dq (rotations: R exp(dTheta)) and the multipliers.
 """
 
-from sebody.engine.evaluate import move_prescribed, set_loads, set_powers, turn_rotations
+from sebody.engine.evaluate import move_prescribed, set_loads, set_powers, update_rotations
 from sebody.engine.newton import SLOWEST, watch_age
 from sebody.engine.state import (
+    ACCELERATION_NORM,
     ADAPTIVE,
     AUX_STEP,
+    BACK_OFF,
     BEGIN,
-    BEND,
     CHOSEN,
     CONTRACTION,
     CURRENT_STEP,
     CUTS,
-    EAGER,
+    EVALUATED,
     FINEST,
     FRESH,
     GRID,
@@ -25,7 +26,6 @@ from sebody.engine.state import (
     LEVEL,
     PHASE,
     RECORDED,
-    RENEWED,
     SECANT,
     STEP,
     STEPS,
@@ -37,17 +37,17 @@ from sebody.engine.step_control import SHORTEST, go_on
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.layout import (
     C_CONSTRAINT,
+    C_DAMPING,
     C_GEO,
     C_MASS,
-    C_PLACE,
-    C_RATE,
+    C_STIFFNESS,
     RECORD_ITERATIONS,
     RECORD_T,
 )
 from sebody.kernels.pipeline import compiled
 
-ORTHOGONAL = 8          # rotations are made orthogonal again after so many steps
-MEMORY = 0.99           # for the size of the accelerations, a step
+ORTHOGONAL = 8          # steps after which rotation matrices are made orthogonal again
+MEMORY = 0.99           # factor of the largest norm of accelerations, in every step
 
 
 @compiled(forceinline=True)
@@ -59,10 +59,10 @@ def begin_step(system, state, scheme):
     for i in range(state.frames.size):
         state.frames_old[i] = state.frames[i]
     to_a = 1.0 / (1.0 - scheme.alpha_f)
-    # auxiliary accelerations are those of a time (alpha_m - alpha_f) h later
+    # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
     offset = h / state.clock[AUX_STEP]
     state.clock[AUX_STEP] = h
-    for i in range(state.dq.size):      # the auxiliary acceleration is taken to stay
+    for i in range(state.dq.size):      # with the auxiliary acceleration held constant
         q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
         if offset != 1.0:
             aux = a + offset * (aux - a)
@@ -75,25 +75,25 @@ def begin_step(system, state, scheme):
     set_loads(system, state.loads, state.clock[TIME] + h)
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
-    turn_rotations(system, state)
+    update_rotations(system, state)
     state.control[ITERATION], state.control[SECANT] = 0, 0
     state.clock[LAST_NORM] = 0.0
 
 
 @compiled(forceinline=True)
 def set_coefficients(state, scheme, h):
-    """Derivatives of acceleration and velocity by the increment."""
+    """Set the derivatives of acceleration and velocity with respect to the increment."""
     c = state.coefficients
     c[C_MASS] = (1 - scheme.alpha_m) / ((1 - scheme.alpha_f) * scheme.beta * h * h)
-    c[C_RATE] = scheme.gamma / (scheme.beta * h)
-    c[C_PLACE] = 1.0
+    c[C_DAMPING] = scheme.gamma / (scheme.beta * h)
+    c[C_STIFFNESS] = 1.0
     c[C_GEO] = scheme.geometric
     c[C_CONSTRAINT] = 1.0
 
 
 @compiled(forceinline=True)
 def accept(system, state, record):
-    """End a converged step: rotations stay orthogonal, work of the loads, output."""
+    """End a converged step: orthogonal rotations, work of the power ports, output."""
     clock, control = state.clock, state.control
     h = clock[CURRENT_STEP]
     if control[STEPS] % ORTHOGONAL == 0:
@@ -102,8 +102,8 @@ def accept(system, state, record):
     add_work(system, state, h)
     watch_age(state)
     if control[FRESH] == 0:
-        control[EAGER] = 0
-    clock[BEND] *= MEMORY
+        control[BACK_OFF] = 0
+    clock[ACCELERATION_NORM] *= MEMORY
     control[STEPS] += 1
     if control[ADAPTIVE] == 1:
         go_on(system, state)
@@ -113,7 +113,7 @@ def accept(system, state, record):
 
 @compiled(forceinline=True)
 def go_on_grid(state, record):
-    """Time and length of the next step where steps are parts of a grid, output on it."""
+    """Write output, set time and length of the next step; steps are parts of grid steps."""
     clock, control = state.clock, state.control
     control[UNIT] += FINEST >> control[LEVEL]
     if control[UNIT] >= FINEST:             # back on the output grid
@@ -131,7 +131,7 @@ def go_on_grid(state, record):
 
 @compiled(forceinline=True)
 def add_work(system, state, h):
-    """Work of the items over a step, by the trapezoidal rule."""
+    """Add the work of the power ports over a step, by the trapezoidal rule."""
     for k in range(state.powers.size):
         state.powers_old[k] = state.powers[k]
         state.works[k] += 0.5 * h * state.powers[k]
@@ -166,14 +166,14 @@ def write_record(state, record):
     k = state.control[RECORDED]
     state.now[RECORD_T] = state.clock[TIME]
     state.now[RECORD_ITERATIONS] = state.control[ITERATIONS]
-    for i in range(state.now.size):     # one block: nine separate ones cost as much as a step
+    for i in range(state.now.size):     # one block: nine separate copies cost as much as a step
         record.rows[k, i] = state.now[i]
     state.control[RECORDED] = k + 1
 
 
 @compiled
 def back(state):
-    """Back to the accepted state."""
+    """Return to the last accepted state; the next attempt evaluates all element matrices."""
     for i in range(state.q.size):       # loops: assigned slices compile slowly
         state.q[i] = state.q_old[i]
         state.v[i] = state.v_old[i]
@@ -184,13 +184,13 @@ def back(state):
     for i in range(state.frames.size):
         state.frames[i] = state.frames_old[i]
     state.control[PHASE] = BEGIN
-    state.control[WANTED] = RENEWED
+    state.control[WANTED] = EVALUATED
     state.clock[CONTRACTION] = SLOWEST      # nothing is known of the next attempt
 
 
 @compiled
 def cut_step(state):
-    """Half the step; False when it cannot be cut further."""
+    """Halve the step; False when no shorter step is allowed."""
     clock, control = state.clock, state.control
     control[CUTS] += 1
     if control[ADAPTIVE] == 1:

@@ -1,12 +1,13 @@
-"""Steps chosen by their local error, and output between them, for compiled code.
+"""Step lengths chosen by the local error, and output within a step, for compiled code.
 
-All steps may err alike, which for a given number of steps makes the sum of errors least. A new step
-needs a new matrix, worth many iterations: steps stay until much is to be gained.
+All steps are allowed the same error, which minimizes the sum of the errors for a given number of
+steps. Another step length needs a refactorization, which costs many iterations: the length changes
+only where much is gained.
 """
 
 import numpy as np
 
-from sebody.engine.links import place_hanging
+from sebody.engine.links import place_dependent
 from sebody.engine.state import (
     CHOSEN,
     CORNER,
@@ -31,32 +32,32 @@ from sebody.kernels.layout import (
     V_PART,
 )
 from sebody.kernels.pipeline import compiled
-from sebody.kernels.rotations import inverse_tangent_coefficients, turn
+from sebody.kernels.rotations import inverse_tangent_coefficients, rotate
 
-AIM = 0.5               # of the error that is allowed
-GAIN = 1.4              # steps are lengthened by no less
-LONGEST = 4.0           # and no more,
-SHORT = 0.2             # and shortened by no more
-PATIENCE = 10           # steps before the next lengthening, unless it is the longest
-MEMORY = 0.99           # for the largest error, a step
-FAR = 1e3               # steps
-SHORTEST = 1e-9         # of an output interval
+AIM = 0.5               # share of the allowed error that a new step length aims at
+GAIN = 1.4              # smallest factor by which steps are lengthened
+LONGEST = 4.0           # largest factor by which steps are lengthened
+SHORT = 0.2             # smallest factor by which a rejected step is shortened
+PATIENCE = 10           # steps before the next lengthening, unless by the largest factor
+MEMORY = 0.99           # factor of the largest error, in every step
+FAR = 1e3               # steps before a corner from which on they are made to meet it
+SHORTEST = 1e-9         # shortest step, relative to an output interval
 
 
 @compiled
 def accurate(system, state, scheme):
     """Whether the error of a step is allowed; chooses the length of the next attempt.
 
-    An increment misses ``|beta + (alpha_m - alpha_f)/2 - 1/6| h^3`` times the rate of the
-    acceleration, which the change of the auxiliary one shows.
+    The local error of an increment is ``|beta + (alpha_m - alpha_f)/2 - 1/6| h^3`` times the rate
+    of the acceleration, estimated from the change of the auxiliary acceleration in the step.
     """
     clock, control = state.clock, state.control
     h = clock[CURRENT_STEP]
     error = 0.0
     aux, old = pointer_to(state.aux), pointer_to(state.aux_old)
-    strictness = pointer_to(state.strictness)
+    error_weights = pointer_to(state.error_weights)
     for i in range(system.diagonal.size):
-        e = abs(aux[i] - old[i]) * strictness[i]
+        e = abs(aux[i] - old[i]) * error_weights[i]
         if e > error:
             error = e
     error *= abs(scheme.beta + 0.5 * (scheme.alpha_m - scheme.alpha_f) - 1.0 / 6.0) * h * h
@@ -66,7 +67,7 @@ def accurate(system, state, scheme):
         control[HELD] = 0
         control[REJECTED] += 1
         return False
-    same = h / clock[CHOSEN]            # less than one before a corner
+    same = h / clock[CHOSEN]            # the step is shorter than chosen before a corner
     largest = max(error / max(same * same * same, 1e-3), MEMORY * clock[LARGEST_ERROR])
     control[HELD] += 1
     gain = GAIN if control[HELD] >= PATIENCE else LONGEST
@@ -81,7 +82,7 @@ def accurate(system, state, scheme):
 
 @compiled
 def choose_step(system, state):
-    """The length of a step: as the error asks, but corners of the loads are met exactly."""
+    """Set the length of a step: as the error allows, but so that it meets corners of loads."""
     clock, control = state.clock, state.control
     corners = system.corners
     while control[CORNER] < corners.size and corners[control[CORNER]] <= clock[TIME]:
@@ -90,14 +91,14 @@ def choose_step(system, state):
     if control[CORNER] < corners.size:
         left = corners[control[CORNER]] - clock[TIME]
         parts = np.ceil(left / h - 1e-6)
-        if parts < FAR:         # equal parts share a matrix: rounding must not part them
+        if parts < FAR:         # equal steps share a matrix, so rounding must not change h
             h = last if abs(parts * last - left) < 1e-9 * left else left / parts
     clock[CURRENT_STEP] = h
 
 
 @compiled
 def go_on(system, state):
-    """Time after an accepted step."""
+    """Set the time after an accepted step."""
     clock, control = state.clock, state.control
     clock[TIME] += clock[CURRENT_STEP]
     if control[CORNER] < system.corners.size:
@@ -108,7 +109,7 @@ def go_on(system, state):
 
 @compiled
 def write_between(system, state, record, last_grid):
-    """Output on the grid within the last step."""
+    """Write output at the grid times within the last step."""
     clock, control = state.clock, state.control
     h = clock[CURRENT_STEP]
     while control[GRID] < last_grid:
@@ -124,7 +125,7 @@ def write_between(system, state, record, last_grid):
 
 @compiled
 def _write_row(system, state, row, at, t, s, h):
-    """The state at a share `s` of the last step: cubics through values and rates at its ends."""
+    """Interpolate the state at a share `s` of the last step, by cubics through values and rates."""
     row[:] = state.now
     row[RECORD_T], row[RECORD_ITERATIONS] = t, state.control[ITERATIONS]
     for k in range(state.works.size):
@@ -147,14 +148,14 @@ def _write_row(system, state, row, at, t, s, h):
         q[i] = _cubic(s, 0.0, h * state.v_old[i], x, h * u)
         q[i + 1] = _cubic(s, 0.0, h * state.v_old[i + 1], y, h * w)
         q[i + 2] = _cubic(s, 0.0, h * state.v_old[i + 2], z, h * p)
-        turn(pointer_to(state.R_old), 9 * r, q[i], q[i + 1], q[i + 2], pointer_to(R), 9 * r)
-    if system.links.hanging.shape[0] > 0:
-        place_hanging(system.links, q, v, a, R)
+        rotate(pointer_to(state.R_old), 9 * r, q[i], q[i + 1], q[i + 2], pointer_to(R), 9 * r)
+    if system.links.dependent.shape[0] > 0:
+        place_dependent(system.links, q, v, a, R)
 
 
 @compiled
 def _cubic(s, start, rate, end, end_rate):
-    """Hermite's cubic; rates are those by the share `s`."""
+    """Hermite's cubic; rates are derivatives with respect to the share `s`."""
     d = end - start
     return start + s * (rate + s * (3.0 * d - 2.0 * rate - end_rate
                                     + s * (rate + end_rate - 2.0 * d)))

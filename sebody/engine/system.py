@@ -10,10 +10,70 @@ from sebody.engine.links import Links
 
 @dataclass(frozen=True, eq=False)
 class System(Arrays):
-    """A model as arrays: constant during a run."""
+    """A model as arrays: constant during a run.
 
-    # batches of equal elements: kernel, count, index stride, unknowns an element, and where the
-    # batch starts in index, g and J
+    Of a model with N coordinates, the first n of them unknowns, with B batches of equal elements,
+    r rotation matrices and p power ports. Axes are given as the number of the superelement whose
+    frame they are, -1 for global axes.
+
+    ==================  ============================================================================
+    batches, superelements first, then elements without a power port, then those with one
+    ------------------------------------------------------------------------------------------------
+    address             (B,) of the kernel
+    count               (B,) number of elements
+    stride              (B,) length of an index row
+    width               (B,) unknowns of an element
+    at_index            (B + 1,) where the batch begins in `index`
+    at_g, at_J          (B + 1,) where the batch begins in `State.g` and in `State.J`
+    first_joint         (1,) first batch that is not of superelements
+    first_power         (1,) first batch of elements with a power port
+    index               index rows of all elements, see `layout.INDEX`
+    constants           constants of all elements
+    g_unknown           coordinate of every entry of `State.g`
+    J_entry             entry of the matrix for every entry of `State.J`
+    ------------------  ----------------------------------------------------------------------------
+    iteration matrix: by columns, or in the blocks of a sparse elimination
+    ------------------------------------------------------------------------------------------------
+    rows, columns       of every stored entry
+    diagonal            (n,) entry on the diagonal of each unknown
+    padding             entries with ones: the diagonal of free slots
+    block_starts        pattern of the blocks, see `sebody.engine.elimination`; empty for a small
+    block_rows          matrix, as the next ones
+    block_diagonal
+    slot_unknowns       (slots,) unknown of every slot; n for free slots
+    ------------------  ----------------------------------------------------------------------------
+    coordinates
+    ------------------------------------------------------------------------------------------------
+    is_multiplier       (N, padded) 1.0 for multipliers
+    rotation_at         (r,) first coordinate of each rotation
+    dimension           (1,) coordinates of a position
+    magnitude           (N,) size of each coordinate: for the rounding floor and for tolerances
+    rotated             (k, 2) positions not solved for in global axes: first unknown, axes
+    rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
+                        solved for in: start and width of the matrix, row, axes of the unknown, of
+                        the matrix
+    summands            (elements, 5) start and width of the element matrix, first and last + 1 row
+                        of `rotated_blocks`, row of `Links.elements` or -1
+    linked              (1,) 1 where bodies that rotate against each other are coupled
+    ------------------  ----------------------------------------------------------------------------
+    power ports
+    ------------------------------------------------------------------------------------------------
+    table_at            (p + 1,) where the table of each port begins
+    table_times         times of the tables, ascending in each
+    table_cubics        (times, 4) see `sebody.model.histories`
+    functions           (p, 3) addresses of a compiled history and its rates, 0 for a table
+    corners             times at which a history has a corner, ascending
+    prescribed          (k, 3) coordinate, port, 1 for rotations
+    prescribed_factor   (k,) motion of the coordinate by that of the port
+    ------------------  ----------------------------------------------------------------------------
+    others
+    ------------------------------------------------------------------------------------------------
+    links               rigid links
+    relaxed             (1,) 1 where constraints are redundant
+    damped              (1,) 1 where a superelement has structural damping
+    ==================  ============================================================================
+    """
+
     address: NDArray
     count: NDArray
     stride: NDArray
@@ -21,38 +81,35 @@ class System(Arrays):
     at_index: NDArray
     at_g: NDArray
     at_J: NDArray
-    first_joint: NDArray    # (1,) first batch that is none of superelements
-    first_power: NDArray    # (1,) first batch of what does work: loads, dampers, drives
+    first_joint: NDArray
+    first_power: NDArray
     index: NDArray
     constants: NDArray
-    g_unknown: NDArray      # unknown of every entry of the element forces
-    J_entry: NDArray        # entry of the matrix of every entry of the element matrices
-    rows: NDArray           # row and column of every entry of the matrix, dense by columns or in
-    columns: NDArray        # the blocks of a sparse elimination
-    diagonal: NDArray       # entry on the diagonal of each unknown
-    padding: NDArray        # entries with ones: diagonal of free slots
-    block_starts: NDArray   # pattern of the elimination, see sebody.engine.elimination
+    g_unknown: NDArray
+    J_entry: NDArray
+    rows: NDArray
+    columns: NDArray
+    diagonal: NDArray
+    padding: NDArray
+    block_starts: NDArray
     block_rows: NDArray
     block_diagonal: NDArray
-    slot_unknowns: NDArray  # unknown of every slot, of free ones the number of unknowns
-    is_multiplier: NDArray  # 1.0 for multipliers, by coordinate, and zeros for padding
-    rotation_at: NDArray    # first unknown of each rotation
-    turned: NDArray         # (k, 2) first unknown and frame of free positions solved in body axes
-    turned_blocks: NDArray  # (k, 5) positions whose rows and columns in an element matrix are in
-                            # other axes: start, width, row, frame of the unknown, of the matrix
-    summands: NDArray       # (elements, 5) start and width of the element matrix, first and end in
-                            # turned_blocks, number among those with links or -1
-    linked: NDArray         # (1,) 1 where bodies that turn against each other are coupled
-    dimension: NDArray      # (1,) coordinates of a position
-    magnitude: NDArray      # size of each coordinate, for the rounding floor
-    # items: what has a history or does work
-    table_at: NDArray       # (items + 1,) where each table starts
+    slot_unknowns: NDArray
+    is_multiplier: NDArray
+    rotation_at: NDArray
+    rotated: NDArray
+    rotated_blocks: NDArray
+    summands: NDArray
+    linked: NDArray
+    dimension: NDArray
+    magnitude: NDArray
+    table_at: NDArray
     table_times: NDArray
-    table_cubics: NDArray   # (rows, 4), see sebody.model.histories
-    corners: NDArray        # times at which a table has a corner, ascending
-    functions: NDArray      # (items, 3) addresses of compiled histories, 0 for a table
-    prescribed: NDArray     # (k, 3) coordinate, item, 1 for rotations
+    table_cubics: NDArray
+    corners: NDArray
+    functions: NDArray
+    prescribed: NDArray
     prescribed_factor: NDArray
     links: Links
-    relaxed: NDArray        # (1,) 1 where constraints are redundant
-    damped: NDArray         # (1,) 1 where a superelement has structural damping
+    relaxed: NDArray
+    damped: NDArray

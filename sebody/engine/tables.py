@@ -5,7 +5,7 @@ from sebody.kernels.pipeline import compiled
 
 @compiled
 def cubic_at(times, cubics, first, last, t, out, at):
-    """Value and rates at t of the cubics `first` to `last`; held outside."""
+    """Value and two rates at t of the cubics `first` to `last`; constant outside their times."""
     out[at + 1], out[at + 2] = 0.0, 0.0
     if t <= times[first]:
         out[at] = cubics[first, 0]

@@ -1,7 +1,7 @@
 """The one signature of every compiled kernel, and how the time loop calls it.
 
-A kernel is reached through its address: a call costs a few nanoseconds and the loop's cache does
-not depend on which kernels a scene uses. What the arguments hold is in `sebody.kernels.layout`.
+A kernel is called through its address: a call costs a few nanoseconds, and the loop is compiled
+once for all kernels. The contents of the arguments are described in `sebody.kernels.layout`.
 
 ===============  =================================================================================
 argument         meaning
@@ -33,7 +33,7 @@ def padded(n):
 
 @intrinsic
 def at(typingctx, pointer, first):
-    """The pointer to an element: an array from `first` on, without bounds or negative indices."""
+    """Pointer to the element `first` of a pointer: no bounds checks, no negative indices."""
     def codegen(context, builder, sig, args):
         return builder.gep(args[0], [args[1]])
 
@@ -42,20 +42,20 @@ def at(typingctx, pointer, first):
 
 @intrinsic
 def pointer_to(typingctx, array):
-    """The pointer to the data of an array."""
+    """Pointer to the data of an array."""
     def codegen(context, builder, sig, args):
         return context.make_array(sig.args[0])(context, builder, args[0]).data
 
     return types.CPointer(array.dtype)(array), codegen
 
 
-# what every kernel gets after its task and sizes, by name: arrays or pointers
+# arguments of a kernel after its task and sizes, by name: arrays or pointers
 Arguments = namedtuple("Arguments", [name for name, _, _ in ARGUMENTS])
 
 
 @intrinsic
 def call_kernel(typingctx, address, task, count, stride, width, arguments):
-    """Call the kernel at an address with `Arguments`; nothing else is taken for them."""
+    """Call the kernel at an address with `Arguments`; other types do not compile."""
     if getattr(arguments, "instance_class", None) is not Arguments:
         raise TypingError(f"a kernel is called with Arguments of arrays by name, not {arguments}")
     for (name, kind, _), given in zip(ARGUMENTS, arguments, strict=True):

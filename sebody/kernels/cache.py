@@ -1,8 +1,8 @@
 """Compiled functions kept from run to run, in place of Numba's own cache.
 
-Numba compares the file of a function only, so a function stays as it was when one it calls is
-edited. Here the functions of a room are kept together with the hash of the rooms they may call.
-Numba also stops where no folder can be written, or where a file is damaged; here it compiles.
+Numba compares the file of a function only, so editing a function does not recompile the functions
+that call it. Here compiled code is kept with a hash of all sources it may call. Numba's cache also
+raises an error if no folder can be written or a file is damaged; this one compiles instead.
 """
 
 import pickle
@@ -19,14 +19,14 @@ from sebody.kernels import store
 
 
 class FunctionCache(NullCache):
-    """What was compiled of a function: one file, an entry for each signature and processor.
+    """Compiled code of a function: one file, an entry for each signature and processor.
 
     Parameters
     ----------
     function : callable
         A function of a module.
     made_from : str
-        Hash of all that the machine code depends on.
+        Hash of all sources the machine code depends on.
     """
 
     def __init__(self, function: Callable, made_from: str):
@@ -37,7 +37,7 @@ class FunctionCache(NullCache):
         self._made_from = f"{made_from}, Numba {numba.__version__}"
 
     def load_overload(self, sig, target_context) -> CompileResult | None:
-        """What was compiled for a signature, or None."""
+        """Compiled code for a signature, or None."""
         target_context.refresh()
         key = sig, target_context.codegen().magic_tuple()
         for content in store.read(self._source, self._name, self._made_from):
@@ -47,7 +47,7 @@ class FunctionCache(NullCache):
         return None
 
     def save_overload(self, sig, data: CompileResult) -> None:
-        """Keep what was compiled for a signature."""
+        """Keep the compiled code for a signature."""
         assert not data.library.has_dynamic_globals, f"{self._name} holds addresses"
         entries = {}
         for content in store.read(self._source, self._name, self._made_from):

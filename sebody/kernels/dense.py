@@ -8,15 +8,15 @@ from numba.extending import intrinsic
 from sebody.kernels.layout import LANES
 from sebody.kernels.pipeline import compiled
 
-_UNROLLED = 2       # columns at a time: hides the latency of one sum
+_UNROLLED = 2       # sums over alternate columns: hides the latency of additions
 
 
 @intrinsic
 def columns_times(typingctx, A, x, out, rows, columns):
     """``out = A x`` of a matrix in padded columns; `out` is written to its padding.
 
-    Written in vector operations: Numba's pipeline finds none where sums stay in registers, and
-    this product is a third of a kernel's time otherwise.
+    Written in vector operations, because LLVM does not vectorize the loop if sums stay in
+    registers: without them this product takes a third of a kernel's time.
     """
     floats = types.CPointer(types.float64)
     return types.void(floats, floats, floats, types.int64, types.int64), _columns_times

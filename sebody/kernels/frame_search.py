@@ -1,6 +1,6 @@
-"""Where a floating frame is: the searches for its rotation that superelement kernels call.
+"""Searches for the rotation of a floating frame, called by superelement kernels.
 
-Each returns a status: 0, HALF_TURN where a node is turned by nearly half a turn against the frame,
+Each returns a status: 0, HALF_TURN where a node is rotated by nearly half a turn against the frame,
 or NO_FRAME where the search does not end.
 """
 
@@ -14,8 +14,8 @@ from sebody.kernels.rotations import (
     inverse_tangent_coefficients,
     relative_log,
     relative_rotations,
-    turn,
-    turned,
+    rotate,
+    rotated,
 )
 
 
@@ -35,24 +35,25 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
         if x * x + y * y + z * z < 1e-30:
             return 0
         x, y, z = _mean_step(count, alpha, psi, x, y, z)
-        turn(frame, 0, x, y, z, frame, 0)
-        if x * x + y * y + z * z < 1e-16:       # Newton: what is left is of the square of that
+        rotate(frame, 0, x, y, z, frame, 0)
+        if x * x + y * y + z * z < 1e-16:       # Newton: the error left is the square of the step
             return relative_rotations(count, nodes, R, frame, psi)
     return NO_FRAME
 
 
 @compiled
 def _mean_of_two(nodes, alpha, R, frame, psi):
-    """Mean of two rotations: a point of the shortest way between them, in closed form.
+    """Mean of two rotations: a point on the geodesic between them, in closed form.
 
-    False, and nothing done, for more than a quarter turn between them, or from the last frame: two
-    nodes may be turned against each other by more than half a turn.
+    Returns False and changes nothing if the rotations, or the mean and the last frame, differ by
+    more than a quarter turn: the nodes may be rotated against each other by more than half a turn,
+    and then the mean is not on the shortest way between them.
     """
     x, y, z, cosine = relative_log(R, 9 * nodes[0], R, 9 * nodes[1])
     if not cosine > 0.0:
         return False
     p, q, r = alpha[1] * x, alpha[1] * y, alpha[1] * z
-    a, b, c, d, e, f, g, h, i = turned(R, 9 * nodes[0], p, q, r)
+    a, b, c, d, e, f, g, h, i = rotated(R, 9 * nodes[0], p, q, r)
     if (a * frame[0] + b * frame[1] + c * frame[2] + d * frame[3] + e * frame[4] + f * frame[5]
             + g * frame[6] + h * frame[7] + i * frame[8] < 1.0):     # a quarter turn away
         return False
@@ -94,7 +95,7 @@ def weighted_mean(count, nodes, alpha, R, reference, frame, beta, psi):
         x += alpha[j] * beta[3 * j]
         y += alpha[j] * beta[3 * j + 1]
         z += alpha[j] * beta[3 * j + 2]
-    turn(reference, 0, x, y, z, frame, 0)
+    rotate(reference, 0, x, y, z, frame, 0)
     return relative_rotations(count, nodes, R, frame, psi)
 
 
@@ -141,19 +142,19 @@ def best_fit(count, fit, X, alpha, x, frame):
         size = px * px + py * py + pz * pz
         if not size < 16.0:
             return NO_FRAME
-        turn(frame, 0, px, py, pz, frame, 0)
-        if definite and size < 1e-16:       # Newton: what is left is of the square of that
+        rotate(frame, 0, px, py, pz, frame, 0)
+        if definite and size < 1e-16:       # Newton: the error left is the square of the step
             return 0
     return NO_FRAME
 
 
 @compiled
 def _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz):
-    """Turn towards the best fit, and whether it is a minimum that is being approached.
+    """Rotation vector of a step towards the best fit, and whether the step is Newton's.
 
-    ``J = tr(S) I - S`` is positive definite near the best fit. Its Newton step of an isotropic
-    body is the tangent of the angle that is missing, hence the arc tangent; elsewhere (beyond a
-    saddle) one radian along the moment leads back.
+    ``J = tr(S) I - S`` is positive definite near the best fit. For an isotropic body the length of
+    Newton's step is the tangent of the remaining angle, hence the arc tangent; where J is not
+    definite (beyond a saddle), the step is one radian along the moment.
     """
     a, b, c = yy + zz, xx + zz, xx + yy
     det = a * (b * c - yz * yz) - xy * (xy * c + xz * yz) - xz * (xy * yz + b * xz)
@@ -197,7 +198,6 @@ def planar_relative_angles(count, angles, frame, psi):
         if not math.cos(psi[j]) > NEAR_PI:
             return HALF_TURN
     return 0
-
 
 
 @compiled

@@ -1,9 +1,9 @@
-"""The contracts between kernels and whoever calls them: one table for every row of numbers.
+"""The contracts between kernels and their callers: one table for every row of numbers.
 
-Kernels work on flat arrays. What stands where in these is written here and nowhere else: the
-printer of the kernels, the packers of models, the compiled loop, the checks and the results all
-read these tables. Sizes are products of counts, which specialised kernels know beforehand and
-general ones read from the index row of their elements:
+Kernels work on flat arrays. The places of all numbers in these arrays are defined here only: the
+printer of the kernels, the assembly of models, the compiled loop, the checks and the results read
+these tables. Sizes are products of counts, which are constants in specialised kernels
+and read from the index row in general ones:
 
 ============  ======================================================================================
 N_POSITIONS   nodes of the element that keep their position
@@ -21,10 +21,10 @@ from numpy.typing import ArrayLike, NDArray
 
 LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
 
-# what a kernel is asked for: constraints differentiated in time are VELOCITY and ACCELERATION
+# tasks of a kernel; VELOCITY and ACCELERATION are the constraints differentiated in time
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
-# what a kernel answers: HALF_TURN where a node is turned by nearly half a turn against the frame of
-# its body, NO_FRAME where the search for that frame does not end
+# status that a kernel returns: HALF_TURN if a node is rotated by nearly half a turn against the
+# frame of its body, NO_FRAME if the search for this frame does not converge
 OK, HALF_TURN, NO_FRAME = range(3)
 
 Counts = Mapping[str, int]
@@ -43,14 +43,14 @@ class Part(NamedTuple):
     columns: bool = False
 
     def size(self, counts: Counts) -> int:
-        """How many numbers it takes."""
+        """How many numbers the part takes."""
         sizes = [counts[s] if isinstance(s, str) else s for s in self.shape]
         if self.columns:
             return sizes[1] * whole_vectors(sizes[0])
         return int(np.prod(sizes, dtype=int))
 
     def expression(self, known: Counts) -> str:
-        """The same as text for a kernel: known counts are numbers, the others names."""
+        """The size as text for a kernel: known counts as numbers, the others by name."""
         sizes = [str(known.get(s, s)) for s in self.shape]
         if self.columns:
             return f"{sizes[1]}*padded({sizes[0]})"
@@ -64,7 +64,7 @@ class Row(NamedTuple):
     parts: tuple[Part, ...]
 
     def slices(self, counts: Counts) -> dict[str, slice]:
-        """Where every part is."""
+        """The slice of every part in the row."""
         return {name: slice(first, first + size) for name, first, size in self._walk(counts)}
 
     def size(self, counts: Counts) -> int:
@@ -72,7 +72,7 @@ class Row(NamedTuple):
         return sum(part.size(counts) for part in self.parts)
 
     def first(self, name: str) -> int:
-        """Where a part begins, if all before it are of fixed size."""
+        """Where a part begins, if all parts before it are of fixed size."""
         return self.slices(_Fixed())[name].start
 
     def pack(self, counts: Counts, values: Mapping[str, ArrayLike]) -> NDArray:
@@ -114,7 +114,7 @@ class Row(NamedTuple):
         for part in self.parts:
             try:
                 size = part.size(counts)
-            except KeyError:        # what follows has no fixed place
+            except KeyError:        # parts that follow have no fixed place
                 yield part.name, first, 0
                 return
             yield part.name, first, size
@@ -122,11 +122,11 @@ class Row(NamedTuple):
 
 
 class ContractError(ValueError):
-    """What a model gives and what a kernel reads do not agree."""
+    """Data of a model that do not agree with what a kernel reads."""
 
 
 class _Fixed(dict):
-    """No counts at all: only parts of fixed size have a place."""
+    """No counts: only parts behind parts of fixed size have a place."""
 
 
 def whole_vectors(n: int) -> int:
@@ -153,7 +153,7 @@ ARGUMENTS = (
     ("references", "float64", "frames of the last converged step, nine numbers each"),
     ("frames", "float64", "frames of the current iterate; superelements write theirs"),
     ("T", "float64", "tangent operators of the step increments of rotations, nine numbers each"),
-    ("loads", "float64", "of every item its amplitude now, and the two rates of that"),
+    ("loads", "float64", "of every power port the amplitude now and its first two derivatives"),
     ("coefficients", "float64", "the row COEFFICIENTS"),
     ("forces", "float64", "written: forces of every element, (count, n)"),
     ("matrices", "float64", "written: matrices of every element, (count, n, n)"),
@@ -164,26 +164,26 @@ ARGUMENTS = (
 INDEX = Row("index row of an element", (
     Part("constants", (), "where its row of constants begins"),
     Part("frame", (), "number of its frame"),
-    Part("item", (), "number of the item it is: what does work, a load, damper or drive"),
+    Part("port", (), "number of its power port, if it does work: a load, damper or drive"),
     Part("positions", (), "N_POSITIONS, the same for all elements of a batch"),
     Part("rotations", (), "N_ROTATIONS, likewise"),
     Part("nodes", ("N_ROTATIONS",), "numbers of its rotation matrices"),
     Part("unknowns", ("n",), "its coordinates, then its multipliers"),
 ))
-AT_CONSTANTS, AT_FRAME, AT_ITEM, AT_POSITIONS, AT_ROTATIONS, HEADER = (
-    INDEX.first(name) for name in ("constants", "frame", "item", "positions", "rotations", "nodes"))
+AT_CONSTANTS, AT_FRAME, AT_PORT, AT_POSITIONS, AT_ROTATIONS, HEADER = (
+    INDEX.first(name) for name in ("constants", "frame", "port", "positions", "rotations", "nodes"))
 
-# J = c_mass dG/da + c_rate dG/dv + c_place dG/dq T: rotations vary multiplicatively, and T turns
-# the variation of the step's increment into that of the rotation
+# J = c_mass dG/da + c_damping dG/dv + c_stiffness dG/dq T: rotations vary multiplicatively, and T
+# maps the variation of a rotation's increment in a step to the variation of the rotation
 COEFFICIENTS = Row("coefficients of the iteration matrix, and gravity", (
     Part("c_mass", (), "of the derivatives by accelerations"),
-    Part("c_rate", (), "of the derivatives by velocities"),
-    Part("c_place", (), "of the derivatives by positions and rotations"),
+    Part("c_damping", (), "of the derivatives by velocities"),
+    Part("c_stiffness", (), "of the derivatives by positions and rotations"),
     Part("c_geo", (), "1 for consistent tangents, 0 for the paper's"),
     Part("c_constraint", (), "of constraints and multipliers"),
     Part("field", (3,), "gravity [length/time^2]"),
 ))
-C_MASS, C_RATE, C_PLACE, C_GEO, C_CONSTRAINT, FIELD = (
+C_MASS, C_DAMPING, C_STIFFNESS, C_GEO, C_CONSTRAINT, FIELD = (
     COEFFICIENTS.first(part.name) for part in COEFFICIENTS.parts)
 
 ENERGIES = Row("sums over the elements, and powers", (
@@ -192,7 +192,7 @@ ENERGIES = Row("sums over the elements, and powers", (
     Part("momentum", (3,), "momentum in global axes"),
     Part("moment", (3,), "its moment about the origin"),
     Part("potential", (), "potential of gravity"),
-    Part("powers", ("items",), "rate of work of every item"),
+    Part("powers", ("ports",), "power of every power port"),
 ))
 KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS = (
     ENERGIES.first(part.name) for part in ENERGIES.parts)
@@ -200,7 +200,7 @@ KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS = (
 RECORD = Row("what is recorded of a state", (
     Part("t", (), "time"),
     Part("iterations", (), "Newton iterations since the start"),
-    Part("works", ("items",), "work of every item since the start"),
+    Part("works", ("ports",), "work of every power port since the start"),
     Part("q", ("coordinates",), "positions, modes, angles, multipliers; rotations' increments"),
     Part("R", ("rotations", 9), "rotation matrices"),
     Part("v", ("coordinates",), "velocities"),
@@ -208,13 +208,13 @@ RECORD = Row("what is recorded of a state", (
     Part("frames", ("bodies", 9), "frames of superelements"),
     Part("frames_old", ("bodies", 9), "the same of the last accepted step"),
 ))
-# places that are the same for all models; of the others which part they are, for arrays of places
+# places that are the same in all models; of other parts their number, see `Record.at`
 RECORD_T, RECORD_ITERATIONS, RECORD_WORKS = (
     RECORD.first(name) for name in ("t", "iterations", "works"))
 Q_PART, R_PART, V_PART, A_PART = (
     [part.name for part in RECORD.parts].index(name) for name in ("q", "R", "v", "a"))
 
-# what every superelement reads; its frame and inertia option may declare more
+# constants of every superelement; a frame or inertia option may declare more
 SUPERELEMENT_CONSTANTS = (
     Part("alphas", ("N_POSITIONS",), "frame weights of the positions"),
     Part("fits", ("N_POSITIONS",), "weights in the rotation of best fit"),
@@ -248,26 +248,26 @@ def first_mode(positions: int, rotations: int, planar: bool) -> int:
 
 
 class FrameTraits(NamedTuple):
-    """What a floating frame is and what it needs."""
+    """Properties of a floating frame."""
 
     summary: str
-    needs_rotations: bool = True    # it averages rotations of nodes; else it follows positions
+    needs_rotations: bool = True    # averages rotations of nodes; else follows positions
     fewest_positions: tuple[int, int] = (1, 1)      # in space, in a plane
-    planar: bool = True             # False: in a plane it is the same as another one
+    planar: bool = True             # False: in a plane the frame equals another one
     exact: bool = True              # forces are derivatives of the energy
-    incremental: bool = False       # it averages what nodes turned since the last step
+    incremental: bool = False       # averages rotation increments of the step
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 
 
 class InertiaTraits(NamedTuple):
-    """What an inertia option is and what it needs."""
+    """Properties of an inertia option."""
 
     summary: str
     material: bool                  # T in material angular velocities; else in those of the frame
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 
 
-LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # what a boundary node keeps
+LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # by kept triplets of a node
 
 
 def layout_name(keeps: Iterable[str], planar: bool) -> str:

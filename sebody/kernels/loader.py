@@ -34,7 +34,7 @@ def user_directory() -> Path:
 
 @contextmanager
 def without_collector() -> Iterator[None]:
-    """No garbage collection: it takes a quarter of a compilation and frees nothing there."""
+    """Suspend garbage collection: it takes a quarter of a compilation and frees nothing."""
     collecting = gc.isenabled()
     gc.disable()
     try:
@@ -50,7 +50,7 @@ def find(name: str) -> Path | None:
     Raises
     ------
     InputError
-        The user's was made for other functions than today's in ``kernels/``.
+        The kernel in the user's directory was made by another version of ``kernels/``.
     """
     for folder in find_spec("sebody.generated").submodule_search_locations:
         if (path := Path(folder) / f"{name}.py").exists():

@@ -1,4 +1,4 @@
-"""Names of kernels: of the module, and with ``.py`` of its file."""
+"""Names of kernels, which are the names of their modules."""
 
 SUPERELEMENT, ELEMENT = PREFIXES = "superelement_", "element_"
 PLANAR = "planar-"  # begins names of layouts in a plane

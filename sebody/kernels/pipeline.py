@@ -1,10 +1,10 @@
-"""How everything is compiled: functions by all of Numba's passes, kernels by those they need.
+"""Compilation: functions by all of Numba's passes, kernels by the passes they need.
 
-The latter take two thirds of the time. Kernels are arithmetic on floats through pointers: there is
-nothing to rewrite or inline, every variable has one type, so single static assignments are left to
-LLVM, and a sum of two floats need not be looked up among NumPy's functions two thousand times.
-Their loops run over few nodes: LLVM prepares loops for thousands, by vectors and in rounds of
-eight, which makes kernels slower, general ones three times.
+With these kernels compile in two thirds of the time. Kernels are arithmetic on floats through
+pointers: Numba's rewriting and inlining passes have nothing to do, every variable has one type, so
+single static assignment is left to LLVM, and types of operations on floats are looked up only once.
+Their loops run over few nodes: LLVM prepares loops for thousands of passes, by vectors and in
+rounds of eight, which makes kernels slower, general ones two to three times.
 """
 
 from collections.abc import Callable
@@ -40,7 +40,7 @@ CONTRACT = {"contract"}     # a product and a sum in one rounding
 
 
 class _Remembering:
-    """A typing context that looks up a function of given numbers but once."""
+    """A typing context that resolves a function of given number types only once."""
 
     def __init__(self, context):
         self._context, self._found = context, {}
@@ -93,7 +93,7 @@ class _Lowering(BaseNativeLowering):
 
 
 class KernelPasses(CompilerBase):
-    """From bytecode to types to machine code, and nothing between."""
+    """Numba's pipeline for kernels: bytecode, types, machine code."""
 
     def define_pipelines(self) -> list[PassManager]:
         """The one pipeline."""
@@ -106,11 +106,11 @@ class KernelPasses(CompilerBase):
 
 
 def compiled(function: Callable | None = None, **options) -> Callable:
-    """Compile a function of the runtime, and keep what was compiled.
+    """Compile a function of the runtime, and keep the compiled code.
 
-    Functions of ``kernels/`` round like the kernels that call them, others like the time loop. If
-    that were left open Numba would take it from whoever is compiled first, so that numbers would
-    depend on what was run before.
+    Functions of ``kernels/`` contract products and sums as the kernels that call them do, others
+    do not. The choice is explicit because otherwise Numba takes it from the first caller that is
+    compiled, and results would depend on what was run before.
     """
     if function is None:
         return partial(compiled, **options)
@@ -121,9 +121,9 @@ def compiled(function: Callable | None = None, **options) -> Callable:
 
 
 def kernel_function(function: Callable) -> CFunc:
-    """Compile a kernel, a function of the `SIGNATURE`, and keep what was compiled.
+    """Compile a kernel, a function of the `SIGNATURE`, and keep the compiled code.
 
-    Its attribute `address` is that of the machine code.
+    The attribute `address` of the result is the address of the machine code.
     """
     kernel = CFunc(function, normalize_signature(SIGNATURE), {},
                    {"error_model": "numpy", "fastmath": CONTRACT}, KernelPasses)

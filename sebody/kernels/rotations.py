@@ -103,8 +103,8 @@ def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
 
 
 @compiled
-def turned(R, first, x, y, z):
-    """``R exp(psi)`` of the rotation at `first` of R, row by row."""
+def rotated(R, first, x, y, z):
+    """``R exp(psi)`` of the rotation that begins at `first` of R, row by row."""
     a, b, c, d, e, f, g, h, i = exp_map(x, y, z)
     k, m, n = R[first], R[first + 1], R[first + 2]
     p, q, r = R[first + 3], R[first + 4], R[first + 5]
@@ -115,10 +115,10 @@ def turned(R, first, x, y, z):
 
 
 @compiled
-def turn(R, first, x, y, z, out, to):
-    """``out = R exp(psi)``: the rotation at `first` of R, turned, to `to` of out."""
+def rotate(R, first, x, y, z, out, to):
+    """``out = R exp(psi)``: the rotation at `first` of R, rotated, to `to` of out."""
     (out[to], out[to + 1], out[to + 2], out[to + 3], out[to + 4], out[to + 5], out[to + 6],
-     out[to + 7], out[to + 8]) = turned(R, first, x, y, z)
+     out[to + 7], out[to + 8]) = rotated(R, first, x, y, z)
 
 
 @compiled

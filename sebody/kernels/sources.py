@@ -1,4 +1,4 @@
-"""Fingerprints of code: what compiled results depend on, comments and docstrings apart."""
+"""Hashes of the sources that compiled code depends on, without comments and docstrings."""
 
 import ast
 from collections.abc import Callable
@@ -25,7 +25,7 @@ def room_hash(*rooms: str) -> str:
     Raises
     ------
     FileNotFoundError
-        A folder without modules: what is compiled would never be found stale.
+        A folder without modules: stale compiled code would not be noticed.
     """
     paths = []
     for room in rooms:
@@ -42,10 +42,10 @@ def in_room(function: Callable, room: str) -> bool:
 
 
 def function_hash(function: Callable) -> str:
-    """Hash of all that a compiled function of the runtime may depend on.
+    """Hash of all sources that a compiled function of the runtime may depend on.
 
-    Those in ``kernels/`` call one another; all others call ``kernels/``, ``engine/`` and their own
-    module.
+    Functions in ``kernels/`` call each other; all others call ``kernels/``, ``engine/`` and their
+    own module.
     """
     if in_room(function, KERNELS):
         return room_hash(KERNELS)
@@ -56,7 +56,7 @@ def function_hash(function: Callable) -> str:
 
 
 def kernel_hash(function: Callable) -> str:
-    """Hash of all that a kernel may depend on: ``kernels/`` and its own file."""
+    """Hash of all sources that a kernel may depend on: ``kernels/`` and its own file."""
     path = Path(function.__code__.co_filename)
     # byte by byte: nobody edits the comments of generated files, and parsing these takes long
     return f"{room_hash(KERNELS)} {sha256(path.read_bytes()).hexdigest()[:_DIGITS]}"
@@ -64,7 +64,7 @@ def kernel_hash(function: Callable) -> str:
 
 @cache
 def _syntax_hash(name: str, *paths: Path) -> str:
-    """Hash of the syntax of modules, kept for their bytes: parsing takes 0.07 s at every start."""
+    """Hash of the syntax of modules; kept in a file, because parsing takes 0.07 s."""
     texts = {f"{path.parent.name}/{path.name}": path.read_bytes() for path in paths}
     parser = Path(__file__).read_bytes()
     content = sha256(repr((texts, parser)).encode()).hexdigest()
@@ -79,7 +79,7 @@ def _syntax_hash(name: str, *paths: Path) -> str:
 def syntax(text: str | bytes) -> str:
     """The syntax tree of a module as text, the same for every version of Python.
 
-    Fields that are empty are left out: new versions add such. Docstrings are left out, too.
+    Empty fields are left out, since new versions of Python add some; so are docstrings.
     """
     return _described(ast.parse(text))
 

@@ -1,7 +1,7 @@
 """Files kept from run to run: read wherever they are, written to the first folder that allows it.
 
-A file is its checksum, a line that says what it was made from, and what was made. One that is
-damaged or was made from something else counts as absent.
+A file holds its checksum, a line with the hash of its sources, and the content. A file that is
+damaged or made from other sources counts as absent.
 """
 
 import os
@@ -20,7 +20,7 @@ _said = set()       # topics of warnings
 
 
 def folders(source: Path) -> list[Path]:
-    """Where files about a module are looked for, in this order.
+    """Folders in which files about a module are looked for, in this order.
 
     ``NUMBA_CACHE_DIR`` if it is set, the ``__pycache__`` beside the module, the user's cache.
     """
@@ -33,7 +33,7 @@ def folders(source: Path) -> list[Path]:
 
 
 def read(source: Path, name: str, made_from: str) -> Iterator[bytes]:
-    """What is kept about a module under a name, from every folder that has it."""
+    """Contents of the files about a module under a name, from every folder that has one."""
     for folder in folders(source):
         content = _content(folder / name, made_from)
         if content is not None:
@@ -54,14 +54,14 @@ def _content(path: Path, made_from: str) -> bytes | None:
 
 
 def write(source: Path, name: str, made_from: str, content: bytes) -> bool:
-    """Keep something about a module in the first folder that can be written; whether one can."""
+    """Write a file about a module to the first folder that allows it; False if none does."""
     data = made_from.encode() + b"\n" + content
     data = _checksum(data) + data
     return any(_written(folder, name, data) for folder in folders(source))
 
 
 def _written(folder: Path, name: str, data: bytes) -> bool:
-    """Write a file in one step, since other processes may do the same."""
+    """Write a file atomically, since other processes may write the same file."""
     part = folder / f"{name}.{uuid4().hex[:16]}.part"
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,7 @@
-"""Forces of a user's own: a compiled function behind the signature of every other kernel.
+"""Kernel of forces by a function of the user, with the signature of every other kernel.
 
-The kernel is written by hand, since there is nothing to derive: forces come from the function, the
-matrix from central differences of it.
+It is written by hand, since there is nothing to derive: the forces come from the function, the
+matrix from central differences of these forces.
 """
 
 from llvmlite import ir
@@ -9,7 +9,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.kernels.abi import at
-from sebody.kernels.layout import AT_ITEM, C_PLACE, C_RATE, ENERGY, HEADER, POWERS, TANGENT
+from sebody.kernels.layout import AT_PORT, C_DAMPING, C_STIFFNESS, ENERGY, HEADER, POWERS, TANGENT
 from sebody.kernels.pipeline import compiled, kernel_function
 
 PLANAR = False
@@ -55,8 +55,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     x, rate, force, other = work, at(work, n), at(work, 2*n), at(work, 3*n)
     for element in range(count):
         row = at(index, element*stride)
-        unknowns, item = at(row, HEADER), row[AT_ITEM]
-        address, t = unknowns[n], loads[3*item]
+        unknowns, port = at(row, HEADER), row[AT_PORT]
+        address, t = unknowns[n], loads[3*port]
         for i in range(n):
             x[i], rate[i] = q[unknowns[i]], v[unknowns[i]]
         g = at(forces, element*n)
@@ -64,13 +64,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for i in range(n):
             g[i] = -force[i]
         if task == ENERGY:
-            energies[POWERS + item] = power
+            energies[POWERS + port] = power
         if task == TANGENT:
             J = at(matrices, element*n*n)
             for column in range(n):
                 for i in range(n):
                     J[i*n + column] = 0.0
-                for values, c in ((x, coefficients[C_PLACE]), (rate, coefficients[C_RATE])):
+                for values, c in ((x, coefficients[C_STIFFNESS]), (rate, coefficients[C_DAMPING])):
                     kept = values[column]
                     h = STEP*max(1.0, abs(kept))
                     values[column] = kept + h

@@ -15,14 +15,15 @@ from sebody.reduction import craig_bampton
 def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str], section: Section,
          elements: int, bodies: int | None = None, modes: int = 0,
          up: ArrayLike | None = None, **placing) -> list[Node]:
-    """A straight beam as equal superelements; of one element each they are nonlinear beams.
+    """A straight beam of equal superelements; with one element each, a nonlinear beam.
 
     A superelement of one finite element, with the mean of its two rotations as frame, has the
-    strain energy of Simo and Reissner's geometrically exact beam: the rotation half way between
-    the nodes sees the chord, ``Gamma = R_m^T (x_b - x_a) / l - t``, and each node is turned by
-    half of ``log(R_a^T R_b)`` against it. The exact linear stiffness does not lock; with no
-    shear factor in the section it is that of Euler and Bernoulli. So beams without modes and
-    with as many bodies as elements are the nonlinear reference for superelements.
+    strain energy of Simo and Reissner's geometrically exact beam: strains of the chord are
+    ``Gamma = R_m^T (x_b - x_a) / l - t`` with the rotation R_m half way between those of the nodes,
+    and each node is rotated by half of ``log(R_a^T R_b)`` against R_m. The exact linear stiffness
+    does not lock; with no shear factor in the section it is that of Euler and Bernoulli. So beams
+    without modes and with as many bodies as elements are the nonlinear reference for
+    superelements.
 
     Parameters
     ----------

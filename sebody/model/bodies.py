@@ -29,7 +29,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable
     frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
     inertia : {'a', 'b'}
     rotation : (3, 3), planar (2, 2), optional
-        Turns FE axes into global axes; identity by default.
+        Rotates vectors from FE axes to global axes; identity by default.
     frame_node : int
         For ``frame='node'``: which boundary node carries the frame.
 

@@ -6,7 +6,15 @@ from numpy.typing import ArrayLike
 from sebody.errors import InputError
 from sebody.model import histories
 from sebody.model.histories import History
-from sebody.model.inputs import axes, chosen_name, direction, known, triplet, turning, vector
+from sebody.model.inputs import (
+    axes,
+    chosen_name,
+    direction,
+    known,
+    rotation_vector,
+    triplet,
+    vector,
+)
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
 from sebody.model.parts import Element, Joint, Motion, Node
@@ -18,8 +26,8 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
                 name: str | None = None) -> Joint:
     """Prescribe the angle of `node` against `to` (the ground) about the axis they share.
 
-    The joint itself is built apart. Without `to` and with nothing else that turns `node`,
-    `move` takes no equation.
+    The joint itself is built separately. If nothing else acts on the rotation of `node` and there
+    is no `to`, `move` does the same without an equation.
 
     Parameters
     ----------
@@ -37,12 +45,12 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
 
 def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayLike,
                 to: Node | str | None = None, name: str | None = None) -> Joint:
-    """Prescribe the way of `to` (a point of the ground) along an axis fixed in `node`.
+    """Prescribe the displacement of `to` (a point of the ground) along an axis fixed in `node`.
 
     Parameters
     ----------
     motion : table or tuple of three functions
-        Of the way from the start [length]; see `sebody.model.histories.motion`.
+        The displacement, zero at the start [length]; see `sebody.model.histories.motion`.
     """
     a, b = pair(model, node, to, "drive")
     e = direction(model, axis, "drive", a)
@@ -60,8 +68,8 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     Parameters
     ----------
     direction : (3,), planar (2,); of a planar rotation a number
-        The motion times this is added to the place (may be called again, for positions), or is
-        the angle about this axis.
+        For positions, the motion times this vector is added to the initial position, and several
+        motions add up. For rotations, the axis about which the motion is the angle.
     motion : table or tuple of three functions
         See `sebody.model.histories.motion`; zero at the start.
     what : {'position', 'rotation'}
@@ -69,7 +77,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     Raises
     ------
     InputError
-        A rotation moved about two axes, or a position that hangs on another node.
+        A rotation moved about two axes, or a dependent position at the end of a rigid link.
     """
     node = known(model, node)
     if what not in ("position", "rotation"):
@@ -78,7 +86,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     if what == "position":
         along = vector(model, direction, f"motion of {moved.name}")
     else:
-        along = turning(model, direction, f"motion of {moved.name}")
+        along = rotation_vector(model, direction, f"motion of {moved.name}")
         if moved.motions:
             raise InputError(f"{moved.name} is moved about an axis already: rotations about "
                              "two axes do not add up, put a joint between them")

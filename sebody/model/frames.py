@@ -16,7 +16,7 @@ class Frame(NamedTuple):
 
     kernel: str                 # the frame of the generated kernel
     traits: FrameTraits
-    on_one_node: bool = False   # all weight is on one node
+    on_one_node: bool = False   # one node has all the weight
 
 
 INERTIAS = tuple(options.INERTIA_OPTIONS)
@@ -52,7 +52,7 @@ def check_frame(name: str, body: ReducedBody, frame: str) -> None:
 
 def frame_weights(name: str, body: ReducedBody, frame: str,
                   node: int) -> tuple[NDArray, NDArray]:
-    """Weights of the nodes' positions and rotations in the frame; `node` may have to carry it."""
+    """Weights of positions and rotations in the frame; `node` carries frames on one node."""
     if not FRAMES[frame].on_one_node:
         return body_weights(body)
     if node not in body.position_nodes or node not in body.rotation_nodes:

@@ -18,12 +18,12 @@ SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user a
 
 @dataclass(frozen=True)
 class History:
-    """A number in time: rows of cubics ``sum_k c_k (t - t_i)^k``, held outside, or functions."""
+    """A function of time: cubics ``sum_k c_k (t - t_i)^k``, constant outside, or functions."""
 
     times: tuple[float, ...] = (0.0,)
     cubics: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0, 0.0),)
     functions: tuple = ()       # keeps the compiled functions alive
-    corners: tuple[float, ...] = ()     # times at which its rate jumps
+    corners: tuple[float, ...] = ()     # times at which the rate jumps
 
     @property
     def addresses(self) -> tuple[int, int, int]:
@@ -72,12 +72,12 @@ def with_corners(function: Callable[[float], float], corners: Sequence[float]) -
 
 
 def clock() -> History:
-    """The time itself."""
+    """A history whose value is the time itself."""
     return History((0.0, 1e30), ((0.0, 1.0, 0.0, 0.0), (1e30, 0.0, 0.0, 0.0)))
 
 
 def motion(source: "ArrayLike | tuple[Callable, Callable, Callable] | History") -> History:
-    """The motion of a drive: position, velocity and acceleration that belong together.
+    """The motion of a drive: a position and its first two derivatives.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def motion(source: "ArrayLike | tuple[Callable, Callable, Callable] | History") 
 
 
 def _check_rates(functions) -> None:
-    """Rates must be the derivatives of what they are rates of."""
+    """Refuse a rate that is not the derivative of the function before it."""
     for k, what in ((0, "second function is not the derivative of the first"),
                     (1, "third function is not the derivative of the second")):
         f, rate = functions[k].ctypes, functions[k + 1].ctypes

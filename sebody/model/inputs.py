@@ -1,4 +1,4 @@
-"""Checks of what a user gives: nodes, vectors, names."""
+"""Checks of input: nodes, vectors, names."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,8 +35,8 @@ def vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
     return given
 
 
-def turning(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
-    """A vector of rotation: three numbers, in a plane one."""
+def rotation_vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
+    """A rotation vector, axis or angular velocity: three numbers, in a plane one."""
     given = np.atleast_1d(_numbers(value))
     if given.shape != (model.rotation_size,) or not np.isfinite(given).all():
         raise InputError(f"{what} is {value}: give {model.rotation_size} finite number(s)")
@@ -63,7 +63,7 @@ def axes(model: Mechanism, axis: ArrayLike, what: str,
 
 
 def chosen_name(model: Mechanism, name: str | None, default: str) -> str:
-    """The name of a joint, load or drive: its own, or the default one, which several may have."""
+    """The name of a joint, load or drive: the given one, or the default, not always unique."""
     if name is None:
         if default in model.own_names:
             refuse_taken(model, default, default)
@@ -89,7 +89,7 @@ def _described(element: Superelement | Element | Joint | Motion) -> str:
 
 
 def _numbers(value: ArrayLike) -> NDArray:
-    """As an array of numbers; what is none becomes NaN, which is refused with its name."""
+    """An array of numbers; what cannot be read as numbers becomes NaN, for the caller to refuse."""
     try:
         return np.array(value, dtype=float)
     except (TypeError, ValueError):

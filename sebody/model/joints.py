@@ -1,7 +1,7 @@
 """Joints of a model, built from a small family of generated constraints.
 
 A joint takes no equation where its nodes can share a triplet instead. With ``explicit=True`` it is
-built from equations alone. Every joint takes a name, by default what it is and where:
+built from equations alone. Every joint takes a name, by default its kind and its node:
 ``result["<name>.multipliers"]`` are the multipliers of its equations.
 """
 
@@ -34,7 +34,7 @@ def fix(model: Mechanism, node: Node | str, what: str = "both") -> None:
     Raises
     ------
     InputError
-        The position hangs on another node by a rigid link.
+        The position is a dependent one, at the end of a rigid link.
     """
     node = known(model, node)
     if what not in ("position", "rotation", "both"):
@@ -126,10 +126,10 @@ def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
 
 def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
               explicit: bool = True, name: str | None = None) -> Joint:
-    """Spherical joint as an explicit constraint with a multiplier a direction.
+    """Spherical joint as an explicit constraint with one multiplier for each direction.
 
     For comparison: `fix(node, "position")`, or a second node made with ``at=``, is the same
-    joint with fewer unknowns; ``explicit=False`` makes it that.
+    joint with fewer unknowns, and so is ``explicit=False``.
     """
     what = "spherical joint"
     a, b = pair(model, node, to, what, ("position",))
@@ -139,7 +139,7 @@ def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
 
 def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
          explicit: bool = False, name: str | None = None) -> Joint:
-    """Nodes move as one: they share both triplets; with ``explicit=True`` by equations."""
+    """Join two nodes rigidly: they share both triplets, or with ``explicit=True`` by equations."""
     a, b = pair(model, node, to, "weld")
     name = _named(model, name, "weld", a)
     equations = _together(model, a, b, to, "weld", explicit)
@@ -176,7 +176,7 @@ def _joint(model: Mechanism, name: str, equations: list[Equations]) -> Joint:
 
 def _together(model: Mechanism, a: Node, b: Node, to: Node | str | None, what: str,
               explicit: bool) -> list[Equations]:
-    """Both positions become one: shared or fixed, else by the equations returned."""
+    """Make two positions one: shared or fixed, or by the equations that are returned."""
     check_together(model, a, b, what)
     if explicit:
         if a.position is b.position:

@@ -1,4 +1,4 @@
-"""Loads of a model: forces, torques, gravity. Each of the first has a name and a work."""
+"""Loads of a model: forces and torques, each with a name and its work, and gravity."""
 
 from collections.abc import Callable, Iterable
 
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from sebody.errors import InputError
 from sebody.kernels.user_functions import compile_force
 from sebody.model.histories import History, clock, history
-from sebody.model.inputs import chosen_name, known, triplet, turning, vector
+from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node
 
@@ -38,7 +38,7 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
     on = triplet(known(model, node), "rotation")
-    constants = {"d": turning(model, direction, f"torque on {on.name}")}
+    constants = {"d": rotation_vector(model, direction, f"torque on {on.name}")}
     kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
     course = history(amplitude)
     name = chosen_name(model, name, f"torque on {on.name}")
@@ -68,15 +68,15 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
 
 def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
                function: Callable[..., None]) -> Element:
-    """Forces of a user's own, compiled into the loop.
+    """Forces by a function of the user, compiled for the loop.
 
     Parameters
     ----------
     nodes : iterable of Node or str
-        Whose positions and velocities the function is given, and on which it acts.
+        Nodes whose positions and velocities the function gets, and on which its forces act.
     function : callable
-        ``function(t, x, v, force)`` with arrays of all coordinates, node after node: sets
-        `force`, which comes as zeros. Numba compiles it; its derivatives are differences.
+        ``function(t, x, v, force)`` with arrays of all coordinates, node after node; it sets
+        `force`, which is zero before. Numba compiles it; derivatives are central differences.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def gravity(model: Mechanism, field: ArrayLike) -> None:
     Raises
     ------
     InputError
-        Not so many finite numbers.
+        Another number of values than coordinates, or values that are not finite.
     """
     model.gravity_field = vector(model, field, "gravity")
 

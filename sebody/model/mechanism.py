@@ -28,7 +28,7 @@ class Mechanism:
     joints: list[Joint] = field(default_factory=list, init=False)
     loads: list[Element] = field(default_factory=list, init=False)  # springs and dampers, too
     grounds: list[Node] = field(default_factory=list, init=False)   # fixed ends of joints
-    own_names: set[str] = field(default_factory=set, init=False)    # all but default ones
+    own_names: set[str] = field(default_factory=set, init=False)    # names given by the user
     gravity_field: NDArray = field(init=False)
 
     def __post_init__(self) -> None:
@@ -50,7 +50,7 @@ class Mechanism:
         return [c for joint in self.joints for c in joint.constraints]
 
     def kind_of(self, name: str) -> str:
-        """Kind of an element in this model's dimension: elements of a plane are of their own."""
+        """Kind of an element in this model's dimension: planar elements have their own kernels."""
         return "planar_" + name if self.planar else name
 
     def triplets(self) -> list[Triplet]:

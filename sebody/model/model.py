@@ -1,8 +1,8 @@
 """What a user builds: nodes made of triplets, superelements on them, joints and loads.
 
-Unknowns are triplets (formulation: a node is a position triplet plus a rotation triplet, each its
-own block). Two bodies that share a position triplet have a spherical joint between them without a
-multiplier, a fixed triplet is no unknown at all.
+A node is a position triplet and a rotation triplet, two separate blocks of unknowns. Bodies that
+share a position triplet have a spherical joint between them without a multiplier, and a fixed
+triplet has no unknowns.
 """
 
 from sebody.model import beams, bodies, drives, joints, loads, nodes, springs

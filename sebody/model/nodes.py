@@ -1,10 +1,10 @@
-"""Nodes of a model: where they are, what they share, and how they start to move."""
+"""Nodes of a model: positions, shared triplets, rigid links and initial velocities."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
-from sebody.model.inputs import known, triplet, turning, vector
+from sebody.model.inputs import known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node, Triplet
 
@@ -61,13 +61,13 @@ def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Nod
     position, rotation = (triplet(master, k) for k in ("position", "rotation"))
     root = position if position.root is None else position.root
     arms = (*position.arms, (rotation, point - master.point))
-    hanging = Triplet(f"{name}.position", point, np.zeros(model.dimension), root=root, arms=arms)
-    model.nodes[name] = Node(name, point, hanging, rotation)
+    dependent = Triplet(f"{name}.position", point, np.zeros(model.dimension), root=root, arms=arms)
+    model.nodes[name] = Node(name, point, dependent, rotation)
     return model.nodes[name]
 
 
 def ground(model: Mechanism, node: Node) -> Node:
-    """A fixed node at the place of another one."""
+    """A fixed node at the position of another one."""
     fixed = Node(f"ground at {node.name}", node.point,
                  Triplet("ground.position", node.point, np.zeros(model.dimension), fixed=True),
                  _rotation(model, "ground.rotation", fixed=True))
@@ -79,10 +79,11 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
                      angular: ArrayLike | None = None) -> None:
     """Initial velocity of a node, global axes.
 
-    What is not given follows from the joints, see `sebody.Simulation`.
+    Velocities that are not given are solved for, see `sebody.Simulation`.
     """
     node = known(model, node)
-    for kind, value, check in (("position", linear, vector), ("rotation", angular, turning)):
+    for kind, value, check in (("position", linear, vector),
+                               ("rotation", angular, rotation_vector)):
         if value is None:
             continue
         moving = triplet(node, kind)
@@ -97,14 +98,14 @@ def rigid_velocity(model: Mechanism, linear: ArrayLike, angular: ArrayLike,
                    about: ArrayLike | None = None) -> None:
     """Start all free triplets in a rigid motion of the whole model."""
     linear = vector(model, linear, "linear velocity")
-    angular = turning(model, angular, "angular velocity")
+    angular = rotation_vector(model, angular, "angular velocity")
     centre = np.zeros(model.dimension) if about is None else vector(model, about, "about")
     for node in model.nodes.values():
         if node.position is not None and node.position.solved:
             arm = node.point - centre
-            turned = (angular[0] * np.array([-arm[1], arm[0]]) if model.planar
-                      else np.cross(angular, arm))
-            node.position.rate = linear + turned
+            spin = (angular[0] * np.array([-arm[1], arm[0]]) if model.planar
+                    else np.cross(angular, arm))
+            node.position.rate = linear + spin
         if node.rotation is not None and node.rotation.solved:
             node.rotation.rate = angular.copy()
 
@@ -116,4 +117,4 @@ def _check_new(model: Mechanism, name: str) -> None:
 
 def _rotation(model: Mechanism, name: str, fixed: bool = False) -> Triplet:
     return Triplet(name, np.zeros(model.rotation_size), np.zeros(model.rotation_size), fixed,
-                   turns=True)
+                   rotational=True)

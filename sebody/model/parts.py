@@ -11,7 +11,7 @@ from sebody.reduction import ReducedBody
 
 
 class Motion(NamedTuple):
-    """A prescribed motion of a triplet: its history times a direction, or about this axis."""
+    """A prescribed motion: displacement along a direction, or rotation about it."""
 
     name: str
     direction: NDArray
@@ -22,8 +22,8 @@ class Motion(NamedTuple):
 class Triplet:
     """A block of unknowns: a position or a rotation (in a plane two coordinates or an angle).
 
-    It is free, fixed, moved in a prescribed way, or, for a position, dependent: at the end of rigid
-    arms that turn with rotations, the first one at a root.
+    A triplet is free, fixed or prescribed. A position may also be dependent: at the end of a chain
+    of rigid arms that rotate with nodes and begins at a root.
     """
 
     name: str
@@ -31,18 +31,18 @@ class Triplet:
     rate: NDArray                   # initial velocity, or angular velocity (material = global)
     fixed: bool = False             # not solved for: at rest or prescribed
     motions: list[Motion] = field(default_factory=list)
-    root: "Triplet | None" = None   # of a dependent position, with its arms
-    arms: tuple[tuple["Triplet", NDArray], ...] = ()
-    given: bool = False             # its initial velocity was given by the user
-    turns: bool = False             # a rotation
+    root: "Triplet | None" = None   # of a dependent position
+    arms: tuple[tuple["Triplet", NDArray], ...] = ()     # rotations, and arms in their axes
+    given: bool = False             # whether the user gave the initial velocity
+    rotational: bool = False        # whether it is a rotation
 
     @property
     def solved(self) -> bool:
-        """Whether it is an unknown."""
+        """Whether its coordinates are unknowns."""
         return not self.fixed and self.root is None
 
     def parents(self) -> list["Triplet"]:
-        """The triplets its place depends on: itself, or root and rotations of the arms."""
+        """The triplets that determine this one: itself, or root and rotations of the arms."""
         return [self] if self.root is None else [self.root, *(r for r, _ in self.arms)]
 
 
@@ -87,23 +87,23 @@ class Element:
     """A rigid body, load, spring, or constraint of a joint: a generated kernel on triplets."""
 
     name: str
-    kind: str                       # of its kernel
+    kind: str                       # name of its kernel without the prefix
     triplets: tuple[Triplet, ...]   # positions first, then rotations
     constants: Mapping[str, ArrayLike]      # by the names that the kernel has for them
     multipliers: int = 0
     history: History | None = None
-    mode: tuple[str, int] | None = None     # superelement and internal mode it acts on
-    function: object = None                 # a user's compiled one, kept alive
+    mode: tuple[str, int] | None = None     # superelement and internal mode of a mode force
+    function: object = None                 # compiled function of a user force, kept alive
 
     @property
     def direction(self) -> NDArray:
-        """Of a force or torque."""
+        """Direction of a force or torque."""
         return self.constants["d"]
 
 
 @dataclass(eq=False)
 class Joint:
-    """A joint or drive: its constraints, none where its nodes are fixed or share triplets."""
+    """A joint or drive: its constraints; none if its nodes are fixed or share triplets."""
 
     name: str
     constraints: tuple[Element, ...]

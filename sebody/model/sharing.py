@@ -1,4 +1,4 @@
-"""Triplets that are held or become one: what joints do instead of equations."""
+"""Fixed and shared triplets: joints without equations."""
 
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
@@ -6,7 +6,7 @@ from sebody.model.parts import Triplet
 
 
 def hold(triplet: Triplet) -> None:
-    """Fix a triplet, which must not hang on another node."""
+    """Fix a triplet, which must not be a dependent position."""
     if triplet.root is not None:
         raise InputError(f"{triplet.name} hangs on another node by a rigid link: fix or move "
                          f"{triplet.root.name} and its rotation instead")
@@ -14,7 +14,7 @@ def hold(triplet: Triplet) -> None:
 
 
 def share(model: Mechanism, gone: Triplet, kept: Triplet, kind: str) -> None:
-    """Every node, joint and load with the one triplet gets the other."""
+    """Replace one triplet by another at every node, joint and load."""
     if gone.fixed or gone.root is not None:
         gone, kept = kept, gone
     if gone.fixed or gone.root is not None:

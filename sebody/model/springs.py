@@ -20,7 +20,7 @@ def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float 
     stiffness, damping, cubic : float
         k, c and k3.
     length : float, optional
-        Without force; that at the start by default.
+        Length without force; the initial length by default.
 
     Raises
     ------
@@ -64,8 +64,8 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
             name: str | None = None) -> Element:
     """Springs and dampers along and about the axes of `node`, between nodes at one point.
 
-    Each is a number, or one for each axis. Turns count as their sine: stay well below half a
-    right angle.
+    Each coefficient is a number, or one for each axis. Moments follow the sine of the angles:
+    stay well below half a right angle.
     """
     a, b = pair(model, node, to, "bushing")
     check_together(model, a, b, "bushing")

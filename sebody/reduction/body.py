@@ -94,17 +94,17 @@ class ReducedBody:
         arms = self.coordinates[list(self.position_nodes)] - np.asarray(point, dtype=float)
         count, dimension = arms.shape
         if self.planar:
-            turned = np.column_stack([-arms[:, 1], arms[:, 0]]).reshape(-1, 1)
+            velocities = np.column_stack([-arms[:, 1], arms[:, 0]]).reshape(-1, 1)
         else:
             # Row of node i: (e_1 x a, e_2 x a, e_3 x a) = -skew(a).
-            turned = np.cross(np.eye(3), arms[:, None, :]).transpose(0, 2, 1).reshape(-1, 3)
-        turns = turned.shape[1]
+            velocities = np.cross(np.eye(3), arms[:, None, :]).transpose(0, 2, 1).reshape(-1, 3)
+        axes = velocities.shape[1]
         angles = len(self.rotation_nodes)
-        positions = np.hstack([np.tile(np.eye(dimension), (count, 1)), turned])
+        positions = np.hstack([np.tile(np.eye(dimension), (count, 1)), velocities])
         rotations = np.hstack(
-            [np.zeros((angles * turns, dimension)), np.tile(np.eye(turns), (angles, 1))]
+            [np.zeros((angles * axes, dimension)), np.tile(np.eye(axes), (angles, 1))]
         )
-        internal = np.zeros((self.modes, dimension + turns))
+        internal = np.zeros((self.modes, dimension + axes))
         return np.vstack([positions, rotations, internal])
 
     @property
@@ -155,7 +155,7 @@ class ReducedBody:
         return replace(self, damping=damping)
 
     def rotated(self, rotation: ArrayLike) -> "ReducedBody":
-        """The same body turned by `rotation` about the FE origin, in the old axes.
+        """The same body rotated by `rotation` about the FE origin, in the old axes.
 
         Parameters
         ----------
@@ -179,15 +179,15 @@ class ReducedBody:
                 "orthonormalise it"
             )
         angles = len(self.rotation_nodes)
-        turn = block_diag(
+        by = block_diag(
             np.kron(np.eye(len(self.position_nodes)), rotation),
             np.eye(angles) if self.planar else np.kron(np.eye(angles), rotation),
             np.eye(self.modes),
         )
         return replace(
             self,
-            stiffness=turn @ self.stiffness @ turn.T,
-            mass=turn @ self.mass @ turn.T,
-            damping=None if self.damping is None else turn @ self.damping @ turn.T,
+            stiffness=by @ self.stiffness @ by.T,
+            mass=by @ self.mass @ by.T,
+            damping=None if self.damping is None else by @ self.damping @ by.T,
             coordinates=self.coordinates @ rotation.T,
         )

@@ -44,11 +44,11 @@ def check_layout(coordinates: NDArray, keeps: tuple[str, ...], modes: int) -> No
 
 def coordinate_names(keeps: tuple[str, ...], dimension: int, modes: int) -> list[str]:
     """Name of every reduced coordinate, in order: positions, rotations, internal modes."""
-    axes, turns = "xyz"[:dimension], "z" if dimension == 2 else "xyz"
+    axes, about = "xyz"[:dimension], "z" if dimension == 2 else "xyz"
     nodes = list(enumerate(keeps))
     return (
         [f"position {a} of node {i}" for i, keep in nodes if keep != "rotation" for a in axes]
-        + [f"rotation {a} of node {i}" for i, keep in nodes if keep != "translation" for a in turns]
+        + [f"rotation {a} of node {i}" for i, keep in nodes if keep != "translation" for a in about]
         + [f"mode {i}" for i in range(modes)]
     )
 

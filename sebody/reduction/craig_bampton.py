@@ -18,8 +18,8 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import KEEPS
 
 _DENSE_LIMIT = 1000  # internal DOFs up to which the dense eigenvalue solver is used
-_SINGULAR = 1e-13  # pivot over its diagonal entry below which the internal stiffness is singular
-_ROUNDING = 1e-11  # stiffness over the size of its summands below which it is rounding
+_SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which the internal stiffness is singular
+_ROUNDING = 1e-11  # ratio of stiffness to its summands below which stiffness is rounding error
 _REPEATED = 1e-6  # relative distance below which eigenvalues or components count as equal
 
 
@@ -179,7 +179,7 @@ def _check_boundary(fe_model: FEModel, pairs: list[tuple[int, str]]) -> None:
 def _factorise(stiffness: sparse.csc_array) -> SuperLU:
     """Factor the internal stiffness S_II, refusing one that leaves a motion free."""
     options = {"SymmetricMode": True}
-    # SciPy 1.11 picks rows with long indices, which its SuperLU does not take
+    # SciPy 1.11 selects rows with 64-bit indices, which its SuperLU does not accept
     short = (array.astype(np.intc) for array in (stiffness.indices, stiffness.indptr))
     matrix = sparse.csc_array((stiffness.data, *short), shape=stiffness.shape)
     try:
@@ -243,7 +243,7 @@ def _canonical(omega_squared: NDArray, shapes: NDArray) -> NDArray:
         for position in range(len(group)):
             rest = shapes[:, group[position:]]
             row = rest[_first_largest(np.linalg.norm(rest, axis=1))]
-            # Orthonormal columns, the first along `row`, so only that mode moves there.
+            # Orthonormal columns, the first along `row`, so only the first mode moves there.
             turn = np.linalg.qr(np.column_stack([row, np.eye(len(row))]))[0]
             turn[:, 0] *= np.sign(turn[:, 0] @ row)
             shapes[:, group[position:]] = rest @ turn

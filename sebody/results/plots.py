@@ -12,7 +12,7 @@ from sebody.results.result import Result
 
 SUFFIXES = (".png", ".pdf", ".svg")
 INSTANTS = 9            # at which the body is drawn
-FLAT = 0.03             # out-of-plane motion below this part of the whole cannot be seen
+FLAT = 0.03             # share of the motion below which motion out of the plane is not drawn
 INK, ACCENT, PALE = "#1f2a44", "#c8452d", "#9aa5b8"
 COMPONENTS = ((ACCENT, "x"), ("#2a7f62", "y"), (INK, "z"))
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
@@ -78,7 +78,7 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
 
 
 def _rates(result: Result, base: str, tip: str) -> tuple[str, NDArray]:
-    """What the left picture shows: its title and values."""
+    """Title and values of the left picture."""
     if result.model.nodes[base].rotation is None:
         return f"velocity of the {tip}", result[f"{tip}.velocity"]
     return f"angular velocity of the {base}", result[f"{base}.angular_velocity"]

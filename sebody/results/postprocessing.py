@@ -1,6 +1,6 @@
-"""What a run is judged by: energies, reactions, boundary forces, residuals of the constraints.
+"""Energies, reactions, boundary forces and residuals of the constraints of a run.
 
-All of it is evaluated for the recorded states, after the loop: `rows` are rows of `layout.RECORD`.
+They are evaluated for the recorded states after the loop; `rows` are rows of `layout.RECORD`.
 """
 
 from typing import NamedTuple
@@ -20,7 +20,7 @@ class Forces(NamedTuple):
     """Forces in every recorded state."""
 
     elements: NDArray       # (n, forces of all elements), see Numbering.forces_at
-    sums: NDArray           # (n, coordinates): zero where free, the support's where not
+    sums: NDArray           # (n, coordinates) sums: zero at free ones, forces of supports at others
 
 
 def energies(system: System, state: State, rows: NDArray) -> NDArray:
@@ -66,7 +66,7 @@ def constraint_residuals(system: System, state: State, rows: NDArray) -> NDArray
 
 def _over_records(what: str, evaluate, system: System, state: State, rows: NDArray,
                   *out: NDArray) -> None:
-    """Evaluate the recorded states; the state the run has reached stays."""
+    """Evaluate the recorded states, then restore the state the run has reached."""
     now, loads = state.now.copy(), state.loads.copy()
     status = evaluate(system, state, rows, *out)
     state.now[:], state.loads[:] = now, loads

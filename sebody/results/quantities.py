@@ -1,4 +1,4 @@
-"""Names of what a result holds, and how each is read: two tables.
+"""Names of the quantities of a result, and how each is read: two tables.
 
 ``<owner>.<quantity>`` is looked up in `OWNERS`; quantities of the whole model are in `OF_MODEL`.
 """
@@ -19,16 +19,16 @@ from sebody.results.recording import Recording, record_counts
 class NodeQuantity(NamedTuple):
     """A history of one of the two triplets of a node."""
 
-    turning: bool           # of the rotation, else of the position
-    read: Callable[[Recording, Triplet, slice], NDArray]    # the slice: where its coordinates are
+    rotational: bool        # of the rotation, else of the position
+    read: Callable[[Recording, Triplet, slice], NDArray]    # slice of its coordinates
     saved: bool = True      # part of the output file
 
 
 class Owner(NamedTuple):
-    """A kind of named things and what is recorded of each."""
+    """A kind of named parts of a model, and their recorded quantities."""
 
     kind: str
-    offer: str              # for the message about an unknown name
+    offer: str              # text for the message about an unknown name
     names: Callable[[Recording], Iterable[str]]
     quantities: Mapping[str, Callable[[Recording, str], NDArray]]
 
@@ -61,8 +61,8 @@ def saved(recording: Recording) -> list[str]:
     """Names of the histories an output file holds."""
     names = ["t"]
     for name, node in recording.model.nodes.items():
-        for quantity, (turning, _, kept) in OF_NODE.items():
-            triplet = node.rotation if turning else node.position
+        for quantity, (rotational, _, kept) in OF_NODE.items():
+            triplet = node.rotation if rotational else node.position
             if kept and triplet is not None and id(triplet) in recording.numbering.triplets:
                 names.append(f"{name}.{quantity}")
     return [*names, "energy.kinetic", "energy.strain", "energy.potential", "energy.external_work",
@@ -114,7 +114,7 @@ def _angular_velocity(recording: Recording, triplet: Triplet, at: slice) -> NDAr
 
 
 def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
-    """What the support of a fixed or prescribed triplet exerts, in global axes."""
+    """Force or moment of the support of a fixed or prescribed triplet, in global axes."""
     if not triplet.fixed:
         raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
                          "reaction; a joint's force is in its multipliers")
@@ -126,8 +126,8 @@ def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
 
 def _of_node(quantity: str, recording: Recording, name: str) -> NDArray:
     node, numbering = recording.model.nodes[name], recording.numbering
-    turning, read, _ = OF_NODE[quantity]
-    triplet = node.rotation if turning else node.position
+    rotational, read, _ = OF_NODE[quantity]
+    triplet = node.rotation if rotational else node.position
     if triplet is None or id(triplet) not in numbering.triplets:
         raise InputError(f"node {name!r} has no {quantity}: the triplet is not in the model")
     first = numbering.triplets[id(triplet)]
@@ -145,7 +145,7 @@ OF_NODE = {
 }
 
 
-# bodies, joints, and what does work
+# bodies, joints, power ports
 
 
 def _bodies(recording: Recording) -> dict:
@@ -160,7 +160,7 @@ def _modes(recording: Recording, name: str) -> NDArray:
 
 
 def _body_forces(recording: Recording, name: str) -> NDArray:
-    """Forces of neighbours and supports on a body's nodes, its inertia balanced."""
+    """Forces of neighbours and supports on a body's nodes, in balance with its inertia."""
     part = _bodies(recording)[name]
     first = recording.numbering.forces_at[id(part)]
     width = (part.body.stiffness.shape[0] if name in recording.model.bodies else
@@ -178,7 +178,7 @@ def _multipliers(recording: Recording, name: str) -> NDArray:
 
 
 def _work(recording: Recording, name: str) -> NDArray:
-    return recording.recorded("works")[:, recording.numbering.item_names.index(name)]
+    return recording.recorded("works")[:, recording.numbering.port_names.index(name)]
 
 
 OWNERS = (
@@ -189,6 +189,6 @@ OWNERS = (
     Owner("joint", "of joints {quantities}",
           lambda recording: [joint.name for joint in recording.model.joints],
           {"multipliers": _multipliers}),
-    Owner("load", "of {names} {quantities}", lambda recording: recording.numbering.item_names,
+    Owner("load", "of {names} {quantities}", lambda recording: recording.numbering.port_names,
           {"work": _work}),
 )

@@ -1,4 +1,4 @@
-"""What a run leaves, as plain data: everything a result is read from."""
+"""The data of a run, from which all results are read."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,9 +15,9 @@ from sebody.results.postprocessing import Forces, constraint_residuals, energies
 
 
 class Start(NamedTuple):
-    """What a simulation did before its first step."""
+    """What a simulation changed or found before its first step."""
 
-    changed: dict[str, float]       # triplets whose velocity was solved for, and by how much
+    changed: dict[str, float]       # triplets whose velocity was solved for, with its change
     redundant: tuple[str, ...]      # joints with constraints that others contain
 
 
@@ -28,14 +28,14 @@ class Recording:
     model: Mechanism
     numbering: Numbering
     system: System
-    state: State                    # the one the run has reached
+    state: State                    # last state of the run
     rows: NDArray                   # (n, numbers of `layout.RECORD`) recorded states
     seconds: float                  # in the compiled loop
     failure: str = ""
     start: Start | None = None
-    warnings: tuple[str, ...] = ()  # what the run was warned of, see sebody.analysis.limits
-    error: float | None = None      # estimated, in what is allowed: see sebody.analysis.accuracy
-    all_seconds: float = 0.0        # of the runs that led to it, too
+    warnings: tuple[str, ...] = ()  # of the run, see sebody.analysis.limits
+    error: float | None = None      # estimate over allowed error: see sebody.analysis.accuracy
+    all_seconds: float = 0.0        # including runs that were repeated for accuracy
 
     def recorded(self, name: str) -> NDArray:
         """History of one of the parts of `layout.RECORD`, (n, size)."""
@@ -58,6 +58,6 @@ class Recording:
 
 
 def record_counts(numbering: Numbering) -> dict[str, int]:
-    """What the sizes in `layout.RECORD` and `layout.ENERGIES` are for a model."""
-    return {"items": len(numbering.histories), "coordinates": numbering.total,
+    """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
+    return {"ports": len(numbering.histories), "coordinates": numbering.total,
             "rotations": len(numbering.rotations), "bodies": len(numbering.modes)}

@@ -1,4 +1,4 @@
-"""Results of a run, by named node: histories, energies, momentum, and the file they go to."""
+"""Results of a run by name: histories of nodes and bodies, energies, the output file."""
 
 from pathlib import Path
 
@@ -23,9 +23,10 @@ class Result(Recording):
     included), energy.potential, energy.external_work (n,), momentum and angular_momentum about the
     origin (n, 3), constraints.position and constraints.velocity, the largest residuals (n,).
 
-    Of a superelement ``<body>.modes`` (n, m); of any body ``<body>.forces``, those of neighbours
-    and supports on its nodes, inertia balanced: positions in global axes, rotations in those of
-    their nodes; of a joint ``<joint>.multipliers``; of a load, damper or drive ``<name>.work``.
+    Of a superelement ``<body>.modes`` (n, m); of any body ``<body>.forces``, the forces of
+    neighbours and supports on its nodes, in balance with its inertia: forces in global axes,
+    moments in the axes of the node; of a joint ``<joint>.multipliers``; of a load, damper or drive
+    ``<name>.work``.
     """
 
     @property
@@ -45,7 +46,7 @@ class Result(Recording):
 
     @property
     def matrices(self) -> int:
-        """Iteration matrices made."""
+        """Number of factorizations of the iteration matrix."""
         return int(self.state.control[MATRICES])
 
     @property
@@ -86,7 +87,7 @@ class Result(Recording):
         return path
 
     def summary(self) -> str:
-        """A few lines: steps, iterations, time, balances, works, what the start changed."""
+        """A few lines: steps, iterations, time, balances, works, changes of the initial state."""
         lines = [
             f"unknowns             {self.numbering.free}",
             f"steps                {self.steps} ({self.cuts} cut), to t = {self.t[-1]:.6g}",
@@ -102,7 +103,7 @@ class Result(Recording):
                          f"{self['constraints.position'].max():.1e}, their rates by "
                          f"{self['constraints.velocity'].max():.1e}")
         lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
-                  for k, name in enumerate(self.numbering.item_names)]
+                  for k, name in enumerate(self.numbering.port_names)]
         if self.error is not None:
             lines.insert(2, f"error                {self.error:.2f} of the tolerance, estimated; "
                             f"{1e3 * self.all_seconds:.3g} ms with the coarser runs before")

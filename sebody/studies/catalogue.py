@@ -1,4 +1,4 @@
-"""Scenes and kernels there are, found by name without running or compiling them."""
+"""The scenes and kernels that exist, found by name without running or compiling them."""
 
 import ast
 from collections.abc import Callable
@@ -48,7 +48,7 @@ def builder(scene: str) -> Callable:
 
 
 def kernel_files() -> dict[str, Path]:
-    """Files of the kernels by name: in the user's directory and, before them, in the package."""
+    """Files of the kernels by name; those of the package precede those of the user's directory."""
     found = {path.stem: path for folder in (sorted(user_directory().glob("*.py")),
                                             _files("sebody.generated")) for path in folder}
     return {name: found[name] for name in sorted(found) if name.startswith(PREFIXES)}

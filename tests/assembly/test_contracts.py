@@ -98,7 +98,7 @@ def a_body_that_works(m):
     (wrong_shape, r"constants: m has shape \(2,\), the kernel reads \(3,\)"),
     (another_kernel, "'hinge' .*element_on_plane: it has 9 unknowns and the kernel 10; .*it has 0 "
                      "rotation matrices and the kernel 1"),
-    (a_body_that_works, "'a' .*element_torque: .*it is no item and the kernel writes the power")])
+    (a_body_that_works, "'a' .*element_torque: .*it has no power port and the kernel writes")])
 def test_elements_that_do_not_fit_their_kernel(damage, message):
     model = driven()
     build(model)
@@ -154,7 +154,7 @@ def test_rows_are_those_of_the_table():
     k = system.address.tolist().index(kernel.kernel.address)
     counts = {"N_ROTATIONS": 2, "n": 6}
     index = INDEX.unpack(counts, system.index[system.at_index[k]:][:INDEX.size(counts)])
-    assert index["item"] == numbering.item_names.index("spring")
+    assert index["port"] == numbering.port_names.index("spring")
     assert index["nodes"].tolist() == [numbering.rotations[id(t)] for t in spring.triplets]
     row = Row("constants", kernel.CONSTANTS)
     constants = row.unpack({}, system.constants[int(index["constants"]):][:row.size({})])
@@ -175,5 +175,5 @@ def test_index_rows_with_too_few_rotations():
     kernel = SimpleNamespace(__name__="kernel", N_ROTATIONS=2)
     with pytest.raises(InputError, match=r"'x' does not fit its kernel kernel: .*nodes has shape "
                                          r"\(1,\), the kernel reads \(2,\)"):
-        contracts.index_row("x", kernel, [0, 1, 2], [4], constants=0, frame=0, item=0,
+        contracts.index_row("x", kernel, [0, 1, 2], [4], constants=0, frame=0, port=0,
                             positions=1)

@@ -19,7 +19,7 @@ from sebody.derive.symbolic.variation import (
     check_same,
     coefficients,
     differential,
-    turning,
+    rotating,
 )
 
 PSI = sp.Matrix(sp.symbols("p_x p_y p_z"))
@@ -51,15 +51,15 @@ def test_differential_may_depend_on_the_point():
 
 
 def test_differential_of_a_matrix_is_that_of_its_entries():
-    turned = differential(R.T * X, turning(R, TH))
-    assert sp.expand(turned - rotations.skew(TH).T * R.T * X) == sp.zeros(3, 1)
+    rotated = differential(R.T * X, rotating(R, TH))
+    assert sp.expand(rotated - rotations.skew(TH).T * R.T * X) == sp.zeros(3, 1)
 
 
 def test_turning_and_along_skip_numbers():
     """In a plane vectors and rotations have constant entries, which have no differential."""
     c, s, w = sp.symbols("c s w")
     plane = sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    rules = turning(plane, sp.Matrix([0, 0, w]))
+    rules = rotating(plane, sp.Matrix([0, 0, w]))
     assert rules == {c: -s * w, s: c * w}
     x, dx = sp.symbols("x dx")
     assert along(sp.Matrix([x, 0]), sp.Matrix([dx, 0])) == {x: dx}
@@ -217,8 +217,8 @@ def test_dead_torque_turns_in_material_axes():
     torque = elements.linearized(forces.torque(False, False))
     block, = torque.blocks
     R, m = block.state.symbols, torque.constants[0].symbols
-    amplitude, c_place = sp.symbols("amplitude c_place")
-    expected = -amplitude * c_place * rotations.skew(R.T * m) * block.direction.symbols
+    amplitude, c_stiffness = sp.symbols("amplitude c_stiffness")
+    expected = -amplitude * c_stiffness * rotations.skew(R.T * m) * block.direction.symbols
     check_same("dead torque", sp.Matrix(torque.linear), expected, [R])
 
 

@@ -37,7 +37,7 @@ def test_a_row_at_the_end_of_a_step_is_the_state_there(build):
     """Output between steps has every part in its place: at the end of one it is the state's."""
     h = 1e-3
     run = Simulation(build().model, h, tolerance=Tolerance(1.0))
-    run.state.strictness[:], run.state.clock[CHOSEN], run.state.control[RECORDED] = 0.0, h, 0
+    run.state.error_weights[:], run.state.clock[CHOSEN], run.state.control[RECORDED] = 0.0, h, 0
     record = Record.of(run.state, 1)
     advance(run.system, run.state, record, run.scheme, 1, 1, run.dense)
     assert run.time == h and run.state.control[RECORDED] == 1
@@ -51,9 +51,9 @@ def test_a_row_at_the_end_of_a_step_is_the_state_there(build):
 def test_coefficients_are_set_by_name():
     state = Simulation(heavy_top.build().model, 0.01).state
     field = state.coefficients[layout.FIELD:].copy()
-    state.set_coefficients(c_rate=7.0, c_constraint=9.0)
+    state.set_coefficients(c_damping=7.0, c_constraint=9.0)
     row = COEFFICIENTS.unpack({}, state.coefficients)
-    assert row["c_rate"] == 7.0 and row["c_constraint"] == 9.0
+    assert row["c_damping"] == 7.0 and row["c_constraint"] == 9.0
     assert np.array_equal(row["field"], field) and field.any()
     with pytest.raises(KeyError, match="c_speed"):
         state.set_coefficients(c_speed=1.0)

@@ -40,7 +40,7 @@ STRICT = generalized_alpha(0.5, tolerance=1e-12, index=2)
 def driven(model, sequence, carried=True):
     """A run with given steps; `carried` takes auxiliary accelerations over to the next length."""
     run = Simulation(model, 1.0, STRICT, tolerance=Tolerance(1.0))
-    run.state.strictness[:] = 0.0
+    run.state.error_weights[:] = 0.0
     run.state.control[CORNER] = run.system.corners.size
     record = Record.of(run.state, 0, 10**9)
     for h in sequence:
@@ -121,7 +121,7 @@ def test_output_between_steps_is_of_third_order():
     for share in shares:
         h = 0.004 * share
         run = Simulation(heavy_top.build().model, h / 4, tolerance=Tolerance(1.0))
-        run.state.strictness[:] = 0.0
+        run.state.error_weights[:] = 0.0
         run.state.clock[CHOSEN], run.state.control[RECORDED] = h, 0
         run.scheme = run.scheme._replace(tolerance=1e-12)
         record = Record.of(run.state, 8)

@@ -6,7 +6,7 @@ import pytest
 from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
-    AT_ITEM,
+    AT_PORT,
     AT_POSITIONS,
     AT_ROTATIONS,
     COEFFICIENTS,
@@ -101,12 +101,12 @@ def test_row_without_parts():
 
 def test_named_places_are_those_of_the_rows():
     """Places of the index, coefficients and energies, counted by hand."""
-    assert (AT_CONSTANTS, AT_FRAME, AT_ITEM, AT_POSITIONS, AT_ROTATIONS, HEADER) == tuple(range(6))
+    assert (AT_CONSTANTS, AT_FRAME, AT_PORT, AT_POSITIONS, AT_ROTATIONS, HEADER) == tuple(range(6))
     assert INDEX.slices({"N_ROTATIONS": 2, "n": 7})["unknowns"] == slice(7, 14)
     assert FIELD == 5 and COEFFICIENTS.size({}) == 8
     assert (KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS) == (0, 1, 2, 5, 8, 9)
-    assert ENERGIES.size({"items": 4}) == 13
-    assert list(RECORD.slices({"items": 1, "coordinates": 2, "rotations": 1, "bodies": 1}))[:3] == [
+    assert ENERGIES.size({"ports": 4}) == 13
+    assert list(RECORD.slices({"ports": 1, "coordinates": 2, "rotations": 1, "bodies": 1}))[:3] == [
         "t", "iterations", "works"]
 
 

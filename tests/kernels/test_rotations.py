@@ -179,10 +179,10 @@ def test_turn_and_relative_log():
     psi = 0.7 * random.normal(size=3)
     stored = np.concatenate([first.as_matrix().ravel(), second.as_matrix().ravel()])
     out = np.zeros(18)
-    rotations.turn(stored, 9, *psi, out, 9)
+    rotations.rotate(stored, 9, *psi, out, 9)
     exact = (second * Rotation.from_rotvec(psi)).as_matrix().ravel()
     assert np.abs(out[9:] - exact).max() <= 2e-15 and not out[:9].any()
-    rotations.turn(stored, 0, *psi, stored, 0)
+    rotations.rotate(stored, 0, *psi, stored, 0)
     assert np.abs(stored[:9] - (first * Rotation.from_rotvec(psi)).as_matrix().ravel()
                   ).max() <= 2e-15
     *found, cosine = rotations.relative_log(stored, 9, out, 9)

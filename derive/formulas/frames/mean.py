@@ -54,13 +54,13 @@ def mean(q: Quantities) -> Frame:
 def _check_variation(q: Quantities) -> None:
     """(15)-(18): ``exp(beta)`` turns with ``T(beta) dbeta``, so ``dTheta_0 = T(beta0) dbeta0``."""
     beta, d = q.beta.symbols, q.space.d(q.beta).symbols
-    turned = exp(beta) * sp.Matrix(3, 3, lambda i, j: 0)
+    rotated = exp(beta) * sp.Matrix(3, 3, lambda i, j: 0)
     chain = differential(exp(beta), along(beta, d))
     rate = tangent(beta) * d
     R = exp(beta)
     for k in range(3):
-        turned[:, k] = R * cross(rate, sp.eye(3)[:, k])
-    check_same("rotation increment (18)", turned.reshape(9, 1), chain.reshape(9, 1))
+        rotated[:, k] = R * cross(rate, sp.eye(3)[:, k])
+    check_same("rotation increment (18)", rotated.reshape(9, 1), chain.reshape(9, 1))
 
 
 FRAME = FrameOption(

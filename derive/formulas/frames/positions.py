@@ -13,7 +13,7 @@ from sebody.derive.formulas.frames.frame import (
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.spaces import Quantity
 from sebody.derive.symbolic.steps import Search, Solve, Tail, cross
-from sebody.derive.symbolic.variation import along, check_same, differential, turning
+from sebody.derive.symbolic.variation import along, check_same, differential, rotating
 from sebody.kernels.layout import FrameTraits
 
 
@@ -29,7 +29,7 @@ def positions(q: Quantities) -> Frame:
         swap.pop(sp.S.Zero, None)
         R0 = q.R0.symbols
         condition = fit * cross(X, R0.T * (q.x.symbols - q.x0.symbols))
-        rules = turning(R0, q.dth0.symbols)
+        rules = rotating(R0, q.dth0.symbols)
         for fixed_axes, local in ((q.x, q.dx), (q.x0, q.dx0)):
             rules |= along(fixed_axes.symbols, R0 * local.symbols)
         chain = differential(condition, rules).subs(swap)

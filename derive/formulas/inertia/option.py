@@ -14,7 +14,7 @@ from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.formulas.kinematics import unknown_rules
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.steps import Product, Stage, cross
-from sebody.derive.symbolic.variation import Rules, along, check_same, differential, turning
+from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 from sebody.kernels.layout import InertiaTraits
 
 PRODUCTS = (Product("momentum, p = Mbar ydot", "M", "yd", "p"),
@@ -46,7 +46,7 @@ class InertiaOption(NamedTuple):
 def position_part(q: Quantities) -> tuple[Stage, sp.Matrix, sp.Matrix]:
     """Positions: local acceleration and the forces on ``delta x_i`` and ``delta Theta_0``."""
     R0, Om0, p, pd = q.R0.symbols, q.Om0.symbols, q.px.symbols, q.pxd.symbols
-    in_time = turning(R0, Om0) | along(p, pd) | along(q.v.symbols, q.a.symbols)
+    in_time = rotating(R0, Om0) | along(p, pd) | along(q.v.symbols, q.a.symbols)
     frames = [R0]
     short = q.acc.symbols + cross(q.vs.symbols, Om0)
     meaning = dict(zip(q.vs.symbols, R0.T * q.v.symbols, strict=True)) | dict(

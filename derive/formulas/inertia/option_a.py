@@ -1,4 +1,4 @@
-"""Option A, (36)-(47): T in the angular velocities turned into frame axes."""
+"""Option A, (36)-(47): T in the angular velocities rotated into frame axes."""
 
 import sympy as sp
 
@@ -24,13 +24,13 @@ def option_a(q: Quantities) -> Inertia:
     w, p, pd, dth, dth0 = (q.w.symbols, q.pw.symbols, q.pwd.symbols, q.dth.symbols,
                            q.dth0.symbols)
     frames = [Q]
-    in_time = relative_turning(Q, Om, Om0) | along(Om, q.A.symbols)
+    in_time = relative_rotating(Q, Om, Om0) | along(Om, q.A.symbols)
     meaning = {s: e for s, e in zip(w, Q * Om, strict=True) if isinstance(s, sp.Symbol)}
     w_rate = Q * q.A.symbols + cross(w, Om0)
     check_same("rate of Omega* (46)", w_rate.subs(meaning), differential(Q * Om, in_time), frames)
     rate = q.space.quantity("dthd", "axial", "rotation").symbols
     of_velocity = Q * angular_velocity_variation(q.space)
-    varied = of_velocity + differential(Q * Om, relative_turning(Q, dth, dth0))
+    varied = of_velocity + differential(Q * Om, relative_rotating(Q, dth, dth0))
     check_same("variation of Omega* (42)", Q * rate + cross(w, dth0).subs(meaning), varied, frames)
     form = p.dot(varied)
     conjugate = Q.T * p
@@ -44,7 +44,7 @@ def option_a(q: Quantities) -> Inertia:
         (_relative_rotation(q),
          Stage("angular velocities in frame axes, (36)", "rotation", sets=((q.w, Q * Om),))),
         (accelerate, Stage("their rates, (46)", "rotation", sets=((q.wd, w_rate),))),
-        force, short, on_frame, on_frame_w, conjugate, relative_turning(Q, dth, dth0), PRODUCTS,
+        force, short, on_frame, on_frame_w, conjugate, relative_rotating(Q, dth, dth0), PRODUCTS,
         ("yd", "p"))
 
 
@@ -54,7 +54,7 @@ def _relative_rotation(q: Quantities) -> Stage:
                  sets=((q.Q, q.R0.symbols.T * q.R.symbols),), role=Role.BY_RULE)
 
 
-def relative_turning(Q: sp.Matrix, dth: sp.Matrix, dth0: sp.Matrix) -> Rules:
+def relative_rotating(Q: sp.Matrix, dth: sp.Matrix, dth0: sp.Matrix) -> Rules:
     """Rules for ``Q = R0^T R_j``: it turns with the node and against the frame."""
     change = Q * skew(dth) - skew(dth0) * Q
     return {s: e for s, e in zip(Q, change, strict=True) if isinstance(s, sp.Symbol)}

@@ -46,7 +46,7 @@ def report(measurements: list[Measurement], rate: float) -> str:
 
 
 def ratios(measurements: list[Measurement]) -> list[str]:
-    """How many times longer the peer takes, scene by scene, and to a tip error of 1e-3."""
+    """Ratio of the peer's time to ours for each scene, and for a tip error of 1e-3."""
     lines = []
     for m in measurements:
         rivals = [p for p in measurements if p.scene == m.scene and _is_peer(p)
@@ -73,7 +73,7 @@ def ratios(measurements: list[Measurement]) -> list[str]:
 
 
 def to_json(measurements: list[Measurement], rate: float) -> str:
-    """The same numbers for other programs."""
+    """The results as JSON, for other programs."""
     return json.dumps({"flops_per_second": rate, "exudyn": peer.version(),
                        "measurements": [m.as_dict() for m in measurements]}, indent=1)
 

@@ -1,4 +1,4 @@
-"""The rate this machine reaches on the arithmetic that superelements are made of."""
+"""The floating-point rate of this machine on the products that dominate superelements."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""What one benchmark run yields."""
+"""Results of one benchmark run."""
 
 from dataclasses import asdict, dataclass
 

@@ -44,7 +44,7 @@ def cases(scene: str) -> list[Case]:
 
 
 def measure(case: Case) -> Measurement:
-    """Run a case several times; time and error are of the same runs."""
+    """Run a case several times; time and error are taken from the same runs."""
     build = builder(case.scene)
     results = [_run(build, case) for _ in range(case.runs)]
     last = results[-1]

@@ -35,7 +35,7 @@ def measure(scene: str) -> tuple[list[Point], Reference]:
 
 
 def _point(scene: str, variant: Variant, exact: Reference) -> Point | None:
-    """None where a variant does not get to the end."""
+    """Measure a variant; None if its run fails."""
     try:
         results = []
         for _ in range(RUNS):
@@ -68,7 +68,7 @@ def _peer(scene: str, exact: Reference) -> list[Point]:
 
 
 def front(points: list[Point]) -> list[Point]:
-    """Points that no other one beats in both error and cost, cheapest first."""
+    """The Pareto front: points that no other beats in both error and cost, cheapest first."""
     best, kept = np.inf, []
     for point in sorted(points, key=lambda p: (p.cost, p.error)):
         if point.error < best:
@@ -83,7 +83,7 @@ def own(points: list[Point]) -> list[Point]:
 
 
 def report(scene: str, points: list[Point], exact: Reference) -> str:
-    """The front by name, and how far it is ahead of the peer."""
+    """The points of the front by name, and the ratios of cost to the peer's."""
     lines = [f"{scene}: reference good to {exact.error:.1e}, {len(own(points))} points",
              f"{'front':44} {'error':>9} {'ms per second':>14}"]
     lines += [f"{p.label:44} {p.error:9.1e} {1e3 * p.cost:14.4f}" for p in front(own(points))]

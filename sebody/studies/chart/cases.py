@@ -1,4 +1,4 @@
-"""What a chart compares: frames, inertia options, divisions, modes, steps, schemes."""
+"""The variants of a chart: frames, inertia options, divisions, modes, steps, schemes."""
 
 import inspect
 from collections.abc import Callable
@@ -20,7 +20,7 @@ COARSEST = 4        # histories are compared on a grid of so many of the scene's
 
 @dataclass(frozen=True)
 class Point:
-    """What a chart shows: a variant with its error and its cost, both of the same runs."""
+    """A point of a chart: a variant with its error and cost, both from the same runs."""
 
     family: str
     label: str
@@ -32,7 +32,7 @@ class Point:
 
 
 class Variant(NamedTuple):
-    """One point of a chart."""
+    """A variant of a scene."""
 
     family: str
     label: str

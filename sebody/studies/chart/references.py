@@ -12,12 +12,12 @@ from sebody.analysis.simulation import simulate
 from sebody.kernels.loader import user_directory
 from sebody.studies.chart.cases import COARSEST, SCENES, builder
 
-ELEMENTS = 24       # and twice as many
-FINER = 8           # than the scene's own step, and twice that
+ELEMENTS = 24       # of the first run; the second has twice as many
+FINER = 8           # scene's own step over that of the first run; twice that in the second
 
 
 class Reference(NamedTuple):
-    """A history on the grid of a chart and how far it may be off, relative L2."""
+    """A history on the grid of a chart and the estimate of its relative L2 error."""
 
     values: NDArray
     error: float

@@ -1,4 +1,4 @@
-"""What a superelement's coordinates are, by other means than the kernels: SciPy and an SVD."""
+"""Coordinates of a superelement computed independently of the kernels: by SciPy and an SVD."""
 
 from types import ModuleType
 
@@ -12,15 +12,15 @@ from sebody.studies.check.states import Case, constants_of
 
 
 def local_coordinates(case: Case) -> NDArray:
-    """``y``, (11), by SciPy's rotations."""
+    """Local coordinates ``y``, (11), by SciPy's rotations."""
     constants = constants_of(case)
-    x = case.q[:case.first_rotation].reshape(case.positions, -1)
+    x = case.q[:case.first_rotation].reshape(case.n_positions, -1)
     R0 = frame_rotation(case).as_matrix()[:x.shape[1], :x.shape[1]]
     u = (x - constants["alphas"] @ x) @ R0 - constants["X"]
     if case.planar:
         psi = case.q[case.first_rotation:case.first_mode] - np.arctan2(R0[1, 0], R0[0, 0])
         psi = (psi + np.pi) % (2 * np.pi) - np.pi
-    elif case.rotations:
+    elif case.n_rotations:
         psi = Rotation.from_matrix(R0.T @ case.R.reshape(-1, 3, 3)).as_rotvec()
     else:
         psi = np.zeros(0)
@@ -35,13 +35,13 @@ def local_velocities(case: Case) -> NDArray:
     positions = v[:case.first_rotation].reshape(-1, d) @ R0[:d, :d]
     v[:case.first_rotation] = positions.ravel()
     if not INERTIA_OPTIONS[module.INERTIA].material:
-        for j, at in enumerate(case.turning):
+        for j, at in enumerate(case.rotations):
             v[at:at + 3] = R0.T @ case.R[9 * j:9 * j + 9].reshape(3, 3) @ v[at:at + 3]
     return v
 
 
 def frame_traits(module: ModuleType) -> FrameTraits:
-    """What the frame of a kernel declares."""
+    """The traits that the frame of a kernel declares."""
     return FRAMES[module.FRAME]
 
 
@@ -49,7 +49,7 @@ def frame_rotation(case: Case) -> Rotation:
     """``R0`` from its definition, (14)-(16) or the best fit, without the search of the kernels."""
     constants, traits = constants_of(case), frame_traits(case.module)
     if not traits.needs_rotations:
-        x = case.q[:case.first_rotation].reshape(case.positions, -1)
+        x = case.q[:case.first_rotation].reshape(case.n_positions, -1)
         arms, X, fits = x - constants["alphas"] @ x, constants["X"], constants["fits"]
         if not case.planar:
             return Rotation.align_vectors(arms, X, fits)[0]

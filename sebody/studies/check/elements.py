@@ -62,7 +62,7 @@ def joint_force(case: Case) -> float:
 
 
 def _phi_later(case: Case, t: float) -> NDArray:
-    """``phi`` a time later, on a path of the coordinates and of the amplitude."""
+    """``phi`` at a later time, on a path of the coordinates and of the amplitude."""
     m = case.module.MULTIPLIERS
     still = case._replace(v=np.r_[case.v[:-m], np.zeros(m)], a=np.r_[case.a[:-m], np.zeros(m)])
     value, rate, second = case.loads
@@ -94,7 +94,7 @@ def drive_power(case: Case) -> float:
 
 
 def element_tangent(case: Case) -> float:
-    """Matrix against differences of the residual, with a coefficient for what has multipliers."""
+    """Matrix against differences of the residual, with the coefficient of constraints."""
     place, constraint, m = 2.0, 3.0, case.n - case.module.MULTIPLIERS
     exact = constraint * gradient(case, lambda c: evaluate(c, RESIDUAL)[0], 0.005)
     exact[:m, :m] *= place / constraint
@@ -109,7 +109,7 @@ def _potential_force(case: Case) -> NDArray:
 
 
 def power(case: Case) -> float:
-    """Power of loads and dampers against what their force does beyond the potential."""
+    """Power of loads and dampers against the power of their force less that of the potential."""
     exact = -(evaluate(case, RESIDUAL)[0] - _potential_force(case)) @ case.v
     return abs(evaluate(case, ENERGY)[2][POWERS] / exact - 1)
 
@@ -129,7 +129,7 @@ def hamilton(case: Case) -> float:
     force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][KINETIC], 0.01)
     force += _potential_force(case)
     p = momenta(case)
-    for at in case.turning:
+    for at in case.rotations:
         force[at:at + 3] += np.cross(case.v[at:at + 3], p[at:at + 3])
     return difference(evaluate(case, RESIDUAL)[0], force)
 
@@ -141,13 +141,13 @@ def body_momentum(case: Case) -> float:
     linear, moment = np.r_[p[:d], np.zeros(3 - d)], np.cross(x, np.r_[p[:d], np.zeros(3 - d)])
     if case.planar:
         moment[2] += p[d:].sum()
-    for j, at in enumerate(case.turning):
+    for j, at in enumerate(case.rotations):
         moment += case.R[9 * j:9 * j + 9].reshape(3, 3) @ p[at:at + 3]
     return difference(evaluate(case, ENERGY)[2][MOMENTUM:POTENTIAL], np.r_[linear, moment])
 
 
 def criteria(module: ModuleType) -> dict:
-    """What a kernel of this kind is judged by."""
+    """The criteria for a kernel of this kind."""
     chosen = {"tangent": element_tangent}
     if module.MULTIPLIERS:
         chosen |= {"force = gradient of lambda.phi": joint_force, "velocity": joint_velocity,

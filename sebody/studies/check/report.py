@@ -1,4 +1,4 @@
-"""What a check prints: every criterion with its worst error, what fails, how many hold."""
+"""Report of a check: every criterion with its worst error, failures, number that hold."""
 
 import math
 
@@ -21,7 +21,7 @@ def summary(rows: list[CheckRow]) -> str:
 
 
 def table(rows: list[CheckRow]) -> str:
-    """A line for each row: kernel, criterion, state, what was found and its limit."""
+    """A line for each row: kernel, criterion, state, error or slope, and its limit."""
     width = max(len(_place(row)) for row in rows)
     lines = [f"{'kernel':{width}}  {'criterion':31}  state       found       limit"]
     lines += [f"{_place(row):{width}}  {row.criterion:31}  {row.state:5d}  {_found(row)} "
@@ -44,7 +44,7 @@ def _place(row: CheckRow) -> str:
 
 
 def _badness(row: CheckRow) -> float:
-    """Grows with the error, or falls with an order; nothing is worse than no number."""
+    """Sort key: grows with the error, or falls with the slope; NaN is the worst."""
     value = row.error if row.slope is None else -row.slope
     return math.inf if math.isnan(value) else value
 

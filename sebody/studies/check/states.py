@@ -41,13 +41,13 @@ class CheckRow(NamedTuple):
     criterion: str
     state: int
     error: float            # relative to the largest entry
-    slope: float | None     # order of a difference that is there by design
+    slope: float | None     # order of convergence of a difference that the formulation has
     limit: float            # of the error from above, or of the slope from below
     nodes: tuple[int, ...] = ()     # of a general kernel: its positions, rotations and modes
 
     @property
     def passed(self) -> bool:
-        """Whether the limit is kept."""
+        """Whether error or slope is within the limit."""
         return self.error <= self.limit if self.slope is None else self.slope > self.limit
 
 
@@ -69,7 +69,7 @@ class Case(NamedTuple):
 
     @property
     def planar(self) -> bool:
-        """Motion in a plane: angles among q in place of rotation matrices."""
+        """Whether the motion is planar: angles among q in place of rotation matrices."""
         return self.module.PLANAR
 
     @property
@@ -78,45 +78,45 @@ class Case(NamedTuple):
         return 2 if self.planar else 3
 
     @property
-    def positions(self) -> int:
+    def n_positions(self) -> int:
         """Nodes that keep their position."""
         return int(self.index[AT_POSITIONS])
 
     @property
-    def rotations(self) -> int:
+    def n_rotations(self) -> int:
         """Nodes that keep their rotation."""
         return int(self.index[AT_ROTATIONS])
 
     @property
     def first_rotation(self) -> int:
         """Where rotations begin among the unknowns."""
-        return first_rotation(self.positions, self.planar)
+        return first_rotation(self.n_positions, self.planar)
 
     @property
     def first_mode(self) -> int:
         """Where internal modes begin among the unknowns."""
-        return first_mode(self.positions, self.rotations, self.planar)
+        return first_mode(self.n_positions, self.n_rotations, self.planar)
 
     @property
     def counts(self) -> dict[str, int]:
-        """What sizes of the constants are products of."""
-        return superelement_counts(self.positions, self.rotations, self.planar, self.n)
+        """The counts that sizes of the constants are products of."""
+        return superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n)
 
     @property
     def row(self) -> Row:
-        """The constants its kernel reads."""
+        """The row of constants that the kernel reads."""
         return Row(self.module.__name__, self.module.CONSTANTS)
 
     @property
-    def turning(self) -> list[int]:
+    def rotations(self) -> list[int]:
         """First unknown of each rotation triplet."""
         first = self.first_rotation
-        return [] if not self.R.size else [first + 3 * j for j in range(self.rotations)]
+        return [] if not self.R.size else [first + 3 * j for j in range(self.n_rotations)]
 
 
 def index_row(n: int, positions: int, rotations: int) -> NDArray:
     """The index row of a kernel's only element."""
-    values = {"constants": 0, "frame": 0, "item": 0, "positions": positions,
+    values = {"constants": 0, "frame": 0, "port": 0, "positions": positions,
               "rotations": rotations, "nodes": range(rotations), "unknowns": range(n)}
     return INDEX.pack({"N_ROTATIONS": rotations, "n": n}, values).astype(np.int64)
 
@@ -142,15 +142,15 @@ def _call(address, task, stride, width, arguments):
 
 
 def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Arguments:
-    """What the kernel of a case is called with for one element, results zero."""
+    """Arguments of the kernel of a case for one element, results zero."""
     n, module = case.n, case.module
     return Arguments(
         index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
         references=case.reference, frames=case.frames.copy(),
-        T=np.tile(np.eye(3).ravel(), max(case.rotations, 1)), loads=case.loads,
+        T=np.tile(np.eye(3).ravel(), max(case.n_rotations, 1)), loads=case.loads,
         coefficients=np.array([*coefficients, *case.field], dtype=float), forces=np.zeros(n),
         matrices=np.zeros(n * n),
-        work=np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(case.rotations, 1)))),
+        work=np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(case.n_rotations, 1)))),
         energies=np.zeros(POWERS + 1))
 
 
@@ -166,7 +166,7 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
 
 
 def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:
-    """Matrix with positions in global axes: superelements leave them in those of the frame."""
+    """Matrix with positions rotated to global axes, from those of the frame of a superelement."""
     if not hasattr(case.module, "FRAME"):       # a joint, rigid body or load
         return J
     turn, d = np.eye(len(J)), case.dimension
@@ -179,7 +179,7 @@ def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:
 def moved(case: Case, direction: NDArray, size: float) -> Case:
     """The case with its configuration moved: rotations multiplied, the rest added."""
     q, R = case.q + size * direction, case.R.copy()
-    for j, at in enumerate(case.turning):
+    for j, at in enumerate(case.rotations):
         turn = Rotation.from_rotvec(size * direction[at:at + 3]).as_matrix()
         R[9 * j:9 * j + 9] = (R[9 * j:9 * j + 9].reshape(3, 3) @ turn).ravel()
     return case._replace(q=q, R=R)
@@ -223,10 +223,10 @@ def momenta(case: Case) -> NDArray:
 
 
 def along_path(case: Case, t: float) -> Case:
-    """The case a time t later on a path with its velocity and acceleration at t = 0."""
+    """The case at time t on a path with the given velocity and acceleration at t = 0."""
     step = case.v * t + case.a * t * t / 2
     v = case.v + case.a * t
-    for at in case.turning:
+    for at in case.rotations:
         psi, rate = step[at:at + 3], v[at:at + 3].copy()
         angle = np.linalg.norm(psi)
         if angle > 0:       # Omega = T(psi) psidot

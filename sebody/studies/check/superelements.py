@@ -44,7 +44,7 @@ from sebody.studies.check.states import (
     with_constants,
 )
 
-SIZE = "geometric term, its size"       # shown, not judged
+SIZE = "geometric term, its size"       # reported, without a limit
 LIMITS = {"K - K^T = skew(G)": 1e-10, "energies (24), (34)": 1e-10,
           "momentum = rigid dT/dv": 1e-10, SIZE: np.inf}
 
@@ -109,7 +109,7 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
 def _nodes(random: np.random.Generator, positions: int, rotations: int,
            d: int) -> tuple[NDArray, NDArray, NDArray]:
     """Nodes in the undeformed frame, and the weights of their positions and rotations."""
-    around = 2 * np.pi * np.arange(positions) / positions   # spread out: all frames are well placed
+    around = 2 * np.pi * np.arange(positions) / positions      # on a circle: good for all frames
     X = np.column_stack([np.cos(around), np.sin(around), 0 * around])[:, :d]
     X = X + 0.2 * random.normal(size=(positions, d))
     alpha, alpha_r = (np.ones(k) / max(k, 1) + 0.1 * random.normal(size=k)
@@ -120,7 +120,7 @@ def _nodes(random: np.random.Generator, positions: int, rotations: int,
 
 
 def _declared(case: Case, values: dict, random: np.random.Generator) -> dict[str, NDArray]:
-    """Generic values of what the kernel's frame and inertia option read in addition."""
+    """Generic values of the constants that the frame and inertia option add."""
     counts = case.counts
     return {part.name: random.normal(size=[counts.get(s, s) for s in part.shape])
             for part in case.module.CONSTANTS if part.name not in values}
@@ -152,7 +152,7 @@ def inertia_force(case: Case) -> float:
     force = derivative(lambda t: momenta(along_path(case, t)), 0.003)
     force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][KINETIC], 0.01)
     p = momenta(case)
-    for at in case.turning:
+    for at in case.rotations:
         force[at:at + 3] += np.cross(case.v[at:at + 3], p[at:at + 3])
     return difference(evaluate(case, RESIDUAL)[0], force)
 
@@ -162,7 +162,7 @@ def asymmetry(case: Case) -> float:
     rest = case._replace(v=0 * case.v, a=0 * case.a)
     g, K, _ = evaluate(rest, TANGENT, (0, 0, 1, 1, 1))
     expected = np.zeros_like(K)
-    for at in rest.turning:
+    for at in rest.rotations:
         x, y, z = g[at:at + 3]
         expected[at:at + 3, at:at + 3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
     return float(np.abs(K - K.T - expected).max() / np.abs(K).max())
@@ -188,7 +188,7 @@ def damping_power(case: Case) -> float:
 
 
 def damping_of_rigid_motion(case: Case) -> float:
-    """Force of the structural damping in a rigid motion, which must be none."""
+    """Force of the structural damping in a rigid motion, which must vanish."""
     d, x = case.dimension, case.q[:case.first_rotation]
     spin, v = np.array([0.3, -0.5, 0.7]), 0 * case.v
     if case.planar:
@@ -197,14 +197,14 @@ def damping_of_rigid_motion(case: Case) -> float:
     place = np.zeros((len(x) // d, 3))
     place[:, :d] = x.reshape(-1, d)
     v[:len(x)] = (np.cross(spin, place) + [0.2, 0.1, -0.4])[:, :d].ravel()
-    for j, at in enumerate(case.turning):
+    for j, at in enumerate(case.rotations):
         v[at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ spin
     force = _damping_force(case._replace(v=v))
     return float(np.abs(force).max() / np.abs(_damping_force(case)).max())
 
 
 def _damping_force(case: Case) -> NDArray:
-    """The force less that without the damping matrix."""
+    """Difference of the forces with and without the damping matrix."""
     undamped = changed(case, C=np.zeros((case.n, case.n)))
     return evaluate(case, RESIDUAL)[0] - evaluate(undamped, RESIDUAL)[0]
 
@@ -212,13 +212,13 @@ def _damping_force(case: Case) -> NDArray:
 def total_momentum(case: Case) -> float:
     """Momentum and its moment against ``dT/dv`` along rigid velocities (Noether)."""
     p, d = momenta(case), case.dimension
-    x = np.zeros((case.positions, 3))
+    x = np.zeros((case.n_positions, 3))
     x[:, :d] = case.q[:case.first_rotation].reshape(-1, d)
     rigid = np.zeros((6, case.n))
     for k, e in enumerate(np.eye(3)):
         rigid[k, :x.shape[0] * d] = np.tile(e[:d], len(x))
         rigid[3 + k, :x.shape[0] * d] = np.cross(e, x)[:, :d].ravel()
-        for j, at in enumerate(case.turning):
+        for j, at in enumerate(case.rotations):
             rigid[3 + k, at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ e
     if case.planar:
         rigid[2:5] = 0.0
@@ -235,7 +235,7 @@ def paper_tangent(case: Case) -> float:
 
 
 def geometric_term(case: Case) -> float:
-    """What (31) lacks of the consistent tangent, ``d(Upsilon^T)/dq : Sbar y``: its size."""
+    """Size of ``d(Upsilon^T)/dq : Sbar y``, the term of the consistent tangent that (31) lacks."""
     rest = case._replace(v=0 * case.v, a=0 * case.a)
     paper, consistent = (evaluate(rest, TANGENT, (0, 0, 1, c, 1))[1] for c in (0, 1))
     return difference(paper, consistent)
@@ -280,7 +280,7 @@ def _check(name: str, module: ModuleType, nodes: Nodes) -> list[CheckRow]:
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
         if module.DAMPED and not small:
             criteria |= DAMPING
-        if traits.incremental:      # increments turn otherwise than the body in a rigid motion
+        if traits.incremental:      # a mean of increments does not follow a rigid motion
             criteria.pop("damping of rigid motion", None)
         for criterion, measure in criteria.items():
             error = measure(damped if measure in (*DAMPING.values(), *TANGENTS.values(), energies)

@@ -1,4 +1,4 @@
-"""Items of a model: what has a history or does work."""
+"""Power ports of a model: where loads, drives and dampers supply or take energy."""
 
 from typing import NamedTuple
 
@@ -10,18 +10,18 @@ from sebody.model.histories import History
 from sebody.model.mechanism import Mechanism
 
 
-class Items(NamedTuple):
-    """Loads, springs and drives, then damped bodies, then prescribed motions."""
+class Ports(NamedTuple):
+    """Power ports: of loads, springs and drives, of damped bodies, of prescribed motions."""
 
-    of: dict[int, int]              # id(constraint, load, spring or body) -> item
+    of: dict[int, int]              # id(constraint, load, spring or body) -> port
     names: list[str]
     histories: list[History]
-    prescribed: list[tuple[int, int, int, float]]   # coordinate, item, 1 if it turns R, factor
+    prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
 
 
-def number_items(model: Mechanism, at: dict[int, int]) -> Items:
-    """Items of a model; `at` is the first coordinate of each triplet, by id."""
-    found = Items({}, [], [], [])
+def number_ports(model: Mechanism, at: dict[int, int]) -> Ports:
+    """Power ports of a model; `at` is the first coordinate of each triplet, by id."""
+    found = Ports({}, [], [], [])
 
     def add(name: str, history: History | None) -> int:
         found.names.append(name)
@@ -35,17 +35,17 @@ def number_items(model: Mechanism, at: dict[int, int]) -> Items:
         if body.body.damping is not None:
             found.of[id(body)] = add(f"damping of {body.name}", None)
     for triplet in model.triplets():
-        turning = int(triplet.turns and not model.planar)
+        rotational = int(triplet.rotational and not model.planar)
         for motion in triplet.motions:
-            item = add(motion.name, motion.history)
-            found.prescribed.extend((at[id(triplet)] + k, item, turning, d)
+            port = add(motion.name, motion.history)
+            found.prescribed.extend((at[id(triplet)] + k, port, rotational, d)
                                     for k, d in enumerate(motion.direction) if d != 0.0)
     return found
 
 
-def item_arrays(histories: list[History],
+def port_arrays(histories: list[History],
                 prescribed: list[tuple[int, int, int, float]]) -> dict[str, NDArray]:
-    """The members of `System` that tell histories, and the coordinates that some of them move."""
+    """The members of `System` for histories of ports and for prescribed coordinates."""
     return {"table_at": np.concatenate([[0], np.cumsum([len(h.times) for h in histories])]
                                        ).astype(np.int64),
             "table_times": np.array([t for h in histories for t in h.times], dtype=float),
