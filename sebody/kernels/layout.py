@@ -2,8 +2,8 @@
 
 Kernels work on flat arrays. The places of all numbers in these arrays are defined here only: the
 printer of the kernels, the assembly of models, the compiled loop, the checks and the results read
-these tables. Sizes are products of counts, which are constants in specialised kernels
-and read from the index row in general ones:
+these tables. Sizes are products of counts, which are constants in specialised kernels and read
+from the index row in general ones:
 
 ============  ======================================================================================
 N_POSITIONS   nodes of the element that keep their position

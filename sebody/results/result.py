@@ -115,7 +115,8 @@ class Result(Recording):
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
                          + ": multipliers are those of least norm")
         lines += [f"general kernel       of {', '.join(bodies)}: one of the layout's own is "
-                  f"faster, made by {command}" for command, bodies in kernels_that_pay(self.model).items()]
+                  f"faster, made by {command}"
+                  for command, bodies in kernels_that_pay(self.model).items()]
         lines += [f"WARNING              {message}" for message in self.warnings]
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
 
