@@ -34,8 +34,9 @@ INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (125, 0), "column": (307, 0)}
-ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
+OPERATIONS = {"residual": (125, 0, 0, 0),
+              "column": (307, 0, 0, 0)}
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

@@ -45,11 +45,12 @@ MODES = 15          # first internal mode
 DAMPED = False        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 31
-# arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (1206, 3),
-              "column": (2219, 3)}
+# arithmetic of one evaluation: of the element, of each position and of each rotation; then the
+# number of products with n x n matrices
+OPERATIONS = {"residual": (300, 136, 249, 3),
+              "column": (81, 172, 811, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

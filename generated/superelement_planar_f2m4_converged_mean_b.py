@@ -44,11 +44,12 @@ MODES = 6          # first internal mode
 DAMPED = False        # has structural damping
 N_MODES = 4        # their number, None where it is read at run time
 WORK_ROWS = 29
-# arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (344, 3),
-              "column": (167, 3)}
+# arithmetic of one evaluation: of the element, of each position and of each rotation; then the
+# number of products with n x n matrices
+OPERATIONS = {"residual": (212, 61, 5, 3),
+              "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

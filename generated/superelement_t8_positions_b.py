@@ -45,11 +45,12 @@ MODES = 24          # first internal mode
 DAMPED = False        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 29
-# arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {"residual": (2196, 3),
-              "column": (2297, 3)}
+# arithmetic of one evaluation: of the element, of each position and of each rotation; then the
+# number of products with n x n matrices
+OPERATIONS = {"residual": (460, 217, 0, 3),
+              "column": (81, 277, 0, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "069c786265a9"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

@@ -4,10 +4,10 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sebody.kernels.layout import LETTERS, FrameTraits, layout_name
-from sebody.kernels.names import layout_variant
+from sebody.kernels.layout import LETTERS, FrameTraits, first_mode, first_rotation, layout_name
+from sebody.kernels.names import ANY, layout_variant
 
-PATTERN = re.compile(r"(planar-)?(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?(d)?")
+PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?)(d)?")
 NUMBERS = "no", "one", "two", "three", "four", "five", "six"
 
 
@@ -21,29 +21,30 @@ class Layout(NamedTuple):
     The local coordinates are ordered ``y = (positions, rotations, internal modes)``; a kernel
     therefore depends on the two counts of triplets alone, never on the order of the nodes. The
     number of internal modes is a run-time size, unless a layout pins it: constant sizes are faster.
+    In a general layout the counts of triplets are run-time sizes, too, and None here.
     """
 
-    nodes: tuple[str, ...]      # what each boundary node keeps: full, translation or rotation
+    nodes: tuple[str, ...] | None   # what each boundary node keeps: full, translation or rotation
     planar: bool = False        # motion in a plane: (x, y) and one angle in place of triplets
     modes: int | None = None    # number of internal modes, where it is pinned
     damped: bool = False        # with structural damping: twice the tangent, so only where wanted
 
     @classmethod
     def parse(cls, name: str) -> "Layout":
-        """Read a name such as ``f2``, ``planar-f2``, ``f2t1``, ``f2m4`` (four modes) or ``f2d``."""
+        """Read a name: ``f2``, ``planar-f2``, ``f2t1``, ``f2m4`` (four modes), ``f2d``, ``any``."""
         match = PATTERN.fullmatch(name)
         if not match:
             raise LayoutError(f"layout {name!r} is unknown: write counts of full, translation-only "
                               "and rotation-only nodes, such as f2, f2t1, f2r1, t8 or planar-f2, "
                               "m with the number of internal modes to pin it, as in f2m4, and d "
-                              "for structural damping")
+                              f"for structural damping; or {ANY} for any nodes")
         nodes = []
         for part, kind in zip(match.groups()[1:4], LETTERS, strict=True):
             nodes += [kind] * int(part[1:]) if part else []
         modes = match.group(5)
-        layout = cls(tuple(nodes), bool(match.group(1)), None if modes is None else int(modes),
-                     bool(match.group(6)))
-        if not layout.positions:
+        layout = cls(tuple(nodes) if any(match.groups()[1:4]) else None, bool(match.group(1)),
+                     None if modes is None else int(modes), bool(match.group(6)))
+        if layout.positions == 0:
             raise LayoutError(f"layout {name!r} keeps no position: a superelement needs at least "
                               "one node with translations to place its frame")
         return layout
@@ -51,17 +52,18 @@ class Layout(NamedTuple):
     @property
     def name(self) -> str:
         """Canonical name; the order of the nodes does not enter."""
-        return layout_variant(layout_name(self.nodes, self.planar), self.modes, self.damped)
+        nodes = layout_name(self.nodes or (), self.planar) + ANY * (self.nodes is None)
+        return layout_variant(nodes, self.modes, self.damped)
 
     @property
-    def positions(self) -> int:
+    def positions(self) -> int | None:
         """Number of nodes that keep their position."""
-        return sum(kind != "rotation" for kind in self.nodes)
+        return None if self.nodes is None else sum(kind != "rotation" for kind in self.nodes)
 
     @property
-    def rotations(self) -> int:
+    def rotations(self) -> int | None:
         """Number of nodes that keep their rotation."""
-        return sum(kind != "translation" for kind in self.nodes)
+        return None if self.nodes is None else sum(kind != "translation" for kind in self.nodes)
 
     @property
     def position_size(self) -> int:
@@ -74,18 +76,21 @@ class Layout(NamedTuple):
         return 1 if self.planar else 3
 
     @property
-    def first_rotation(self) -> int:
+    def first_rotation(self) -> int | None:
         """Index in ``y`` of the first rotation."""
-        return self.position_size * self.positions
+        return None if self.nodes is None else first_rotation(self.positions, self.planar)
 
     @property
-    def first_mode(self) -> int:
+    def first_mode(self) -> int | None:
         """Index in ``y`` of the first internal mode."""
-        return self.first_rotation + self.rotation_size * self.rotations
+        return None if self.nodes is None else first_mode(self.positions, self.rotations,
+                                                          self.planar)
 
 
 def fits(layout: Layout, frame: FrameTraits) -> bool:
-    """Whether a layout can carry a frame."""
+    """Whether a layout can carry a frame; a general one has nodes enough for any."""
+    if layout.nodes is None:
+        return frame.planar or not layout.planar
     return ((layout.rotations > 0 or not frame.needs_rotations)
             and layout.positions >= frame.fewest_positions[layout.planar]
             and (frame.planar or not layout.planar))
@@ -102,7 +107,7 @@ def check_frame(layout: Layout, frame: str, frames: Mapping[str, FrameTraits]) -
     traits = frames[frame]
     able = [name for name, other in frames.items() if fits(layout, other)]
     others = " or ".join(map(repr, able)) or "a layout with more nodes"
-    if traits.needs_rotations and not layout.rotations:
+    if traits.needs_rotations and layout.rotations == 0:
         raise LayoutError(f"layout {layout.name} keeps no rotation, so the frame {frame!r} has "
                           f"nothing to average: use the frame {others}")
     if not fits(layout, traits._replace(planar=True)):

@@ -29,5 +29,10 @@ SUPERELEMENTS = (
     ("planar-f2", "converged_mean", "a"),
     ("planar-f2", "positions", "b"),
     ("planar-f3", "converged_mean", "b"),
+    # for all other layouts: counts of nodes are read at run time
+    ("any", "converged_mean", "b"),
+    ("any", "positions", "b"),
+    ("planar-any", "converged_mean", "b"),
+    ("planar-any", "positions", "b"),
 )
 ELEMENTS = tuple(CATALOGUE)

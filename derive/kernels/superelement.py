@@ -106,7 +106,7 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
 
 def kept(steps: tuple[Step, ...], layout: Layout) -> tuple[Step, ...]:
     """Steps without those over rotations or of damping, where a layout has none."""
-    left = [s for s in steps if (layout.rotations or getattr(s, "over", "") != "rotation")
+    left = [s for s in steps if (layout.rotations != 0 or getattr(s, "over", "") != "rotation")
             and (layout.damped or not isinstance(s, Damping))]
     return tuple(s._replace(steps=kept(s.steps, layout)) if isinstance(s, Damping) else s
                  for s in left)

@@ -1,5 +1,6 @@
 """From steps to lines of a kernel: a pure function, the same bytes in every process."""
 
+from collections import Counter
 from collections.abc import Iterable
 from functools import cache
 
@@ -33,7 +34,7 @@ class StepPrinter:
     def __init__(self, space: Space, layout: Layout, names: Names):
         self.space, self.layout, self.names = space, layout, names
         self.inverses: dict[str, sp.Matrix] = {}
-        self.operations = 0
+        self.operations: Counter[str] = Counter()   # of the element, of each position or rotation
         self.products = 0
         self.temporaries = 0
 
@@ -148,14 +149,14 @@ class StepPrinter:
         axes = [_axis(s) for s in step.unknown.kept]
         names = [[f"B{r}{c}" for c in axes] for r in axes]
         self.inverses[step.inverse] = sp.Matrix([[sp.Symbol(n) for n in row] for row in names])
-        self.operations += 40
+        self.operations["element"] += 40
         if len(axes) == 1:
             return [f"{names[0][0]} = 1.0/B_00"]
         sums = ", ".join(f"B_{r}{c}" for r in range(3) for c in range(3))
         return [f"{', '.join(n for row in names for n in row)} = inverse_3({sums})"]
 
     def _search(self, step: Search) -> list[str]:
-        self.operations += step.operations
+        self.operations["element"] += step.operations
         arguments = ", ".join(f"at({a.array}, {a.first})" if isinstance(a, Tail) else a
                               for a in step.arguments)
         lines = [f"status = {step.function}({arguments})", "if status != 0:", "    return status"]
@@ -170,7 +171,7 @@ class StepPrinter:
                 f"{', '.join(f'frame[{3 * r + c}]' for c in range(3))}" for r in range(3)]
 
     def _values(self, step: Values) -> list[str]:
-        self.operations += step.operations * (self.layout.rotations if step.of.array else 1)
+        self.operations[step.of.home] += step.operations
         outputs = ", ".join(self._place(q, s) for q in step.outputs for s in q.kept)
         square = " + ".join(f"{p} * {p}" for p in (self._place(step.of, s)
                                                    for s in step.of.kept))
@@ -187,9 +188,7 @@ class StepPrinter:
         return self.lines(step.steps)
 
     def _count(self, over: str, expressions: list) -> None:
-        times = {"element": 1, "mode": 0, "position": self.layout.positions,
-                 "rotation": self.layout.rotations}[over]
-        self.operations += times * sum(int(sp.count_ops(e)) for e in expressions)
+        self.operations[over] += sum(int(sp.count_ops(e)) for e in expressions)
 
 
 @cache

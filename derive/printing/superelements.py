@@ -1,7 +1,10 @@
 """Files of superelement kernels: the steps of a derivation set into the frame of a file."""
 
+from collections import Counter
+
 import sympy
 
+from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.resources import Resources
 from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.printing import parts, templates
@@ -17,17 +20,16 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     layout, planar = kernel.layout, kernel.layout.planar
     printer = StepPrinter(kernel.space, layout, kernel.names)
     residual = printer.lines(kernel.residual)
-    counted = printer.operations, printer.products
+    in_residual = _counted(printer)
     energy = [*printer.lines(kernel.energy), *templates.ENERGY_OUTPUTS[planar]]
-    printer.operations = printer.products = 0
+    printer.operations, printer.products = Counter(), 0
     tangent = printer.lines(kernel.tangent)
     return templates.SUPERELEMENT.format(
         **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
         reference=templates.REFERENCE * ("reference" in uses.pointers),
-        work_rows=len(uses.rows), rows=indented(_rows(uses.rows), 1),
-        residual_operations=counted[0], residual_products=counted[1],
-        column_operations=printer.operations, column_products=printer.products,
+        work_rows=len(uses.rows), rows=indented([*_reads(layout), *_rows(uses.rows)], 1),
+        residual_operations=in_residual, column_operations=_counted(printer),
         residual=indented(residual, 2), kinetic="0.5*{}[i]*{}[i]".format(
             *kernel.formulas.inertia.kinetic),
         friction="\n" * layout.damped + indented(templates.FRICTION * layout.damped, 3),
@@ -41,7 +43,8 @@ def _head(kernel: Superelement) -> dict[str, object]:
     return {"layout": layout.name, "frame": kernel.frame, "inertia": kernel.inertia,
             "frame_summary": frame.traits.summary, "inertia_summary": inertia.traits.summary,
             "planar": layout.planar, "positions": layout.positions,
-            "rotations": layout.rotations, "first_rotation": layout.first_rotation,
+            "rotations": layout.rotations, "nodes": _nodes(layout),
+            "first_rotation": layout.first_rotation,
             "first_mode": layout.first_mode, "damped": layout.damped, "n_modes": layout.modes,
             "space": "motion in a plane" if layout.planar else "motion in space",
             "modes": "any number of" if layout.modes is None else layout.modes,
@@ -62,7 +65,31 @@ def _names(kernel: Superelement, uses: Resources) -> set[str]:
     """Names of the runtime in the file."""
     names = {*templates.SUPERELEMENT_NAMES, *uses.calls}
     names |= set(templates.DAMPING_NAMES) if kernel.layout.damped else set()
+    names |= set(templates.GENERAL_NAMES) if kernel.layout.nodes is None else set()
     return names | ({"Part"} if kernel.declared else set())
+
+
+def _nodes(layout: Layout) -> str:
+    """Its counts in words."""
+    if layout.nodes is None:
+        return "Any number of positions and rotations"
+    return f"{layout.positions} position(s) and {layout.rotations} rotation(s)"
+
+
+def _reads(layout: Layout) -> list[str]:
+    """Counts that are not known beforehand: those of the first element, as all of a batch have."""
+    known = {"N_POSITIONS": layout.positions, "N_ROTATIONS": layout.rotations,
+             "ROTATIONS": layout.first_rotation, "MODES": layout.first_mode}
+    values = {"N_POSITIONS": "index[AT_POSITIONS]", "N_ROTATIONS": "index[AT_ROTATIONS]",
+              "ROTATIONS": f"{layout.position_size}*N_POSITIONS",
+              "MODES": f"ROTATIONS + {layout.rotation_size}*N_ROTATIONS"}
+    return [f"{name} = {values[name]}" for name, count in known.items() if count is None]
+
+
+def _counted(printer: StepPrinter) -> str:
+    """Arithmetic of the element, of each position and rotation, and products, as a tuple."""
+    found = [printer.operations[home] for home in ("element", "position", "rotation")]
+    return f"({', '.join(map(str, [*found, printer.products]))})"
 
 
 def _rows(names: tuple[str, ...]) -> list[str]:

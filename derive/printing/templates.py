@@ -11,7 +11,7 @@ SIGNATURE = fill(", ".join(("def kernel(task", "count", "stride", "width",
 
 SUPERELEMENT = '''"""Superelement kernel: layout {layout}, frame {frame}, inertia option {inertia}.
 
-{positions} position(s) and {rotations} rotation(s) of {space}; {modes} internal modes.
+{nodes} of {space}; {modes} internal modes.
 Frame: {frame_summary}.
 Inertia: {inertia_summary}.
 Cardona (2000), equations (11), (14)-(19), (30), (31), (36)-(51) or (52)-(63).
@@ -33,9 +33,10 @@ MODES = {first_mode}          # first internal mode
 DAMPED = {damped}        # has structural damping
 N_MODES = {n_modes}        # their number, None where it is read at run time
 WORK_ROWS = {work_rows}
-# arithmetic of one evaluation without the products of n x n matrices, and number of these
-OPERATIONS = {{"residual": ({residual_operations}, {residual_products}),
-              "column": ({column_operations}, {column_products})}}
+# arithmetic of one evaluation: of the element, of each position and of each rotation; then the
+# number of products with n x n matrices
+OPERATIONS = {{"residual": {residual_operations},
+              "column": {column_operations}}}
 CONSTANTS = {constants}
 ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of other files
 
@@ -84,6 +85,7 @@ SUPERELEMENT_NAMES = (
     "AT_CONSTANTS", "AT_FRAME", "C_DAMPING", "C_GEO", "C_MASS", "C_STIFFNESS", "ENERGY", "FIELD",
     "HEADER", "KINETIC", "MOMENT", "MOMENTUM", "OK", "POTENTIAL", "STRAIN",
     "SUPERELEMENT_CONSTANTS", "TANGENT", "at", "kernel_function", "padded")
+GENERAL_NAMES = "AT_POSITIONS", "AT_ROTATIONS"
 DAMPING_NAMES = "AT_PORT", "DAMPING_CONSTANTS", "POWERS"
 
 FRICTION = (
@@ -152,7 +154,8 @@ INERTIAL = {inertial}        # has kinetic energy
 POWER = {power}        # does work on the system: a load, damper or drive
 DRIVEN = {driven}        # a constraint that depends on time
 WORK_ROWS = {work_rows}
-OPERATIONS = {{"residual": ({residual_operations}, 0), "column": ({column_operations}, 0)}}
+OPERATIONS = {{"residual": ({residual_operations}, 0, 0, 0),
+              "column": ({column_operations}, 0, 0, 0)}}
 ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 

@@ -14,15 +14,17 @@ from sebody.assembly.contracts import (
     constants_row,
     counts_of,
     index_row,
+    positions_of,
 )
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 
 
 class Batch(NamedTuple):
-    """Elements that share a kernel and a number of unknowns."""
+    """Elements that share a kernel, numbers of positions and rotations, and of unknowns."""
 
     kernel: ModuleType
     width: int
@@ -89,7 +91,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         first = numbering.modes[body.name]
         unknowns += range(first, first + body.body.modes)
         row = index_row(body.name, kernel, unknowns, constants=row_of[key], frame=frame,
-                        port=numbering.ports.get(id(body), 0),
+                        port=numbering.ports.get(id(body), 0), positions=len(body.positions),
                         nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations])
         _append(batches, kernel, frame, row, unknowns, id(body))
     return list(batches.values())
@@ -104,7 +106,7 @@ def _element_batches(numbering: Numbering, constants: _Constants,
         row = index_row(element.name, kernel, unknowns, frame=0,
                         constants=constants.add(constants_row(element.name, kernel, {},
                                                               element.constants)),
-                        port=numbering.ports.get(id(element), 0),
+                        port=numbering.ports.get(id(element), 0), positions=positions_of(element),
                         nodes=[numbering.rotations[id(t)] for t in element.triplets
                                if id(t) in numbering.rotations])
         function = [] if element.function is None else [element.function.address]
@@ -114,8 +116,8 @@ def _element_batches(numbering: Numbering, constants: _Constants,
 
 def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: list[int],
             unknowns: list[int], owner: int) -> None:
-    batch = batches.setdefault((kernel.__name__, len(unknowns)),
-                               Batch(kernel, len(unknowns), [], [], [], []))
+    key = kernel.__name__, row[AT_POSITIONS], row[AT_ROTATIONS], len(unknowns)
+    batch = batches.setdefault(key, Batch(kernel, len(unknowns), [], [], [], []))
     batch.frames.append(frame)
     batch.rows.append(row)
     batch.unknowns.append(unknowns)

@@ -60,7 +60,7 @@ def work_size(model: Mechanism) -> int:
     rows = []
     for body in model.bodies.values():
         kernel = load(body.kernel)
-        longest = max(len(body.body.stiffness), 9 * kernel.N_ROTATIONS)
+        longest = max(len(body.body.stiffness), 9 * len(body.rotations))
         rows.append(kernel.WORK_ROWS * whole_vectors(longest))
     elements = max((sum(t.start.size for t in one.triplets) for one in model.loads), default=0)
     return max([*rows, 64, 4 * elements])

@@ -11,7 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.numbering import Numbering
 from sebody.errors import InputError
-from sebody.kernels.layout import INDEX, ContractError, Counts, Row, superelement_counts
+from sebody.kernels.layout import (
+    INDEX,
+    ContractError,
+    Counts,
+    Row,
+    first_mode,
+    superelement_counts,
+)
 from sebody.model.parts import Element, Superelement
 
 REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebody"
@@ -26,12 +33,10 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
     InputError
         What it has is not what its kernel reads; the message names both.
     """
-    rotations = sum(t.rotational for t in element.triplets)
     matrices = sum(id(t) in numbering.rotations for t in element.triplets)
-    others = len(element.triplets) - rotations + (element.mode is not None)
     wrong = _different((("unknowns", unknowns, kernel.WIDTH),
                         ("multipliers", element.multipliers, kernel.MULTIPLIERS),
-                        ("positions", others, kernel.N_POSITIONS),
+                        ("positions", positions_of(element), kernel.N_POSITIONS),
                         ("rotation matrices", matrices, kernel.N_ROTATIONS)))
     if kernel.DRIVEN and element.history is None:
         wrong.append("it has no history and the kernel reads one")
@@ -53,10 +58,11 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
         What it has is not what its kernel reads; the message names both.
     """
     reduced = body.body
-    wrong = _different((("positions", len(reduced.position_nodes), kernel.N_POSITIONS),
-                        ("rotations", len(reduced.rotation_nodes), kernel.N_ROTATIONS),
+    positions, rotations = len(reduced.position_nodes), len(reduced.rotation_nodes)
+    wrong = _different((("positions", positions, kernel.N_POSITIONS),
+                        ("rotations", rotations, kernel.N_ROTATIONS),
                         ("coordinates before its modes", _width(body) - reduced.modes,
-                         kernel.MODES),
+                         first_mode(positions, rotations, kernel.PLANAR)),
                         ("modes", reduced.modes, kernel.N_MODES)))
     if kernel.PLANAR != reduced.planar:
         wrong.append(f"it is {'planar' if reduced.planar else 'spatial'} and the kernel is not")
@@ -82,20 +88,33 @@ def constants_row(name: str, kernel: ModuleType, counts: Counts,
         raise _misfit(name, kernel, [str(error)]) from error
 
 
-def index_row(name: str, kernel: ModuleType, unknowns: list[int],
-              **values: int | list[int]) -> list[int]:
+def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[int],
+              **values: int) -> list[int]:
     """The index row of an element: where its kernel finds its data.
+
+    Parameters
+    ----------
+    unknowns, nodes : list of int
+        The parts of these names.
+    **values : int
+        The others, without the number of rotations.
 
     Raises
     ------
     InputError
         The row is longer or shorter than the kernel reads.
     """
-    counts = {"N_ROTATIONS": kernel.N_ROTATIONS, "n": len(unknowns)}
+    rotations = len(nodes) if kernel.N_ROTATIONS is None else kernel.N_ROTATIONS
+    lists = {"rotations": rotations, "nodes": nodes, "unknowns": unknowns}
     try:
-        return INDEX.pack_integers(counts, values | {"unknowns": unknowns})
+        return INDEX.pack_integers({"N_ROTATIONS": rotations, "n": len(unknowns)}, values | lists)
     except ContractError as error:
         raise _misfit(name, kernel, [str(error)]) from error
+
+
+def positions_of(element: Element) -> int:
+    """How many positions an element is on; an internal mode counts as one."""
+    return sum(not t.rotational for t in element.triplets) + (element.mode is not None)
 
 
 def counts_of(body: Superelement) -> Counts:

@@ -23,7 +23,7 @@ def run(options: argparse.Namespace) -> int:
             print(f"  {kernel.layout:14} {kernel.frame:16} {kernel.inertia}")
     print("  frame 'node' is the converged_mean kernel with all weight on one node\n"
           "  inertia a: angular velocities in frame axes, b: material\n"
-          "  other layouts: python -m sebody.derive LAYOUT")
+          "  layout any: every other one; faster or damped: python -m sebody.derive LAYOUT")
     print("\njoints and loads")
     print("  " + ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout))
     return 0

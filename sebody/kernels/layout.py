@@ -2,7 +2,8 @@
 
 Kernels work on flat arrays. The places of all numbers in these arrays are defined here only: the
 printer of the kernels, the assembly of models, the compiled loop, the checks and the results read
-these tables. Sizes are products of counts, which are constants in specialised kernels:
+these tables. Sizes are products of counts, which are constants in specialised kernels and read
+from the index row in general ones:
 
 ============  ======================================================================================
 N_POSITIONS   nodes of the element that keep their position
@@ -187,11 +188,13 @@ INDEX = Row("index row of an element", (
     Part("constants", (), "where its row of constants begins"),
     Part("frame", (), "number of its frame"),
     Part("port", (), "number of its power port, if it does work: a load, damper or drive"),
+    Part("positions", (), "N_POSITIONS, the same for all elements of a batch"),
+    Part("rotations", (), "N_ROTATIONS, likewise"),
     Part("nodes", ("N_ROTATIONS",), "numbers of its rotation matrices"),
     Part("unknowns", ("n",), "its coordinates, then its multipliers"),
 ))
-AT_CONSTANTS, AT_FRAME, AT_PORT, HEADER = (
-    INDEX.first(name) for name in ("constants", "frame", "port", "nodes"))
+AT_CONSTANTS, AT_FRAME, AT_PORT, AT_POSITIONS, AT_ROTATIONS, HEADER = (
+    INDEX.first(name) for name in ("constants", "frame", "port", "positions", "rotations", "nodes"))
 
 # J = c_mass dG/da + c_damping dG/dv + c_stiffness dG/dq T: rotations vary multiplicatively, and T
 # maps the variation of a rotation's increment in a step to the variation of the rotation
@@ -255,6 +258,16 @@ def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: 
     """The counts that sizes of a superelement's rows are products of."""
     return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, "D": 2 if planar else 3,
             "n": unknowns}
+
+
+def first_rotation(positions: int, planar: bool) -> int:
+    """Where rotations begin among a superelement's coordinates: positions, rotations, modes."""
+    return (2 if planar else 3) * positions
+
+
+def first_mode(positions: int, rotations: int, planar: bool) -> int:
+    """Where its internal modes begin."""
+    return first_rotation(positions, planar) + (1 if planar else 3) * rotations
 
 
 class FrameTraits(NamedTuple):

@@ -13,7 +13,12 @@ from pathlib import Path
 from types import ModuleType
 
 from sebody.errors import InputError
-from sebody.kernels.names import element_name, layout_variant, superelement_name
+from sebody.kernels.names import (
+    element_name,
+    general_layout,
+    layout_variant,
+    superelement_name,
+)
 from sebody.kernels.sources import room_hash
 
 USER_FORCE = element_name("user_force")      # written by hand, in this room
@@ -88,25 +93,31 @@ def load(name: str) -> ModuleType | None:
 
 def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
                              damped: bool = False) -> str:
-    """Name of the kernel of a layout, frame and inertia option.
+    """Name of the fastest kernel there is for a layout, frame and inertia option.
 
-    A kernel for this number of modes is preferred to one for any number.
-
-    Structural damping has kernels of its own. Nothing is imported or compiled.
+    The one for this number of modes comes first, then that for any number, and last the general
+    one, for any numbers of nodes. Structural damping has kernels of its own. Nothing is imported or
+    compiled.
 
     Raises
     ------
     InputError
         If it has not been generated; the message gives the command that makes it.
     """
-    for pinned in (modes, None):
-        name = superelement_name(layout_variant(layout, pinned, damped), frame, inertia)
+    variants = [layout_variant(nodes, pinned, damped) for nodes, pinned in (
+        (layout, modes), (layout, None), (general_layout(layout), None))]
+    for variant in variants:
+        name = superelement_name(variant, frame, inertia)
         if find(name):
             return name
-    variant = layout_variant(layout, damped=damped)
-    raise InputError(f"there is no kernel for layout {variant!r}, frame {frame!r}, inertia "
-                     f"{inertia!r}: make it with\n    python -m sebody.derive "
-                     f"{variant}:{frame}:{inertia}")
+    raise InputError(f"there is no kernel for layout {variants[1]!r}, frame {frame!r}, inertia "
+                     f"{inertia!r}: make it with\n    "
+                     f"{derive_command(variants[1], frame, inertia)}")
+
+
+def derive_command(variant: str, frame: str, inertia: str) -> str:
+    """What makes a superelement's kernel."""
+    return f"python -m sebody.derive {variant}:{frame}:{inertia}"
 
 
 @cache

@@ -1,6 +1,8 @@
 """Names of kernels, which are the names of their modules."""
 
 SUPERELEMENT, ELEMENT = PREFIXES = "superelement_", "element_"
+PLANAR = "planar-"  # begins names of layouts in a plane
+ANY = "any"         # layout of the general kernels, which read the counts of nodes at run time
 
 
 def superelement_name(layout: str, frame: str, inertia: str) -> str:
@@ -11,6 +13,11 @@ def superelement_name(layout: str, frame: str, inertia: str) -> str:
 def element_name(kind: str) -> str:
     """The kernel of a kind of joint, load or rigid body."""
     return ELEMENT + kind
+
+
+def general_layout(layout: str) -> str:
+    """Layout of the general kernels that serve a layout, too."""
+    return PLANAR * layout.startswith(PLANAR) + ANY
 
 
 def layout_variant(layout: str, modes: int | None = None, damped: bool = False) -> str:

@@ -22,7 +22,7 @@ INERTIAL = False
 POWER = True
 DRIVEN = False
 WORK_ROWS = 4
-OPERATIONS = {"residual": (0, 0), "column": (0, 0)}
+OPERATIONS = {"residual": (0, 0, 0, 0), "column": (0, 0, 0, 0)}
 STEP = 1e-6     # of differences, relative to the coordinate and at least absolute
 
 

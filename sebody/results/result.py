@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
+from sebody.results.advice import kernels_that_pay
 from sebody.results.files import check_target
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
@@ -113,6 +114,9 @@ class Result(Recording):
         if self.start and self.start.redundant:
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
                          + ": multipliers are those of least norm")
+        lines += [f"general kernel       of {', '.join(bodies)}: one of the layout's own is "
+                  f"faster, made by {command}"
+                  for command, bodies in kernels_that_pay(self.model).items()]
         lines += [f"WARNING              {message}" for message in self.warnings]
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
 

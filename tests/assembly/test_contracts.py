@@ -175,4 +175,5 @@ def test_index_rows_with_too_few_rotations():
     kernel = SimpleNamespace(__name__="kernel", N_ROTATIONS=2)
     with pytest.raises(InputError, match=r"'x' does not fit its kernel kernel: .*nodes has shape "
                                          r"\(1,\), the kernel reads \(2,\)"):
-        contracts.index_row("x", kernel, [0, 1, 2], constants=0, frame=0, port=0, nodes=[4])
+        contracts.index_row("x", kernel, [0, 1, 2], [4], constants=0, frame=0, port=0,
+                            positions=1)

@@ -22,6 +22,14 @@ def test_counts_of_coordinates(name, positions, rotations, first_rotation, first
     assert layout.name == name
 
 
+@pytest.mark.parametrize("name, planar, damped", [
+    ("any", False, False), ("planar-any", True, False), ("anyd", False, True)])
+def test_general_layouts_have_no_counts(name, planar, damped):
+    layout = Layout.parse(name)
+    assert layout == Layout(None, planar, None, damped) and layout.name == name
+    assert {layout.positions, layout.rotations, layout.first_rotation, layout.first_mode} == {None}
+
+
 def test_order_of_the_nodes_does_not_enter():
     mixed = Layout(("rotation", "full", "translation", "full"))
     assert mixed.name == "f2t1r1"
@@ -34,7 +42,8 @@ def test_names_are_made_canonical(name, canonical):
 
 
 @pytest.mark.parametrize("name", ["", "2", "f", "f-1", "x3", "t1f2", "f2 t1", "f2f2", "F2", "f2.5",
-                                  "planar", "planar-", "planarf2", "flat-f2", "nonsense", "f2\n"])
+                                  "planar", "planar-", "planarf2", "flat-f2", "nonsense", "f2\n",
+                                  "anym4", "anyf2", "many"])
 def test_unreadable_name(name):
     with pytest.raises(LayoutError, match="is unknown: write counts of full, translation-only and "
                                           "rotation-only nodes, such as f2, f2t1") as caught:
@@ -57,7 +66,8 @@ def test_no_position(name):
                         "three nodes .two in a plane.: use 'converged_mean'"),
     ("planar-f1", "positions", "layout planar-f1 has too few positions"),
     ("planar-f2", "mean", "in a plane the frame 'mean' coincides with 'converged_mean': use that"),
-    ("planar-f2", "mean_small", "in a plane the frame 'mean_small' coincides")])
+    ("planar-f2", "mean_small", "in a plane the frame 'mean_small' coincides"),
+    ("planar-any", "mean", "in a plane the frame 'mean' coincides with 'converged_mean'")])
 def test_layouts_a_frame_cannot_carry(name, frame, message):
     with pytest.raises(LayoutError, match=message):
         superelement(Layout.parse(name), frame, "b")
@@ -66,7 +76,7 @@ def test_layouts_a_frame_cannot_carry(name, frame, message):
 @pytest.mark.parametrize("text, variant", [
     ("f2", ("f2", "converged_mean", "b")), ("t8", ("t8", "positions", "b")),
     ("f3:mean", ("f3", "mean", "b")), ("planar-f02::a", None),
-    ("f2t1:positions:a", ("f2t1", "positions", "a")),
+    ("f2t1:positions:a", ("f2t1", "positions", "a")), ("any", ("any", "converged_mean", "b")),
     ("planar-f2", ("planar-f2", "converged_mean", "b"))])
 def test_variant_of_the_command_line(text, variant):
     if variant is None:

@@ -76,14 +76,14 @@ def printer(layout="f2"):
 
 
 def test_stage_over_positions():
-    """Loads, the formula, a sum from zero: 1 product and 1 sum a component and node."""
+    """Loads, the formula, a sum from zero: a product for each component and node."""
     q, p = printer()
     stage = Stage("scaled", "position", adds=((q.F, q.alpha.symbols[0] * q.x.symbols),))
     assert p.lines([stage]) == [
         "# scaled", "F_x = F_y = F_z = 0.0", "for i in range(N_POSITIONS):", "    i3 = 3*i",
         "    alpha = alphas[i]", "    x_x, x_y, x_z = qe[i3], qe[i3 + 1], qe[i3 + 2]",
         "    F_x += alpha*x_x", "    F_y += alpha*x_y", "    F_z += alpha*x_z"]
-    assert p.operations == 2 * 3
+    assert p.operations == {"position": 3}
     assert p.lines([stage._replace(continues=True)])[1] == "for i in range(N_POSITIONS):"
 
 
@@ -167,11 +167,11 @@ def test_searches_values_and_rows():
         "    return status", "R0_xx, R0_xy, R0_xz = frame[0], frame[1], frame[2]",
         "R0_yx, R0_yy, R0_yz = frame[3], frame[4], frame[5]",
         "R0_zx, R0_zy, R0_zz = frame[6], frame[7], frame[8]"]
-    assert p.operations == 7
+    assert p.operations == {"element": 7}
     values = Values("coefficients", (q.e0, q.e1), "series", q.psi, 5)
     square = "y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2] * y[j3 + 2]"
     assert p.lines([values])[-1] == f"    e0s[j], e1s[j] = series({square})"
-    assert p.operations == 7 + 2 * 5
+    assert p.operations == {"element": 7, "rotation": 5}
     assert p.lines([Shift("off", "s", "weight", "-")])[1:] == ["for i in range(n):",
                                                              "    s[i] -= weight[i]"]
     assert p.lines([Scaling("held", ("dy",), (q.dth0,), "c")])[1:] == [

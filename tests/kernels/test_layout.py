@@ -7,6 +7,8 @@ from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
     AT_PORT,
+    AT_POSITIONS,
+    AT_ROTATIONS,
     COEFFICIENTS,
     ENERGIES,
     FIELD,
@@ -92,21 +94,23 @@ def test_values_that_do_not_fit_are_refused(change, message):
 
 def test_rows_of_integers():
     counts = {"N_ROTATIONS": 2, "n": 3}
-    given = {"unknowns": [7, 8, 9], "constants": 40, "frame": 1, "port": 2, "nodes": [5, 6]}
+    given = {"unknowns": [7, 8, 9], "constants": 40, "frame": 1, "port": 2, "nodes": [5, 6],
+             "rotations": 2, "positions": 3}
     row = INDEX.pack_integers(counts, given)
-    assert row == [40, 1, 2, 5, 6, 7, 8, 9]
+    assert row == [40, 1, 2, 3, 2, 5, 6, 7, 8, 9]
     assert {name: row[part] for name, part in INDEX.slices(counts).items()} == {
         name: value if isinstance(value, list) else [value] for name, value in given.items()}
 
 
 @pytest.mark.parametrize("change, message", [
-    ({"port": None}, "the kernel reads constants, frame, port, nodes, unknowns; given are constants"
-                     ", frame, nodes, unknowns"),
+    ({"port": None}, "the kernel reads constants, frame, port, positions, rotations, nodes, unknowns; "
+                     "given are constants, frame, nodes, unknowns, positions, rotations"),
     ({"nodes": [5]}, r"nodes has shape \(1,\), the kernel reads \(2,\)"),
     ({"frame": [1]}, r"frame has shape \(1,\), the kernel reads \(\)"),
     ({"nodes": 5}, r"nodes has shape \(\), the kernel reads \(2,\)")])
 def test_integers_that_do_not_fit_are_refused(change, message):
-    given = {"constants": 40, "frame": 1, "port": 2, "nodes": [5, 6], "unknowns": [7, 8, 9]}
+    given = {"constants": 40, "frame": 1, "port": 2, "nodes": [5, 6], "unknowns": [7, 8, 9],
+             "positions": 3, "rotations": 2}
     given = {name: value for name, value in (given | change).items() if value is not None}
     with pytest.raises(ContractError, match="index row of an element: " + message):
         INDEX.pack_integers({"N_ROTATIONS": 2, "n": 3}, given)
@@ -121,8 +125,8 @@ def test_row_without_parts():
 
 def test_named_places_are_those_of_the_rows():
     """Places of the index, coefficients and energies, counted by hand."""
-    assert (AT_CONSTANTS, AT_FRAME, AT_PORT, HEADER) == (0, 1, 2, 3)
-    assert INDEX.slices({"N_ROTATIONS": 2, "n": 7})["unknowns"] == slice(5, 12)
+    assert (AT_CONSTANTS, AT_FRAME, AT_PORT, AT_POSITIONS, AT_ROTATIONS, HEADER) == tuple(range(6))
+    assert INDEX.slices({"N_ROTATIONS": 2, "n": 7})["unknowns"] == slice(7, 14)
     assert FIELD == 5 and COEFFICIENTS.size({}) == 8
     assert (KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS) == (0, 1, 2, 5, 8, 9)
     assert ENERGIES.size({"ports": 4}) == 13

@@ -29,8 +29,10 @@ def mine(tmp_path, monkeypatch):
 @pytest.mark.parametrize("layout, modes, damped, name", [
     ("planar-f2", 4, False, "superelement_planar_f2m4_converged_mean_b"),
     ("planar-f2", 3, False, "superelement_planar_f2_converged_mean_b"),
-    ("f2", 8, True, "superelement_f2d_converged_mean_b")])
-def test_a_kernel_for_the_number_of_modes_or_for_any(layout, modes, damped, name):
+    ("f2", 8, True, "superelement_f2d_converged_mean_b"),
+    ("f5t1", 4, False, "superelement_any_converged_mean_b"),
+    ("planar-f4", 0, False, "superelement_planar_any_converged_mean_b")])
+def test_a_kernel_for_the_number_of_modes_or_of_nodes_or_for_any(layout, modes, damped, name):
     assert loader.superelement_kernel_name(layout, "converged_mean", "b", modes, damped) == name
 
 
@@ -45,6 +47,8 @@ def test_missing_kernels(mine):
     with pytest.raises(InputError, match="there is no kernel for layout 'f9d', frame 'mean', "
                        "inertia 'a': make it with\n    python -m sebody.derive f9d:mean:a"):
         loader.superelement_kernel_name("f9", "mean", "a", 0, True)
+    with pytest.raises(InputError, match="python -m sebody.derive f5d:converged_mean:b"):
+        loader.superelement_kernel_name("f5", "converged_mean", "b", 2, True)
     with pytest.raises(InputError, match="there is no kernel for element 'sail': reinstall"):
         loader.element_kernel_name("sail")
     assert loader.load("element_sail") is None

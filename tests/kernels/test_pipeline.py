@@ -1,10 +1,12 @@
 """How functions are compiled: their rounding is their own, not that of whoever calls them first."""
 
-from numba import njit
+import re
+
+from numba import njit, types
 
 from sebody.engine.elimination import eliminate
 from sebody.kernels.frame_search import converged_mean
-from sebody.kernels.pipeline import compiled
+from sebody.kernels.pipeline import KernelPasses, compiled
 
 
 @compiled
@@ -27,3 +29,21 @@ def test_rounding_does_not_depend_on_the_first_caller():
 def test_functions_of_kernels_round_like_kernels():
     assert converged_mean.targetoptions["fastmath"] == {"contract"}
     assert eliminate.targetoptions["fastmath"] is False
+
+
+def twice(count, x, y):
+    for i in range(count):
+        y[i] = 2.0 * x[i]
+    for i in range(count):
+        x[i] = 0.5 * y[i]
+
+
+def test_loops_of_kernels_are_short():
+    """LLVM makes vectors of such loops, unless it is told; each loop has a node of its own."""
+    numbers = types.CPointer(types.float64)
+    signature = types.void(types.int64, numbers, numbers)
+    plain, text = ("".join(njit(signature, **options)(twice).inspect_llvm().values())
+                   for options in ({}, {"pipeline_class": KernelPasses}))
+    assert "vector.body" in plain and "vector.body" not in text
+    assert text.count('"llvm.loop.unroll.runtime.disable"') == 1
+    assert len(set(re.findall(r"!llvm.loop !(\d+)", text))) == 2

@@ -153,7 +153,7 @@ def test_paper_tangent_lacks_a_term_that_falls_with_the_deformation(name):
     for psi in sizes:
         case = superelements.superelement_case(module, 2, psi)
         case = case._replace(v=0 * case.v, a=0 * case.a,
-                             q=np.r_[case.q[:module.MODES], 0 * case.q[module.MODES:]])
+                             q=np.r_[case.q[:case.first_mode], 0 * case.q[case.first_mode:]])
         terms.append(superelements.geometric_term(case))
         K = states.evaluate(case, 1, (0, 0, 1, 0, 1))[1]
         symmetric = not module.FRAME.endswith("_small")
@@ -179,7 +179,7 @@ def test_planar_kernel_equals_the_spatial_one_on_planar_states():
     R = np.concatenate([[np.cos(t), -np.sin(t), 0, np.sin(t), np.cos(t), 0, 0, 0, 1]
                         for t in flat.q[4:6]])
     case = states.with_constants(
-        states.Case(spatial, n, states.index_row(spatial, n), np.zeros(0), q, R, v, a,
+        states.Case(spatial, n, states.index_row(n, 2, 2), np.zeros(0), q, R, v, a,
                     flat.reference, flat.frames, flat.field * [1, 1, 0]),
         given | {"X": X, "S": S, "M": M, "mass_columns": of_translations,
                  "mass_rows": of_translations.T, "mc": [*given["mc"], 0.0]})

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from sebody.analysis.simulation import Simulation
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel, load
+from sebody.model.parts import Superelement
 from sebody.results.result import Result
 from sebody.studies.bench.measurement import Measurement
 from sebody.studies.catalogue import builder
@@ -74,16 +75,17 @@ def flops_per_step(result: Result) -> float:
     the machine's rate that is reached is a lower bound.
     """
     system, bodies = result.system, list(result.model.bodies.values())
-    forces = sum(_kernel_flops(load(b.kernel), b.body.stiffness.shape[0]) for b in bodies)
+    forces = sum(_kernel_flops(body) for body in bodies)
     forces += sum(element_kernel(item.kind).OPERATIONS["residual"][0]
                   for item in (*result.model.rigid_bodies.values(),
                                *result.model.constraints, *result.model.loads))
     return result.iterations_per_step * (forces + _solve_flops(system))
 
 
-def _kernel_flops(kernel, n: int) -> float:
-    alone, products = kernel.OPERATIONS["residual"]
-    return alone + 2.0 * products * n * n
+def _kernel_flops(body: Superelement) -> float:
+    alone, position, rotation, products = load(body.kernel).OPERATIONS["residual"]
+    return (alone + position * len(body.positions) + rotation * len(body.rotations)
+            + 2.0 * products * body.body.stiffness.size)
 
 
 def _solve_flops(system: System) -> float:

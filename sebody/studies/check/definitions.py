@@ -13,18 +13,18 @@ from sebody.studies.check.states import Case, constants_of
 
 def local_coordinates(case: Case) -> NDArray:
     """Local coordinates ``y``, (11), by SciPy's rotations."""
-    module, constants = case.module, constants_of(case)
-    x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
+    constants = constants_of(case)
+    x = case.q[:case.first_rotation].reshape(case.n_positions, -1)
     R0 = frame_rotation(case).as_matrix()[:x.shape[1], :x.shape[1]]
     u = (x - constants["alphas"] @ x) @ R0 - constants["X"]
     if case.planar:
-        psi = case.q[module.ROTATIONS:module.MODES] - np.arctan2(R0[1, 0], R0[0, 0])
+        psi = case.q[case.first_rotation:case.first_mode] - np.arctan2(R0[1, 0], R0[0, 0])
         psi = (psi + np.pi) % (2 * np.pi) - np.pi
-    elif module.N_ROTATIONS:
+    elif case.n_rotations:
         psi = Rotation.from_matrix(R0.T @ case.R.reshape(-1, 3, 3)).as_rotvec()
     else:
         psi = np.zeros(0)
-    return np.concatenate([u.ravel(), psi.ravel(), case.q[module.MODES:]])
+    return np.concatenate([u.ravel(), psi.ravel(), case.q[case.first_mode:]])
 
 
 def local_velocities(case: Case) -> NDArray:
@@ -32,8 +32,8 @@ def local_velocities(case: Case) -> NDArray:
     module, v = case.module, case.v.copy()
     d = case.dimension
     R0 = frame_rotation(case).as_matrix()
-    positions = v[:module.ROTATIONS].reshape(-1, d) @ R0[:d, :d]
-    v[:module.ROTATIONS] = positions.ravel()
+    positions = v[:case.first_rotation].reshape(-1, d) @ R0[:d, :d]
+    v[:case.first_rotation] = positions.ravel()
     if not INERTIA_OPTIONS[module.INERTIA].material:
         for j, at in enumerate(case.rotations):
             v[at:at + 3] = R0.T @ case.R[9 * j:9 * j + 9].reshape(3, 3) @ v[at:at + 3]
@@ -47,16 +47,16 @@ def frame_traits(module: ModuleType) -> FrameTraits:
 
 def frame_rotation(case: Case) -> Rotation:
     """``R0`` from its definition, (14)-(16) or the best fit, without the search of the kernels."""
-    module, constants, traits = case.module, constants_of(case), frame_traits(case.module)
+    constants, traits = constants_of(case), frame_traits(case.module)
     if not traits.needs_rotations:
-        x = case.q[:module.ROTATIONS].reshape(module.N_POSITIONS, -1)
+        x = case.q[:case.first_rotation].reshape(case.n_positions, -1)
         arms, X, fits = x - constants["alphas"] @ x, constants["X"], constants["fits"]
         if not case.planar:
             return Rotation.align_vectors(arms, X, fits)[0]
         turns = (arms @ [1, 1j]) * (X @ [1, -1j])
         return Rotation.from_rotvec([0, 0, np.angle(fits @ turns)])
     if case.planar:
-        angles = case.q[module.ROTATIONS:module.MODES]
+        angles = case.q[case.first_rotation:case.first_mode]
         return Rotation.from_rotvec([0, 0, constants["alpha_rs"] @ angles])
     if not traits.incremental:
         return Rotation.from_matrix(mean_rotation(case).reshape(3, 3))

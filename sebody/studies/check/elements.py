@@ -47,7 +47,7 @@ def element_case(module: ModuleType, seed: int) -> Case:
                   for r in random.normal(size=(nrot, 3))])
     q = random.normal(size=n)
     size = Row(module.__name__, module.CONSTANTS).size({})
-    return Case(module, n, index_row(module, n),
+    return Case(module, n, index_row(n, module.N_POSITIONS, nrot),
                 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
                 random.normal(size=n), random.normal(size=n), np.zeros(9), np.zeros(9),
                 random.normal(size=3), AMPLITUDES)

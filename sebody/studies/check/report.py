@@ -15,16 +15,16 @@ def summary(rows: list[CheckRow]) -> str:
     for (criterion, _), group in kinds.items():
         worst = max(group, key=_badness)
         lines.append(f"{criterion:{width}}  {len(group):5d}  {_found(worst)} {_limit(worst)}  "
-                     f"{worst.kernel}")
+                     f"{_place(worst)}")
     failed = [row for row in rows if not row.passed]
     return "\n".join(lines + (["", table(failed)] if failed else []))
 
 
 def table(rows: list[CheckRow]) -> str:
     """A line for each row: kernel, criterion, state, error or slope, and its limit."""
-    width = max(len(row.kernel) for row in rows)
+    width = max(len(_place(row)) for row in rows)
     lines = [f"{'kernel':{width}}  {'criterion':31}  state       found       limit"]
-    lines += [f"{row.kernel:{width}}  {row.criterion:31}  {row.state:5d}  {_found(row)} "
+    lines += [f"{_place(row):{width}}  {row.criterion:31}  {row.state:5d}  {_found(row)} "
               f"{_limit(row)}{'' if row.passed else '  FAILED'}" for row in rows]
     return "\n".join(lines)
 
@@ -36,6 +36,11 @@ def verdict(rows: list[CheckRow]) -> str:
     if failed:
         return f"{len(failed)} of {len(judged)} criteria fail"
     return f"{len(judged)} criteria of {len(kernels)} kernel{'s' * (len(kernels) > 1)} hold"
+
+
+def _place(row: CheckRow) -> str:
+    """The kernel, and of a general one the positions, rotations and modes."""
+    return f"{row.kernel} {tuple(row.nodes)}" if row.nodes else row.kernel
 
 
 def _badness(row: CheckRow) -> float:

@@ -14,6 +14,8 @@ from scipy.spatial.transform import Rotation
 from sebody.errors import InputError
 from sebody.kernels.abi import Arguments, call_kernel, padded
 from sebody.kernels.layout import (
+    AT_POSITIONS,
+    AT_ROTATIONS,
     ENERGY,
     INDEX,
     KINETIC,
@@ -21,6 +23,8 @@ from sebody.kernels.layout import (
     RESIDUAL,
     TANGENT,
     Row,
+    first_mode,
+    first_rotation,
     superelement_counts,
 )
 from sebody.kernels.pipeline import compiled
@@ -39,6 +43,7 @@ class CheckRow(NamedTuple):
     error: float            # relative to the largest entry
     slope: float | None     # order of convergence of a difference that the formulation has
     limit: float            # of the error from above, or of the slope from below
+    nodes: tuple[int, ...] = ()     # of a general kernel: its positions, rotations and modes
 
     @property
     def passed(self) -> bool:
@@ -73,10 +78,29 @@ class Case(NamedTuple):
         return 2 if self.planar else 3
 
     @property
+    def n_positions(self) -> int:
+        """Nodes that keep their position."""
+        return int(self.index[AT_POSITIONS])
+
+    @property
+    def n_rotations(self) -> int:
+        """Nodes that keep their rotation."""
+        return int(self.index[AT_ROTATIONS])
+
+    @property
+    def first_rotation(self) -> int:
+        """Where rotations begin among the unknowns."""
+        return first_rotation(self.n_positions, self.planar)
+
+    @property
+    def first_mode(self) -> int:
+        """Where internal modes begin among the unknowns."""
+        return first_mode(self.n_positions, self.n_rotations, self.planar)
+
+    @property
     def counts(self) -> dict[str, int]:
         """The counts that sizes of the constants are products of."""
-        module = self.module
-        return superelement_counts(module.N_POSITIONS, module.N_ROTATIONS, module.PLANAR, self.n)
+        return superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n)
 
     @property
     def row(self) -> Row:
@@ -86,15 +110,15 @@ class Case(NamedTuple):
     @property
     def rotations(self) -> list[int]:
         """First unknown of each rotation triplet."""
-        first = self.module.ROTATIONS
-        return [] if not self.R.size else [first + 3 * j for j in range(self.module.N_ROTATIONS)]
+        first = self.first_rotation
+        return [] if not self.R.size else [first + 3 * j for j in range(self.n_rotations)]
 
 
-def index_row(module: ModuleType, n: int) -> NDArray:
+def index_row(n: int, positions: int, rotations: int) -> NDArray:
     """The index row of a kernel's only element."""
-    values = {"constants": 0, "frame": 0, "port": 0, "nodes": range(module.N_ROTATIONS),
-              "unknowns": range(n)}
-    return INDEX.pack({"N_ROTATIONS": module.N_ROTATIONS, "n": n}, values).astype(np.int64)
+    values = {"constants": 0, "frame": 0, "port": 0, "positions": positions,
+              "rotations": rotations, "nodes": range(rotations), "unknowns": range(n)}
+    return INDEX.pack({"N_ROTATIONS": rotations, "n": n}, values).astype(np.int64)
 
 
 def constants_of(case: Case) -> dict[str, NDArray]:
@@ -123,10 +147,10 @@ def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Ar
     return Arguments(
         index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
         references=case.reference, frames=case.frames.copy(),
-        T=np.tile(np.eye(3).ravel(), max(module.N_ROTATIONS, 1)), loads=case.loads,
+        T=np.tile(np.eye(3).ravel(), max(case.n_rotations, 1)), loads=case.loads,
         coefficients=np.array([*coefficients, *case.field], dtype=float), forces=np.zeros(n),
         matrices=np.zeros(n * n),
-        work=np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(module.N_ROTATIONS, 1)))),
+        work=np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(case.n_rotations, 1)))),
         energies=np.zeros(POWERS + 1))
 
 
@@ -137,17 +161,17 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
     status = _call(module.kernel.address, task, len(case.index), n, given)
     if status:
         raise InputError(f"kernel {module.__name__} refuses the check's state (status {status})")
-    return (given.forces, _in_global_axes(given.matrices.reshape(n, n), given.frames, module),
+    return (given.forces, _in_global_axes(given.matrices.reshape(n, n), given.frames, case),
             given.energies)
 
 
-def _in_global_axes(J: NDArray, frame: NDArray, module: ModuleType) -> NDArray:
+def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:
     """Matrix with positions rotated to global axes, from those of the frame of a superelement."""
-    if not hasattr(module, "FRAME"):        # a joint, rigid body or load
+    if not hasattr(case.module, "FRAME"):       # a joint, rigid body or load
         return J
-    turn, d = np.eye(len(J)), 2 if module.PLANAR else 3
+    turn, d = np.eye(len(J)), case.dimension
     R0 = frame.reshape(3, 3)[:d, :d]
-    for i in range(0, module.ROTATIONS, d):
+    for i in range(0, case.first_rotation, d):
         turn[i:i + d, i:i + d] = R0
     return turn @ J @ turn.T
 

@@ -1,6 +1,7 @@
 """Criteria of superelement kernels: energies, forces, tangents, momenta, the paper's own forms."""
 
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from sebody.kernels.layout import (
     RESIDUAL,
     STRAIN,
     TANGENT,
+    first_mode,
 )
 from sebody.studies.check.definitions import (
     frame_rotation,
@@ -47,13 +49,37 @@ LIMITS = {"K - K^T = skew(G)": 1e-10, "energies (24), (34)": 1e-10,
           "momentum = rigid dT/dv": 1e-10, SIZE: np.inf}
 
 
+class Nodes(NamedTuple):
+    """What the generic states of a kernel have."""
+
+    positions: int
+    rotations: int
+    modes: int
+
+
+# what general kernels are checked with, as far as their frames can be carried: f5, f1t2r3 without
+# modes, t4, f1
+NODES = Nodes(5, 5, 3), Nodes(3, 4, 0), Nodes(4, 0, 2), Nodes(1, 1, 1)
+
+
+def nodes_of(module: ModuleType) -> tuple[Nodes, ...]:
+    """The nodes a kernel is made for, or several examples where it takes any."""
+    if module.N_POSITIONS is not None:
+        modes = 3 if module.N_MODES is None else module.N_MODES
+        return (Nodes(module.N_POSITIONS, module.N_ROTATIONS, modes),)
+    traits = frame_traits(module)
+    return tuple(n for n in NODES if (n.rotations or not traits.needs_rotations)
+                 and n.positions >= traits.fewest_positions[module.PLANAR])
+
+
 def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3,
-                      gravity: float = 0.0, damping: float = 0.0) -> Case:
-    """A generic state of a superelement kernel."""
+                      gravity: float = 0.0, damping: float = 0.0,
+                      nodes: Nodes | None = None) -> Case:
+    """A generic state of a superelement kernel, with the first of its `nodes_of` by default."""
     random = np.random.default_rng(seed)
-    planar, npos, nrot = module.PLANAR, module.N_POSITIONS, module.N_ROTATIONS
-    d, modes = 2 if planar else 3, 3 if module.N_MODES is None else module.N_MODES
-    n = module.MODES + modes
+    npos, nrot, modes = nodes or nodes_of(module)[0]
+    planar = module.PLANAR
+    d, n = 2 if planar else 3, first_mode(npos, nrot, planar) + modes
     X, alpha, alpha_r = _nodes(random, npos, nrot, d)
     S, M = (A @ A.T for A in random.normal(size=(2, n, n)))
     angle = random.normal()
@@ -75,7 +101,7 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
               "mc": moment, "masses": [1.3]}
     if module.DAMPED:
         values["C"] = damping * M @ M     # any positive matrix
-    case = Case(module, n, index_row(module, n), np.zeros(0), q, R, v, a, frame, frame.copy(),
+    case = Case(module, n, index_row(n, npos, nrot), np.zeros(0), q, R, v, a, frame, frame.copy(),
                 gravity * random.normal(size=3))
     return with_constants(case, values | _declared(case, values, random))
 
@@ -148,7 +174,7 @@ def energies(case: Case) -> float:
     computed = evaluate(case, ENERGY)[2]
     d = case.dimension
     moment = constants["mc"] + constants["mass_columns"].T @ y
-    x = case.q[:case.module.ROTATIONS].reshape(-1, d)
+    x = case.q[:case.first_rotation].reshape(-1, d)
     origin, R0 = constants["alphas"] @ x, frame_rotation(case).as_matrix()[:d, :d]
     potential = -(case.field[:d] @ (constants["masses"][0] * origin + R0 @ moment))
     return max(abs(computed[KINETIC] / (yd @ constants["M"] @ yd / 2) - 1),
@@ -163,11 +189,11 @@ def damping_power(case: Case) -> float:
 
 def damping_of_rigid_motion(case: Case) -> float:
     """Force of the structural damping in a rigid motion, which must vanish."""
-    d, x = case.dimension, case.q[:case.module.ROTATIONS]
+    d, x = case.dimension, case.q[:case.first_rotation]
     spin, v = np.array([0.3, -0.5, 0.7]), 0 * case.v
     if case.planar:
         spin[:2] = 0.0
-        v[case.module.ROTATIONS:case.module.MODES] = spin[2]
+        v[case.first_rotation:case.first_mode] = spin[2]
     place = np.zeros((len(x) // d, 3))
     place[:, :d] = x.reshape(-1, d)
     v[:len(x)] = (np.cross(spin, place) + [0.2, 0.1, -0.4])[:, :d].ravel()
@@ -186,8 +212,8 @@ def _damping_force(case: Case) -> NDArray:
 def total_momentum(case: Case) -> float:
     """Momentum and its moment against ``dT/dv`` along rigid velocities (Noether)."""
     p, d = momenta(case), case.dimension
-    x = np.zeros((case.module.N_POSITIONS, 3))
-    x[:, :d] = case.q[:case.module.ROTATIONS].reshape(-1, d)
+    x = np.zeros((case.n_positions, 3))
+    x[:, :d] = case.q[:case.first_rotation].reshape(-1, d)
     rigid = np.zeros((6, case.n))
     for k, e in enumerate(np.eye(3)):
         rigid[k, :x.shape[0] * d] = np.tile(e[:d], len(x))
@@ -196,7 +222,7 @@ def total_momentum(case: Case) -> float:
             rigid[3 + k, at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ e
     if case.planar:
         rigid[2:5] = 0.0
-        rigid[5, case.module.ROTATIONS:case.module.MODES] = 1.0
+        rigid[5, case.first_rotation:case.first_mode] = 1.0
     return difference(evaluate(case, ENERGY)[2][MOMENTUM:POTENTIAL], rigid @ p)
 
 
@@ -223,11 +249,11 @@ TANGENTS = {"tangent, configuration": tangent_place, "tangent, velocity (61)": t
             "tangent, mass (60)": tangent_mass}
 
 
-def small_increment_slope(module: ModuleType, seed: int) -> tuple[float, float]:
+def small_increment_slope(module: ModuleType, seed: int, nodes: Nodes) -> tuple[float, float]:
     """Difference of the force of (20) from dV/dq at beta_0 = 0, and its order in psi."""
     sizes, errors = (0.2, 0.1, 0.05), []
     for psi in sizes:
-        case = superelement_case(module, seed, psi)
+        case = superelement_case(module, seed, psi, nodes=nodes)
         case = case._replace(v=0 * case.v, a=0 * case.a)
         case = case._replace(reference=mean_rotation(case))
         errors.append(elastic_force(case))
@@ -236,12 +262,21 @@ def small_increment_slope(module: ModuleType, seed: int) -> tuple[float, float]:
 
 def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
     """All criteria of a superelement kernel."""
+    if module.N_POSITIONS is not None:
+        return _check(name, module, *nodes_of(module))
+    return [row._replace(nodes=nodes) for nodes in nodes_of(module)
+            for row in _check(name, module, nodes)]
+
+
+def _check(name: str, module: ModuleType, nodes: Nodes) -> list[CheckRow]:
+    """All criteria, with some nodes and modes."""
     rows = []
     traits = frame_traits(module)
     small = not traits.exact
     for seed in range(STATES):
-        case = superelement_case(module, seed, gravity=1.0)
-        damped = superelement_case(module, seed, gravity=1.0, damping=0.1 * module.DAMPED)
+        case = superelement_case(module, seed, gravity=1.0, nodes=nodes)
+        damped = superelement_case(module, seed, gravity=1.0, damping=0.1 * module.DAMPED,
+                                   nodes=nodes)
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
         if module.DAMPED and not small:
             criteria |= DAMPING
@@ -253,6 +288,6 @@ def check_superelement(name: str, module: ModuleType) -> list[CheckRow]:
             rows.append(CheckRow(name, criterion, seed, error, None,
                                  LIMITS.get(criterion, LIMIT)))
         if small:
-            error, slope = small_increment_slope(module, seed)
+            error, slope = small_increment_slope(module, seed, nodes)
             rows.append(CheckRow(name, "force of (20) against dV/dq", seed, error, slope, 1.8))
     return rows

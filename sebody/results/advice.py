@@ -1,0 +1,21 @@
+"""What a summary says of kernels: where one made for the layout would pay."""
+
+from sebody.kernels.loader import derive_command, load
+from sebody.kernels.names import layout_variant
+from sebody.model.mechanism import Mechanism
+
+# unknowns of a body up to which a kernel with its counts as constants takes a fifth to a half less
+# time than a general one; with 34 there is no difference, see tests/benchmarks/README.md
+PAYS = 24
+
+
+def kernels_that_pay(model: Mechanism) -> dict[str, list[str]]:
+    """Commands that make kernels, and the bodies on general kernels that gain by each."""
+    found: dict[str, list[str]] = {}
+    for body in model.bodies.values():
+        kernel = load(body.kernel)
+        if kernel.N_POSITIONS is None and len(body.body.stiffness) <= PAYS:
+            variant = layout_variant(body.layout, body.body.modes, kernel.DAMPED)
+            command = derive_command(variant, kernel.FRAME, kernel.INERTIA)
+            found.setdefault(command, []).append(body.name)
+    return found
