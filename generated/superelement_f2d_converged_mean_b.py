@@ -53,7 +53,7 @@ WORK_ROWS = 35
 OPERATIONS = {"residual": (300, 157, 329, 4),
               "column": (81, 205, 1036, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "5f42e7f81856"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function

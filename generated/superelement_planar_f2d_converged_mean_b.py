@@ -52,7 +52,7 @@ WORK_ROWS = 33
 OPERATIONS = {"residual": (212, 72, 6, 4),
               "column": (13, 85, 8, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "62d2692e86aa"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "5f42e7f81856"     # content of sebody/kernels: Numba's cache sees no change of other files
 
 
 @kernel_function
