@@ -103,8 +103,8 @@ def test_rows_of_integers():
 
 
 @pytest.mark.parametrize("change, message", [
-    ({"port": None}, "the kernel reads constants, frame, port, positions, rotations, nodes, unknowns; "
-                     "given are constants, frame, nodes, unknowns, positions, rotations"),
+    ({"port": None}, "the kernel reads constants, frame, port, positions, rotations, nodes, "
+                     "unknowns; given are constants, frame, nodes, unknowns, positions, rotations"),
     ({"nodes": [5]}, r"nodes has shape \(1,\), the kernel reads \(2,\)"),
     ({"frame": [1]}, r"frame has shape \(1,\), the kernel reads \(\)"),
     ({"nodes": 5}, r"nodes has shape \(\), the kernel reads \(2,\)")])
