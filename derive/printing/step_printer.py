@@ -110,7 +110,8 @@ class StepPrinter:
         rows, columns = step.shape
         if rows == columns:
             self.products += 1
-        return [f"columns_times({step.matrix}, {step.vector}, {step.out}, {rows}, {columns})"]
+            columns = "filled"
+        return [f"{step.call}({step.matrix}, {step.vector}, {step.out}, {rows}, {columns})"]
 
     def _solve(self, step: Solve) -> list[str]:
         unknown = step.unknown

@@ -26,6 +26,7 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     tangent = printer.lines(kernel.tangent)
     return templates.SUPERELEMENT.format(
         **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
+        filled="int(full[0])" if layout.modes is None else "n",
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
         reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows), rows=indented([*_reads(layout), *_rows(uses.rows)], 1),

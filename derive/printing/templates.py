@@ -52,6 +52,7 @@ ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of
 {reference}        nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
 {chain}
+        filled = {filled}
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]

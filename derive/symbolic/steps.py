@@ -83,7 +83,13 @@ class Product(NamedTuple):
 
     def uses(self, space: Space, names: Names) -> Uses:
         """The matrix and both vectors."""
-        return Uses((self.matrix, self.vector, self.out), ("columns_times",))
+        return Uses((self.matrix, self.vector, self.out), (self.call,))
+
+    @property
+    def call(self) -> str:
+        """The function of the runtime: reduced matrices are mostly zeros between modes."""
+        rows, columns = self.shape
+        return "arrow_times" if rows == columns else "columns_times"
 
 
 class Solve(NamedTuple):

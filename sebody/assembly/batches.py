@@ -17,7 +17,7 @@ from sebody.assembly.contracts import (
     positions_of,
 )
 from sebody.assembly.numbering import Numbering, coordinates
-from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS
+from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
@@ -142,11 +142,25 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     origin = body.alpha @ points
     of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
     damping = {} if reduced.damping is None else {"C": reduced.damping}
+    filled = _filled(len(reduced.mass) - reduced.modes,
+                     (reduced.stiffness, reduced.mass, *damping.values()))
     return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
             "alpha_rs": body.alpha_r, "X": points - origin, "S": reduced.stiffness,
             "M": reduced.mass, "mass_columns": of_translations, "mass_rows": of_translations.T,
             "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
-            "masses": [reduced.total_mass], **damping}
+            "full": [filled], "masses": [reduced.total_mass], **damping}
+
+
+def _filled(boundary: int, matrices: Iterable[NDArray]) -> int:
+    """Leading rows and columns, in whole vectors, beyond which the matrices are diagonal.
+
+    All rows if there is a single entry off the diagonal between internal modes.
+    """
+    matrices = list(matrices)
+    n, filled = len(matrices[0]), whole_vectors(boundary)
+    inner = [matrix[filled:, filled:] for matrix in matrices]
+    diagonal = all(np.count_nonzero(A) == np.count_nonzero(np.diag(A)) for A in inner)
+    return filled if filled < n and diagonal else n
 
 
 def starts(sizes: Iterable[int]) -> NDArray:

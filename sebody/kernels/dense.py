@@ -5,6 +5,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from sebody.kernels.abi import at
 from sebody.kernels.layout import LANES
 from sebody.kernels.pipeline import compiled
 
@@ -19,14 +20,45 @@ def columns_times(typingctx, A, x, out, rows, columns):
     registers: without them this product takes a third of a kernel's time.
     """
     floats = types.CPointer(types.float64)
-    return types.void(floats, floats, floats, types.int64, types.int64), _columns_times
+
+    def codegen(context, builder, sig, args):
+        _multiply(builder, *args, _whole_vectors(builder, args[3]), False)
+        return context.get_dummy_value()
+
+    return types.void(floats, floats, floats, types.int64, types.int64), codegen
 
 
-def _columns_times(context, builder, sig, args):
-    A, x, out, rows, columns = args
+@intrinsic
+def _add_columns_times(typingctx, A, x, out, rows, columns, height):
+    """``out += A x`` of the first `rows` of some columns that are `height` numbers apart."""
+    floats = types.CPointer(types.float64)
+
+    def codegen(context, builder, sig, args):
+        _multiply(builder, *args, True)
+        return context.get_dummy_value()
+
+    return types.void(floats, floats, floats, *[types.int64] * 3), codegen
+
+
+@compiled(forceinline=True)
+def arrow_times(A, x, out, n, filled):
+    """``out = A x`` of a square matrix that is diagonal beyond its first `filled` rows and columns.
+
+    Reduced matrices are such arrows if the internal modes are normal modes: with many modes most
+    entries are zeros. Columns are padded; `filled` is n or a multiple of whole vectors.
+    """
+    columns_times(A, x, out, n, filled)
+    if filled < n:
+        height = (n + LANES - 1) // LANES * LANES
+        _add_columns_times(at(A, filled * height), at(x, filled), out, filled, n - filled, height)
+        for k in range(filled, n):
+            out[k] += A[k * height + k] * x[k]
+
+
+def _multiply(builder, A, x, out, rows, columns, height, add):
+    """Vector operations for ``out = A x``, or ``out += A x``."""
     word = ir.IntType(64)
     vector = ir.VectorType(ir.DoubleType(), LANES)
-    height = builder.and_(builder.add(rows, word(LANES - 1)), word(-LANES))
     sums = [cgutils.alloca_once(builder, vector) for _ in range(_UNROLLED)]
     paired = builder.sub(columns, builder.srem(columns, word(_UNROLLED)))
 
@@ -36,9 +68,12 @@ def _columns_times(context, builder, sig, args):
         product = builder.fmul(entries, factor, flags=("contract",))
         builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
 
-    with cgutils.for_range_slice(builder, word(0), height, word(LANES)) as (row, _):
+    last = _whole_vectors(builder, rows)
+    with cgutils.for_range_slice(builder, word(0), last, word(LANES)) as (row, _):
         for total in sums:
             builder.store(ir.Constant(vector, [0.0] * LANES), total)
+        if add:
+            builder.store(_load(builder, out, row, vector), sums[0])
         with cgutils.for_range_slice(builder, word(0), paired, word(_UNROLLED)) as (column, _):
             for k, total in enumerate(sums):
                 add_column(total, row, builder.add(column, word(k)))
@@ -48,7 +83,12 @@ def _columns_times(context, builder, sig, args):
         for total in sums[1:]:
             result = builder.fadd(result, builder.load(total))
         _store(builder, result, out, row)
-    return context.get_dummy_value()
+
+
+def _whole_vectors(builder, rows):
+    """Rows rounded up to whole vectors."""
+    word = ir.IntType(64)
+    return builder.and_(builder.add(rows, word(LANES - 1)), word(-LANES))
 
 
 @intrinsic

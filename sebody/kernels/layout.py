@@ -248,6 +248,7 @@ SUPERELEMENT_CONSTANTS = (
     Part("mass_columns", ("n", "D"), "Mbar r of the rigid translations r", columns=True),
     Part("mass_rows", ("D", "n"), "its transpose", columns=True),
     Part("mc", ("D",), "first moment of mass about the origin of the frame"),
+    Part("full", (1,), "leading rows and columns of S, M and C that are not diagonal"),
     Part("masses", (1,), "mass"),
 )
 DAMPING_CONSTANTS = (Part("C", ("n", "n"), "reduced damping", columns=True),)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sebody import InputError, Model
+from sebody import InputError, Model, simulate
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.build import build
@@ -13,6 +13,8 @@ from sebody.fem import Section
 from sebody.kernels.layout import INDEX, Row
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.histories import history
+from sebody.reduction import ReducedBody
+from sebody.scenes import hinged_beam
 
 Z = (0.0, 0.0, 1.0)
 SECTION = Section(area=4e-4, inertia_y=1.33e-8, inertia_z=1.33e-8, torsion=2.25e-8,
@@ -140,8 +142,8 @@ def test_a_superelement_without_a_constant(monkeypatch):
         return {k: v for k, v in superelement_constants(body).items() if k != "mc"}
     monkeypatch.setattr(batches, "superelement_constants", fewer)
     with pytest.raises(InputError, match="'beam' does not fit its kernel .*: constants: the kernel "
-                                         "reads alphas, .*, mc, masses; given are .*mass_rows, "
-                                         "masses"):
+                                         "reads alphas, .*, mc, full, masses; given are .*mass_rows, "
+                                         "full, masses"):
         build(beam())
 
 
@@ -177,3 +179,27 @@ def test_index_rows_with_too_few_rotations():
                                          r"\(1,\), the kernel reads \(2,\)"):
         contracts.index_row("x", kernel, [0, 1, 2], [4], constants=0, frame=0, port=0,
                             positions=1)
+
+
+@pytest.mark.parametrize("modes, filled", [(0, 12), (4, 12), (9, 12)])
+def test_bodies_tell_how_much_of_their_matrices_is_filled(modes, filled):
+    """Normal modes are uncoupled from each other; boundary coordinates come in whole vectors."""
+    body = hinged_beam.build(modes=modes).model.bodies["beam"]
+    assert superelement_constants(body)["full"] == [filled]
+
+
+def test_coupled_modes_are_not_taken_for_uncoupled_ones():
+    """A body whose modes are mixed with each other moves as before."""
+    scene = hinged_beam.build(modes=10)
+    body = scene.model.bodies["beam"]
+    plain, reduced = body.body, body.body
+    n = len(reduced.mass)
+    mix = np.eye(n)
+    mix[12:, 12:] = np.linalg.qr(np.random.default_rng(0).normal(size=(n - 12, n - 12)))[0]
+    body.body = ReducedBody(mix.T @ plain.stiffness @ mix, mix.T @ plain.mass @ mix,
+                            plain.coordinates, plain.keeps, plain.modes)
+    assert superelement_constants(body)["full"] == [n]
+    mixed = simulate(scene.model, 0.01, 1.0)["tip.position"]
+    exact = simulate(hinged_beam.build(modes=10).model, 0.01, 1.0)["tip.position"]
+    # Newton's tolerance, 1e-8 of the increment of a step, in a hundred steps
+    assert np.abs(mixed - exact).max() < 1e-6 * np.abs(exact - exact[0]).max()

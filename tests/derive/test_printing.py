@@ -176,7 +176,7 @@ def test_searches_values_and_rows():
                                                              "    s[i] -= weight[i]"]
     assert p.lines([Scaling("held", ("dy",), (q.dth0,), "c")])[1:] == [
         "for i in range(n):", "    dy[i] *= c", "dth0_x *= c", "dth0_y *= c", "dth0_z *= c"]
-    assert p.lines([Product("p", "M", "yd", "p")])[1:] == ["columns_times(M, yd, p, n, n)"]
+    assert p.lines([Product("p", "M", "yd", "p")])[1:] == ["arrow_times(M, yd, p, n, filled)"]
     assert p.products == 1
 
 
@@ -192,7 +192,7 @@ def test_steps_report_what_they_use():
     stage = Stage("s", "position", sets=((q.h, q.alpha.symbols[0] * q.f.symbols),))
     assert stage.uses(q.space, names) == (("alphas", "s", "h"), ())
     product = Product("p", "M", "yd", "p").differential()
-    assert product.uses(q.space, names) == (("M", "dyd", "dp"), ("columns_times",))
+    assert product.uses(q.space, names) == (("M", "dyd", "dp"), ("arrow_times",))
     inverted, known = equation(q, None, sp.eye(3)), equation(q, q.alpha_r.symbols[0], sp.eye(3))
     assert inverted.uses(q.space, names).calls == ("inverse_3",)
     assert known.uses(q.space, names) == (("alpha_rs", "ve"), ())

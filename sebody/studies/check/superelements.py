@@ -98,7 +98,7 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     of_translations, moment = random.normal(size=(n, d)), random.normal(size=d)
     values = {"alphas": alpha, "fits": np.full(npos, 1 / npos), "alpha_rs": alpha_r, "X": X, "S": S,
               "M": M, "mass_columns": of_translations, "mass_rows": of_translations.T,
-              "mc": moment, "masses": [1.3]}
+              "mc": moment, "full": [n], "masses": [1.3]}
     if module.DAMPED:
         values["C"] = damping * M @ M     # any positive matrix
     case = Case(module, n, index_row(n, npos, nrot), np.zeros(0), q, R, v, a, frame, frame.copy(),
