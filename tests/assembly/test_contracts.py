@@ -142,8 +142,8 @@ def test_a_superelement_without_a_constant(monkeypatch):
         return {k: v for k, v in superelement_constants(body).items() if k != "mc"}
     monkeypatch.setattr(batches, "superelement_constants", fewer)
     with pytest.raises(InputError, match="'beam' does not fit its kernel .*: constants: the kernel "
-                                         "reads alphas, .*, mc, full, masses; given are .*mass_rows, "
-                                         "full, masses"):
+                                         "reads alphas, .*, mc, full, masses; given are .*, "
+                                         "mass_rows, full, masses"):
         build(beam())
 
 
