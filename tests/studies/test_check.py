@@ -182,7 +182,7 @@ def test_planar_kernel_equals_the_spatial_one_on_planar_states():
         states.Case(spatial, n, states.index_row(n, 2, 2), np.zeros(0), q, R, v, a,
                     flat.reference, flat.frames, flat.field * [1, 1, 0]),
         given | {"X": X, "S": S, "M": M, "mass_columns": of_translations,
-                 "mass_rows": of_translations.T, "mc": [*given["mc"], 0.0]})
+                 "mass_rows": of_translations.T, "mc": [*given["mc"], 0.0], "full": [n]})
     for coefficients in ((1.0, 0.3, 2.0, 1, 1), (0, 0, 1, 0, 1)):
         forces, matrices = zip(*[states.evaluate(c, 1, coefficients)[:2] for c in (flat, case)],
                                strict=True)
