@@ -52,7 +52,7 @@ WORK_ROWS = 33
 OPERATIONS = {"residual": (212, 72, 6, 4),
               "column": (13, 85, 8, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "e9712660fe7c"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "bb80a864fade"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

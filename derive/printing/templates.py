@@ -38,7 +38,7 @@ WORK_ROWS = {work_rows}
 OPERATIONS = {{"residual": {residual_operations},
               "column": {column_operations}}}
 CONSTANTS = {constants}
-ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "{room}"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -157,7 +157,7 @@ DRIVEN = {driven}        # a constraint that depends on time
 WORK_ROWS = {work_rows}
 OPERATIONS = {{"residual": ({residual_operations}, 0, 0, 0),
               "column": ({column_operations}, 0, 0, 0)}}
-ROOM = "{room}"     # content of sebody/kernels: Numba's cache sees no change of other files
+ROOM = "{room}"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -5,7 +5,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from sebody.kernels.abi import at
+from sebody.kernels.abi import at, padded
 from sebody.kernels.layout import LANES
 from sebody.kernels.pipeline import compiled
 
@@ -49,7 +49,7 @@ def arrow_times(A, x, out, n, filled):
     """
     columns_times(A, x, out, n, filled)
     if filled < n:
-        height = (n + LANES - 1) // LANES * LANES
+        height = padded(n)
         _add_columns_times(at(A, filled * height), at(x, filled), out, filled, n - filled, height)
         for k in range(filled, n):
             out[k] += A[k * height + k] * x[k]
