@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
+from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import assembled
 from sebody.analysis.first_run import prepare
@@ -93,6 +94,7 @@ class Simulation:
         self.seconds = 0.0
         self.failure = ""
         self._factors = None
+        user_faults.forget(model)
         self.start: Start = start(model, self.system, self.numbering, self.state)
         self.tolerance = tolerance
         if tolerance is not None:
@@ -192,6 +194,8 @@ class Simulation:
         self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
 
     def _explain(self) -> str:
+        if fault := user_faults.fault(self.model, self.time):
+            return f"stopped at t = {self.time:.6g}: {fault}; results up to there are kept"
         reason = REASONS[int(self.state.control[REASON])]
         shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
         remedy = "a larger tolerance" if self.tolerance else "a smaller step"

@@ -86,10 +86,10 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
     triplets = tuple(triplet(known(model, n), "position") for n in nodes)
     if not triplets:
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")
-    address = compile_force(name, function)
+    compiled = compile_force(name, function, sum(t.start.size for t in triplets))
     name = chosen_name(model, name, "user force")
     return _add(model, Element(name, "user_force", triplets, {}, history=clock(),
-                               function=address))
+                               function=compiled))
 
 
 def gravity(model: Mechanism, field: ArrayLike) -> None:
