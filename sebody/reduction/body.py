@@ -9,6 +9,7 @@ from scipy.linalg import block_diag, eigh
 
 from sebody.errors import InputError
 from sebody.reduction import checks
+from sebody.reduction.invariants import InertiaInvariants
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -37,6 +38,8 @@ class ReducedBody:
         Number of internal modes.
     damping : (n, n), optional
         Reduced damping matrix, acting on the rates of deformation; see `damped`.
+    invariants : InertiaInvariants, optional
+        What inertia option C needs beyond the reduced matrices.
 
     Raises
     ------
@@ -51,6 +54,7 @@ class ReducedBody:
     keeps: tuple[str, ...]
     modes: int = 0
     damping: NDArray | None = None
+    invariants: InertiaInvariants | None = None
 
     def __post_init__(self) -> None:
         coordinates = np.array(self.coordinates, dtype=float)
@@ -197,4 +201,5 @@ class ReducedBody:
             mass=by @ self.mass @ by.T,
             damping=None if self.damping is None else by @ self.damping @ by.T,
             coordinates=self.coordinates @ rotation.T,
+            invariants=self.invariants and self.invariants.rotated(rotation, by),
         )
