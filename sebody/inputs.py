@@ -109,8 +109,8 @@ def array(value: Any, what: str, shape: Sequence[int | None], *,
     shape = tuple(shape)
     if remedy is None:
         remedy = f"give {_size(shape)} finite number{'s' * (shape != (1,))}"
-    found = numbers(value)
-    if found is None or (len(shape) == 1 and not _fits(found, shape)):
+    found = reals(value, what, remedy)
+    if len(shape) == 1 and not _fits(found, shape):
         raise refusal(what, value, remedy)
     if not _fits(found, shape):
         raise InputError(f"{what} has shape {found.shape}: {remedy}")
@@ -122,9 +122,10 @@ def array(value: Any, what: str, shape: Sequence[int | None], *,
     return found
 
 
-def vector(value: ArrayLike, what: str, size: int | None = None) -> NDArray:
+def vector(value: ArrayLike, what: str, size: int | None = None, *,
+           remedy: str | None = None) -> NDArray:
     """Finite real numbers in a row: so many, or any number of them; see `array`."""
-    return array(value, what, (size,))
+    return array(value, what, (size,), remedy=remedy)
 
 
 def rotation(value: ArrayLike, what: str, dimension: int = 3) -> NDArray:
@@ -260,8 +261,22 @@ def path(value: Any, what: str, suffixes: Sequence[str] = ()) -> Path:
     return found
 
 
-def numbers(value: Any) -> NDArray | None:
-    """Real numbers as a new array of floats, perhaps not finite; None if they are no such."""
+def reals(value: Any, what: str, remedy: str) -> NDArray:
+    """Real numbers of any shape as a new array of floats, perhaps not finite.
+
+    Raises
+    ------
+    InputError
+        Texts, complex numbers, truth values, rows of different lengths.
+    """
+    found = _numbers(value)
+    if found is None:
+        raise refusal(what, value, remedy)
+    return found
+
+
+def _numbers(value: Any) -> NDArray | None:
+    """An array of floats; None for what cannot be one."""
     try:
         found = value if isinstance(value, np.ndarray) else np.asarray(value, dtype=object)
         if found.dtype.kind not in "iuf" and not (found.dtype.kind == "O" and found.ndim
