@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import BinaryIO
 from uuid import uuid4
 
+from sebody import inputs
 from sebody.errors import InputError, WriteError
 
 
@@ -24,27 +25,24 @@ def check_target(path: str | Path, what: str, suffixes: tuple[str, ...] = ()) ->
     Raises
     ------
     InputError
-        Another ending, a folder that does not exist or cannot be written, or something at the
-        path that is no file or is write-protected.
+        No path, see `inputs.path`; a folder that does not exist or cannot be written, or
+        something at the path that is no file or is write-protected.
     """
-    path = Path(path)
-    if suffixes and path.suffix not in suffixes:
-        raise InputError(f"{what} {path} must end in {', '.join(suffixes)}")
-    try:
-        is_folder, exists, is_file = path.parent.is_dir(), path.exists(), path.is_file()
-        if is_folder and (is_file or not exists):
-            part = _beside(path)
-            part.touch()
-            part.unlink()
-    except OSError as error:
-        raise InputError(f"{what} {path} cannot be written: {error.strerror}; give another "
-                         "folder or name") from error
-    if not is_folder:
+    path = inputs.path(path, what, suffixes)
+    if not path.parent.is_dir():
         raise InputError(f"folder {path.parent} of the {what} does not exist: make it")
-    if exists and not is_file:
-        raise InputError(f"{what} {path} is a folder or a device: give the name of a file")
-    if exists and not os.access(path, os.W_OK):
-        raise InputError(f"{what} {path} is write-protected: give another name")
+    if path.exists():
+        if not path.is_file():
+            raise InputError(f"{what} {path} is a device: give the path of a file")
+        if not os.access(path, os.W_OK):
+            raise InputError(f"{what} {path} is write-protected: give another path")
+    part = _beside(path.resolve())
+    try:
+        part.touch()
+        part.unlink()
+    except OSError as error:
+        raise InputError(f"{what} {path} cannot be written ({error.strerror}): give another "
+                         "folder") from error
     return path
 
 
