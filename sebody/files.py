@@ -31,18 +31,17 @@ def check_target(path: str | Path, what: str, suffixes: tuple[str, ...] = ()) ->
     path = inputs.path(path, what, suffixes)
     if not path.parent.is_dir():
         raise InputError(f"folder {path.parent} of the {what} does not exist: make it")
-    if path.exists():
-        if not path.is_file():
-            raise InputError(f"{what} {path} is a device: give the path of a file")
-        if not os.access(path, os.W_OK):
-            raise InputError(f"{what} {path} is write-protected: give another path")
+    if path.exists() and not path.is_file():
+        raise InputError(f"{what} {path} is a device: give the path of a file")
     part = _beside(path.resolve())
     try:
+        if path.exists():
+            path.open("r+b").close()        # may be protected in a folder that is not
         part.touch()
         part.unlink()
     except OSError as error:
         raise InputError(f"{what} {path} cannot be written ({error.strerror}): give another "
-                         "folder") from error
+                         "path") from error
     return path
 
 
