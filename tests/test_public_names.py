@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 ROOMS = {
-    "sebody": {"InputError", "LimitWarning", "Model", "Result", "SebodyError", "Simulation",
-               "SimulationError", "Tolerance", "generalized_alpha", "hht", "simulate",
-               "simulate_within", "with_corners"},
+    "sebody": {"InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
+               "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha",
+               "hht", "simulate", "simulate_within", "with_corners"},
     "sebody.analysis": {"Linearization", "Modes", "Vibrations", "equilibrium", "linearize",
                         "modes", "resume", "save_state", "spin_limit", "vibrations"},
     "sebody.results": {"Recording", "Result", "Start", "save_picture"},
