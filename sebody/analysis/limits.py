@@ -137,7 +137,7 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
     """
     inputs.instance(body, "body", Superelement, "give a superelement of a model")
     if axis is not None:
-        axis = inputs.vector(axis, "axis", 1 if body.body.planar else 3)
+        axis = inputs.vector(axis, "axis", None if body.body.planar else 3)
         if not np.any(axis):
             raise inputs.refusal("axis", axis, "give its direction")
         axis = axis / np.linalg.norm(axis)

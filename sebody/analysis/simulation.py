@@ -17,7 +17,7 @@ from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
 from sebody.analysis.pulses import unseen
 from sebody.analysis.schemes import generalized_alpha
-from sebody.analysis.tolerance import ROUNDING, Tolerance, given
+from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
@@ -250,7 +250,6 @@ class Simulation:
     def _choose_steps(self, tolerance: Tolerance) -> None:
         """Switch on variable steps; the first step is short against the accelerations."""
         n, state = self.numbering.free, self.state
-        tolerance.check_above(ROUNDING, self.system.magnitude.max())
         rotations = rotational(self.model, self.numbering)[:n]
         state.error_weights[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], rotations)
         bend = np.abs(state.a[:n] * state.error_weights[:n]).max()

@@ -9,7 +9,6 @@ from sebody import inputs
 from sebody.errors import InputError
 
 FINEST = 1e-9       # relative error of a run below which Newton's tolerance and rounding decide
-ROUNDING = 1e-14    # the same of a step
 
 
 class Tolerance(NamedTuple):
@@ -37,26 +36,24 @@ class Tolerance(NamedTuple):
                              "of positions and of rotations")
         return self
 
-    def check_above(self, least: float, extent: float) -> None:
-        """Refuse errors that no step is short enough for.
+    def check_reachable(self, extent: float) -> None:
+        """Refuse errors of a run that no step is short enough for.
 
         Parameters
         ----------
-        least : float
-            Smallest relative error.
         extent : float
             Of the model [length].
 
         Raises
         ------
         InputError
-            Positions or rotations are allowed less than `least`.
+            Positions or rotations are allowed less than `FINEST`.
         """
         sizes, rotational = np.array([extent, 1.0]), np.array([False, True])
         found = (self.allowed(sizes, rotational) / np.maximum(sizes, 1e-300)).min()
-        if found < least:
+        if found < FINEST:
             raise InputError(f"the tolerance allows errors of {found:.3g}, relative to the model's "
-                             f"extent or in radians: give at least {least:g}, below which shorter "
+                             f"extent or in radians: give at least {FINEST:g}, below which shorter "
                              "steps do not help")
 
     def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
