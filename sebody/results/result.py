@@ -20,8 +20,9 @@ class Result(Recording):
     Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
     angular_velocity and angular_acceleration (n, 3), all in global axes; in a plane (n, 2) and
     (n,); where it is fixed or prescribed reaction and reaction_moment.
-    Of the model: energy.kinetic, energy.strain (springs included), energy.potential, energy.external_work (n,), momentum and angular_momentum about the
-    origin (n, 3), constraints.position and constraints.velocity, the largest residuals (n,).
+    Of the model: energy.kinetic, energy.strain (springs included), energy.potential,
+    energy.external_work (n,), momentum and angular_momentum about the origin (n, 3),
+    constraints.position and constraints.velocity, the largest residuals (n,).
 
     Forces and moments are in global axes and in balance with the motion of the bodies. Moments on
     a node are about this node; in a plane they are numbers (n,).
