@@ -12,8 +12,8 @@ from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
 from sebody.engine.state import PIVOTED, Scheme, State
 from sebody.errors import InputError
+from sebody.files import check_target, replacing
 from sebody.model.model import Model
-from sebody.results.files import check_target
 
 VERSION = 2
 TARGET = "restart file", (".npz",)      # see `files.check_target`
@@ -25,15 +25,18 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     Raises
     ------
     InputError
-        Another ending, or a folder that does not exist.
+        A target that cannot be written, see `check_target`.
+    WriteError
+        Writing fails; an older file is unchanged.
     """
     path = check_target(path, *TARGET)
     settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
                 "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
                 "model": _fingerprint(run)}
     arrays = {field.name: getattr(run.state, field.name) for field in fields(State)}
-    np.savez(path, settings=json.dumps(settings), relaxed=run.system.relaxed,
-             rows=np.concatenate(run.rows), **arrays)
+    with replacing(path, TARGET[0]) as file:
+        np.savez(file, settings=json.dumps(settings), relaxed=run.system.relaxed,
+                 rows=np.concatenate(run.rows), **arrays)
     return path
 
 

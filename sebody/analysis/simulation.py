@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
+from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import assembled
 from sebody.analysis.first_run import prepare
@@ -24,26 +25,32 @@ from sebody.engine.state import (
     CHOSEN,
     CHUNK,
     DONE,
-    FACTOR,
+    FACTORED,
     FAILED,
     FINEST,
     GRID,
     LARGEST_ERROR,
+    PHASE,
+    PROJECTED,
     REASON,
     REASONS,
     RECORDED,
-    SOLVE,
+    SOLVED,
     TIME,
     Record,
     Scheme,
 )
 from sebody.engine.step import write_record
-from sebody.errors import InputError, SimulationError
+from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.model.model import Model
 from sebody.results.recording import Start
 from sebody.results.result import Result
 
 FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerated at the start
+LOOK = 0.2              # seconds in the loop until it returns to Python, which sees Ctrl-C then
+FIRST_CHUNK = 1         # steps before the first return
+GROWTH = 8.0            # largest factor from one chunk of steps to the next
+OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's
 
 
 class Simulation:
@@ -93,6 +100,7 @@ class Simulation:
         self.seconds = 0.0
         self.failure = ""
         self._factors = None
+        user_faults.forget(model)
         self.start: Start = start(model, self.system, self.numbering, self.state)
         self.tolerance = tolerance
         if tolerance is not None:
@@ -111,42 +119,79 @@ class Simulation:
         """Time reached."""
         return float(self.state.clock[TIME])
 
-    def run_to(self, t_end: float, progress: Callable[[float], None] | None = None,
-               chunk: int = 2000) -> "Simulation":
+    def run_to(self, t_end: float,
+               progress: Callable[[float], None] | None = None) -> "Simulation":
         """Advance to the grid step nearest to `t_end`.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called several times a second with the part of the run that is done. What it raises
+            stops the run between two steps; a later call goes on from there.
 
         Raises
         ------
         SimulationError
             When a step does not converge however small; what was computed is kept, also in the
             error's `result`.
+        Interrupted
+            Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
         last = int(round(t_end / self.h)) if np.isfinite(t_end) else -1
         if last < self.state.control[GRID]:
             raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
+        if abs(t_end / self.h - last) > OFF_GRID:
+            self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
+                           f"run ends at t = {last * self.h:.9g}")
         steps = last // self.every - self.state.control[GRID] // self.every
         record = Record.of(self.state, int(steps), self.every)
         self.state.control[RECORDED] = 0
         code = CHUNK
-        while code not in (DONE, FAILED):
-            began = time.perf_counter()
-            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
-            if code == FACTOR:
-                self.factorize()
-            elif code == SOLVE:
-                n = self.numbering.free
-                scale = self.state.scale[:n]
-                self.state.correction[:n] = scale * self._factors.solve(
-                    scale * self.state.residual[:n])
-            self.seconds += time.perf_counter() - began
-            if progress and code in (CHUNK, DONE):
-                progress(self.time / t_end if t_end else 1.0)
-        self.rows.append(record.rows[:self.state.control[RECORDED]])
+        try:
+            code = self._advance(record, last, t_end, progress)
+        except KeyboardInterrupt:
+            pass                        # the rows come first
+        finally:
+            self.rows.append(record.rows[:self.state.control[RECORDED]])
         self.watch.look(self.model, self.numbering, self.rows[-1])
         if code == FAILED:
             self.failure = self._explain()
             raise SimulationError(self.failure, self.result())
+        if code != DONE:
+            result = self.result()
+            result.failure = f"interrupted at t = {self.time:.6g}: results up to there are kept"
+            raise Interrupted(result.failure, result)
         return self
+
+    def _advance(self, record: Record, last: int, t_end: float,
+                 progress: Callable[[float], None] | None) -> int:
+        """Call the loop until it is done or fails, in chunks of steps that take about `LOOK`."""
+        code, chunk, looked = CHUNK, FIRST_CHUNK, time.perf_counter()
+        while code not in (DONE, FAILED):
+            began = time.perf_counter()
+            self._serve()
+            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
+            now = time.perf_counter()
+            self.seconds += now - began
+            waited = max(now - looked, 1e-9)
+            if code in (CHUNK, DONE):
+                chunk = max(1, int(chunk * min(GROWTH, LOOK / waited)))
+                if progress:
+                    progress(1.0 if code == DONE else min(self.time / t_end, 1.0))
+                looked = time.perf_counter()
+            elif waited > LOOK:         # steps that Python helps with are not counted: stop at
+                chunk = 0               # the beginning of the next one
+        return code
+
+    def _serve(self) -> None:
+        """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
+        phase, n = self.state.control[PHASE], self.numbering.free
+        if phase == FACTORED:
+            self.factorize()
+        elif phase in (PROJECTED, SOLVED):
+            scale = self.state.scale[:n]
+            self.state.correction[:n] = scale * self._factors.solve(
+                scale * self.state.residual[:n])
 
     def result(self) -> Result:
         """The results computed so far."""
@@ -192,6 +237,8 @@ class Simulation:
         self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
 
     def _explain(self) -> str:
+        if fault := user_faults.fault(self.model, self.time):
+            return f"stopped at t = {self.time:.6g}: {fault}; results up to there are kept"
         reason = REASONS[int(self.state.control[REASON])]
         shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
         remedy = "a larger tolerance" if self.tolerance else "a smaller step"

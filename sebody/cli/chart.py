@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from sebody.cli.inputs import check_picture
-from sebody.results.files import check_target
+from sebody.files import check_target
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:

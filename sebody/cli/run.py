@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from sebody.cli.inputs import build_scene, check_picture
 from sebody.cli.progress import Progress
 from sebody.errors import InputError, LimitWarning, SimulationError
-from sebody.results.files import check_target
+from sebody.files import check_target
 
 if TYPE_CHECKING:
     from sebody.results.result import Result

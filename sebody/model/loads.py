@@ -92,10 +92,10 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
         triplet(place.node, "position")
     if not places:
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")
-    address = compile_force(name, function)
+    compiled = compile_force(name, function, model.dimension * len(places))
     name = chosen_name(model, name, "user force")
     return _add(model, Element(name, "user_force", places, {}, history=clock(),
-                               function=address))
+                               function=compiled))
 
 
 def gravity(model: Mechanism, field: ArrayLike) -> None:

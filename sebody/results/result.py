@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
+from sebody.files import check_target, replacing
 from sebody.results.advice import kernels_that_pay
-from sebody.results.files import check_target
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 
@@ -101,10 +101,14 @@ class Result(Recording):
         Raises
         ------
         InputError
-            Another ending, or a folder that does not exist.
+            A target that cannot be written, see `check_target`.
+        WriteError
+            Writing fails; an older file is unchanged.
         """
         path = check_target(path, *OUTPUT)
-        np.savez_compressed(path, **self.arrays())
+        arrays = self.arrays()
+        with replacing(path, OUTPUT[0]) as file:
+            np.savez_compressed(file, **arrays)
         return path
 
     def summary(self) -> str:
