@@ -134,6 +134,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
     place_dependent(system.links, state.q, state.v, state.a, state.R)
+    size = max(size, np.abs(state.v).max())     # everything may have been at rest before
     for triplet in given:
         change = np.abs(answer[coordinates(numbering, triplet)]).max()
         if change > 1e-6 * size:
