@@ -3,8 +3,8 @@
     python tests/benchmarks/bench_order.py [--json]
 
 The elimination follows an order of its own (`sebody.assembly.fill_order`), so the order of creation
-should hardly matter: time of a step and block products of a factorization are printed for bodies
-created from the root of the graph outwards, from its far ends inwards, and for random orders.
+should hardly matter: time of a step and entries of the factors are printed for bodies created from
+the root of the graph outwards, from its far ends inwards, and in random orders.
 """
 
 import argparse
@@ -12,9 +12,16 @@ import json
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from scipy.sparse import csc_matrix, eye
+from scipy.sparse.linalg import splu
 
 from sebody import Model, Simulation
-from sebody.engine.state import EVALUATED, ITERATIONS, MATRICES, PIVOTED, WANTED
+from sebody.assembly.axes import body_axes
+from sebody.assembly.batches import make_batches
+from sebody.assembly.links import link_arrays
+from sebody.assembly.numbering import number
+from sebody.assembly.places import element_places
+from sebody.engine.state import EVALUATED, WANTED
 from sebody.fem import Section, planar_beam
 from sebody.reduction import craig_bampton
 
@@ -87,11 +94,11 @@ def ladder(order: Sequence[int]) -> Model:
     for k in range(cells + 1):
         model.node(f"left {k}", (0.0, k))
         model.node(f"right {k}", (1.0, k))
-    for number in order:
-        k, part = divmod(number, 3)
+    for beam in order:
+        k, part = divmod(beam, 3)
         ends = ((f"left {k}", f"left {k + 1}"), (f"right {k}", f"right {k + 1}"),
                 (f"left {k + 1}", f"right {k + 1}"))[part]
-        _place(model, f"beam {number}", body, *ends)
+        _place(model, f"beam {beam}", body, *ends)
     return _under_gravity(model)
 
 
@@ -106,10 +113,57 @@ def orders(count: int, random: int = RANDOM) -> dict[str, list[int]]:
                     for seed in range(1, random + 1)}
 
 
-def products(run: Simulation) -> int:
-    """Products of blocks in a factorization."""
-    starts, diagonal = run.system.block_starts, run.system.block_diagonal
-    return int(((starts[1:] - diagonal - 1) ** 2).sum())
+def fill(model: Model) -> tuple[int, int]:
+    """Entries of the lower factor in the order of the unknowns, and in SuperLU's own.
+
+    SuperLU orders the unknowns themselves by minimum degree, multipliers wherever it likes: the
+    pattern is given values for which every pivot will do.
+    """
+    numbering = number(model)
+    batches = make_batches(model, numbering)
+    row, column = element_places(batches.all)
+    axes = body_axes(model, numbering, batches)
+    _, linked_row, linked_column = link_arrays(model, numbering, batches.all, axes["rotated"])
+    row, column, n = np.r_[row, linked_row], np.r_[column, linked_column], numbering.free
+    free = (row < n) & (column < n)
+    row, column = row[free], column[free]
+    matrix = csc_matrix((np.ones(len(row)), (row, column)), (n, n)).sign()
+    matrix = csc_matrix(matrix + n * eye(n))
+    own, other = (splu(matrix, permc_spec=order, diag_pivot_thresh=0.0,
+                       options={"SymmetricMode": True}).L.nnz
+                  for order in ("NATURAL", "MMD_AT_PLUS_A"))
+    return own, other
+
+
+def microseconds(run: Simulation) -> float:
+    """Time of a step, the quickest of some stretches; each begins with a new matrix."""
+    quickest = float("inf")
+    for _ in range(REPEATS):
+        run.state.control[WANTED] = EVALUATED
+        began = run.seconds
+        run.run_to(run.time + STEPS * STEP)
+        quickest = min(quickest, (run.seconds - began) / STEPS)
+    return 1e6 * quickest
+
+
+def main(arguments: list[str] | None = None, share: float = 1.0) -> None:
+    """Print the table, of smaller graphs for a share below one."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--json", action="store_true", help="numbers by graph and order")
+    as_json = parser.parse_args(arguments).json
+    found: dict[str, dict] = {}
+    for name, (graph, count) in GRAPHS.items():
+        for order, sequence in orders(round(share * count)).items():
+            model = graph(sequence)
+            own, other = fill(model)
+            row = {"microseconds": microseconds(Simulation(model, STEP)), "entries": own,
+                   "superlu": other}
+            found.setdefault(name, {})[order] = row
+            if not as_json:
+                print(f"{name:7} {order:13} {row['microseconds']:8.1f} us a step, {own:7} entries, "
+                      f"SuperLU's order {other:7}", flush=True)
+    if as_json:
+        print(json.dumps(found))
 
 
 def _beam(modes: int):
@@ -127,36 +181,6 @@ def _place(model: Model, name: str, body, *ends: str) -> None:
 def _under_gravity(model: Model) -> Model:
     model.gravity((0.0, -9.81))
     return model
-
-
-def microseconds(run: Simulation) -> float:
-    """Time of a step, the quickest of some stretches; every step refactorizes."""
-    quickest = float("inf")
-    for _ in range(REPEATS):
-        run.state.control[WANTED] = EVALUATED
-        began, matrices = run.seconds, run.state.control[MATRICES]
-        run.run_to(run.time + STEPS * STEP)
-        quickest = min(quickest, (run.seconds - began) / STEPS)
-    return 1e6 * quickest
-
-
-def main(arguments: list[str] | None = None) -> None:
-    """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--json", action="store_true", help="numbers by graph and order")
-    as_json = parser.parse_args(arguments).json
-    found = {}
-    for name, (graph, count) in GRAPHS.items():
-        for order, sequence in orders(count).items():
-            run = Simulation(graph(sequence), STEP)
-            row = {"microseconds": microseconds(run), "products": products(run),
-                   "pivoted": int(run.state.control[PIVOTED])}
-            found.setdefault(name, {})[order] = row
-            if not as_json:
-                print(f"{name:8} {order:13} {row['microseconds']:9.1f} us a step {row['products']:9} "
-                      f"products  {run.state.control[MATRICES]} {run.state.control[ITERATIONS]} {run.state.control[PIVOTED]}", flush=True)
-    if as_json:
-        print(json.dumps(found))
 
 
 if __name__ == "__main__":
