@@ -146,14 +146,14 @@ def microseconds(run: Simulation) -> float:
     return 1e6 * quickest
 
 
-def main(arguments: list[str] | None = None, share: float = 1.0) -> None:
-    """Print the table, of smaller graphs for a share below one."""
+def main(arguments: list[str] | None = None) -> None:
+    """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--json", action="store_true", help="numbers by graph and order")
     as_json = parser.parse_args(arguments).json
     found: dict[str, dict] = {}
     for name, (graph, count) in GRAPHS.items():
-        for order, sequence in orders(round(share * count)).items():
+        for order, sequence in orders(count).items():
             model = graph(sequence)
             own, other = fill(model)
             row = {"microseconds": microseconds(Simulation(model, STEP)), "entries": own,
