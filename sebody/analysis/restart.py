@@ -93,6 +93,6 @@ def _fingerprint(run: Simulation) -> str:
         e.kind for e in (*model.rigid_bodies.values(), *model.constraints, *model.loads)]
     parts = [repr((run.numbering.names, kinds)).encode()] + [
         array.tobytes() for array in (
-            system.constants, system.g_unknown, system.table_times, system.table_cubics,
+            system.constants, system.g_unknown, system.table_times, system.table_pieces,
             system.prescribed, system.prescribed_factor, model.gravity_field, run.state.q_start)]
     return sha256(b"".join(parts)).hexdigest()
