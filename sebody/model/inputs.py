@@ -40,7 +40,10 @@ def rotation_vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
     if not model.planar:
         return inputs.vector(value, what, 3)
     remedy = "give 1 finite number"
-    return inputs.vector(np.atleast_1d(inputs.reals(value, what, remedy)), what, 1, remedy=remedy)
+    given = inputs.reals(value, what, remedy)
+    if given.shape not in ((), (1,)) or not np.isfinite(given).all():
+        raise inputs.refusal(what, value, remedy)
+    return np.atleast_1d(given)
 
 
 def direction(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> NDArray:
