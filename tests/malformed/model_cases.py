@@ -112,8 +112,8 @@ BODIES = {
         "frame": have("frame", "middle", None, 3, [], {}),
         "inertia": have("inertia", "d", None, 3, []),
         "rotation": [*are("rotation", "abc", 3j),
-                     *have("rotation", 1.0, [[1, 0], [0, 1]], [[NAN] * 3] * 3, [[2, 0, 0], [0, 1, 0], [0, 0, 1]],
-                           [[0, 1, 0], [1, 0, 0], [0, 0, 1]])]}),
+                     *have("rotation", 1.0, [[1, 0], [0, 1]], [[NAN] * 3] * 3,
+                           [[2, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 0], [1, 0, 0], [0, 0, 1]])]}),
     "frame node": Right(Model.superelement, {
         "name": "new", "body": BODY, "nodes": ["a", "b"], "frame": "node", "frame_node": 1}, {
             "frame_node": [*are("frame_node", *NO_COUNT),
