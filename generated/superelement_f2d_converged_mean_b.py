@@ -53,7 +53,7 @@ WORK_ROWS = 35
 OPERATIONS = {"residual": (300, 157, 329, 4),
               "column": (81, 205, 1036, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
+ROOM = "82180b28babf"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
