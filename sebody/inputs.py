@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from numbers import Real
 from pathlib import Path
 from stat import S_ISDIR
+from types import UnionType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -179,13 +180,11 @@ def choice(value: Any, what: str, options: Iterable[Kind], remedy: str | None = 
         same_kind = isinstance(value, str) == isinstance(option, str)
         if same_kind and not isinstance(value, bool) and np.ndim(value) == 0 and value == option:
             return option
-    raise refusal(what, value, remedy or "use " + listed(options))
-
-
-def listed(options: Sequence[object]) -> str:
-    """Options in words."""
-    *most, last = map(str, options)
-    return f"{', '.join(most)} or {last}" if most else last
+    if remedy:
+        raise refusal(what, value, remedy)
+    *most, last = map(repr, options)
+    listed = f"{', '.join(most)} or {last}" if most else last
+    raise InputError(f"{what} {shown(value)} is unknown: use {listed}")
 
 
 def function(value: Any, what: str, remedy: str) -> Callable:
@@ -201,8 +200,8 @@ def function(value: Any, what: str, remedy: str) -> Callable:
     return value
 
 
-def instance(value: Any, what: str, kind: type[Kind], remedy: str) -> Kind:
-    """An object of a class of this package.
+def instance(value: Any, what: str, kind: type[Kind] | UnionType, remedy: str) -> Kind:
+    """An object of a class of this package, or of one of several.
 
     Raises
     ------

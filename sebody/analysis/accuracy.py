@@ -4,8 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sebody import inputs
 from sebody.analysis.simulation import Simulation
-from sebody.analysis.tolerance import Tolerance
+from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.numbering import rotational
 from sebody.engine.state import Scheme
 from sebody.errors import Interrupted, SimulationError
@@ -50,7 +51,10 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     Interrupted
         Ctrl-C; the last whole run is the `result`, or what there is of the first one.
     """
-    wanted = (tolerance or Tolerance()).check()
+    inputs.instance(model, "model", Model, "give a sebody.Model")
+    wanted = given(tolerance) or Tolerance()
+    points = [np.abs(node.point).max() for node in model.nodes.values()]
+    wanted.check_reachable(max(points, default=0.0))
     share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
     before: Result | None = None
     differences: list[float] = []

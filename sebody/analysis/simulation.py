@@ -8,14 +8,16 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
+from sebody import inputs
 from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import assembled
 from sebody.analysis.first_run import prepare
 from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
+from sebody.analysis.pulses import unseen
 from sebody.analysis.schemes import generalized_alpha
-from sebody.analysis.tolerance import Tolerance
+from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
@@ -51,6 +53,7 @@ LOOK = 0.2              # seconds in the loop until it returns to Python, which 
 FIRST_CHUNK = 1         # steps before the first return
 GROWTH = 8.0            # largest factor from one chunk of steps to the next
 OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's
+MOST_STEPS = 1e12       # of a run: weeks, at a microsecond each
 
 
 class Simulation:
@@ -84,11 +87,13 @@ class Simulation:
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, tolerance: Tolerance | None = None):
-        if not (np.isfinite(h) and h > 0):
-            raise InputError(f"the time step is {h}: give a positive number")
-        if output_every != int(output_every) or output_every < 1:
-            raise InputError(f"output_every is {output_every}: give a whole number of steps >= 1")
-        self.model, self.h, self.every = model, float(h), int(output_every)
+        self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
+        self.h = inputs.number(h, "the time step", above=0)
+        self.every = inputs.integer(output_every, "output_every", least=1,
+                                    remedy="give a whole number of steps >= 1")
+        if scheme is not None:
+            inputs.instance(scheme, "scheme", Scheme, "give generalized_alpha() or hht()")
+        tolerance = given(tolerance)
         prepare([model])
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
@@ -104,7 +109,7 @@ class Simulation:
         self.start: Start = start(model, self.system, self.numbering, self.state)
         self.tolerance = tolerance
         if tolerance is not None:
-            self._choose_steps(tolerance.check())
+            self._choose_steps(tolerance)
         if self.scheme.stabilized:
             self._offset_accelerations()
         first = Record.of(self.state, 1, self.every)
@@ -137,14 +142,16 @@ class Simulation:
         Interrupted
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
-        last = int(round(t_end / self.h)) if np.isfinite(t_end) else -1
-        if last < self.state.control[GRID]:
-            raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
+        last = self._last_step(t_end)
+        if progress is not None:
+            inputs.function(progress, "progress", "give a function of the part that is done")
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
                            f"run ends at t = {last * self.h:.9g}")
-        steps = last // self.every - self.state.control[GRID] // self.every
-        record = Record.of(self.state, int(steps), self.every)
+        if self.state.control[ADAPTIVE] == 0:
+            for name, message in unseen(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"peak {name}", message)
+        record = self._room(last)
         self.state.control[RECORDED] = 0
         code = CHUNK
         try:
@@ -162,6 +169,37 @@ class Simulation:
             result.failure = f"interrupted at t = {self.time:.6g}: results up to there are kept"
             raise Interrupted(result.failure, result)
         return self
+
+    def _last_step(self, t_end: float) -> int:
+        """The grid step nearest to a time.
+
+        Raises
+        ------
+        InputError
+            A time that is past, less than half a step away, or too many steps away.
+        """
+        past = f"cannot run to t = {inputs.shown(t_end)} from t = {self.time}: give a later time"
+        t_end = inputs.number(t_end, "t_end", remedy=past)
+        steps = t_end / self.h
+        if steps > MOST_STEPS:
+            raise InputError(f"t_end is {t_end:g}: that is {steps:.3g} steps of {self.h:g}, give "
+                             "an earlier time or a longer step")
+        if round(steps) < self.state.control[GRID]:
+            raise InputError(past)
+        if round(steps) == self.state.control[GRID] and abs(steps - round(steps)) > OFF_GRID:
+            raise InputError(f"cannot run to t_end = {t_end:g} from t = {self.time:g}: the step is "
+                             f"{self.h:g}; give a later time or a smaller step (the step comes "
+                             "first)")
+        return round(steps)
+
+    def _room(self, last: int) -> Record:
+        """An empty record for the states up to a step of the grid."""
+        count = last // self.every - int(self.state.control[GRID]) // self.every
+        try:
+            return Record.of(self.state, count, self.every)
+        except (MemoryError, ValueError) as error:      # ValueError: more than any array can hold
+            raise InputError(f"{count} recorded states do not fit into memory: keep fewer with "
+                             "output_every, or give an earlier t_end") from error
 
     def _advance(self, record: Record, last: int, t_end: float,
                  progress: Callable[[float], None] | None) -> int:
