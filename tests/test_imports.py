@@ -24,7 +24,7 @@ ROOMS = {
     "reduction": {"fem"},
     "io": {"fem"},
     "model": {"kernels", "generated", "fem", "reduction"},     # of generated the options alone
-    "assembly": {"kernels", "engine", "reduction", "model"},
+    "assembly": {"kernels", "generated", "engine", "reduction", "model"},   # the options likewise
     "results": {"kernels", "engine", "model", "assembly"},
     "analysis": {"kernels", "engine", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py

@@ -90,7 +90,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
         A rotation moved about two axes, or a dependent position at the end of a rigid link.
     """
     node = known(model, node)
-    if what not in ("position", "rotation"):
+    if not isinstance(what, str) or what not in ("position", "rotation"):
         raise InputError(f"cannot move {what!r}: use position or rotation")
     moved = triplet(node, what)
     if what == "position":
