@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.user_functions import UserFunction, compile_history
 from sebody.model.derivatives import rates_of
@@ -146,9 +147,11 @@ def with_corners(function: Callable[[float], float], corners: Sequence[float]) -
     InputError
         A function Numba cannot compile, or times that are no numbers.
     """
-    times = np.asarray(corners, dtype=float)
-    if times.ndim != 1 or not np.isfinite(times).all():
-        raise InputError(f"corners are {corners}: give a list of times")
+    try:
+        times = inputs.vector(corners, "corners")
+    except InputError as error:
+        raise InputError(f"corners are {inputs.shown(corners)}: give a list of times") from error
+    inputs.function(function, "function", "give a function of time")
     return History(functions=(compile_history(function, LOAD),), corners=tuple(times.tolist()))
 
 
@@ -216,8 +219,8 @@ def table(source: ArrayLike, what: str) -> tuple[NDArray, NDArray]:
         Other shapes than rows (t, value), numbers that are not finite, times that do not increase.
     """
     try:
-        rows = np.asarray(source, dtype=float)
-    except (TypeError, ValueError) as error:
+        rows = inputs.reals(source, what, "")
+    except InputError as error:
         raise InputError(f"{what} cannot be read as numbers: give rows (t, value), or a function "
                          "of time") from error
     if rows.ndim != 2 or rows.shape[1] != 2 or not len(rows):
