@@ -55,6 +55,26 @@ class History:
         return self.of_piece(max(k, 0), t) if k >= 0 else np.array(
             [self.of_piece(0, self.times[0])[0], 0.0, 0.0])
 
+    def values(self, times: NDArray) -> NDArray:
+        """Values at some times, (n,)."""
+        if self.functions:
+            return np.array([self.functions[0].ctypes(t) for t in times])
+        starts = np.array(self.times)
+        row = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
+        x = np.maximum(times - starts[row], 0.0)
+        found = (self.polynomials()[row] * x[:, None]**np.arange(COEFFICIENTS)).sum(axis=1)
+        if self.waves:
+            A, w, p = np.array(self.waves)[row].T
+            found += A * np.sin(w * x + p)
+        return found
+
+    def polynomials(self) -> NDArray:
+        """Coefficients of all pieces, (pieces, COEFFICIENTS)."""
+        found = np.zeros((len(self.pieces), COEFFICIENTS))
+        for row, coefficients in zip(found, self.pieces, strict=True):
+            row[:len(coefficients)] = coefficients
+        return found
+
     def of_piece(self, k: int, t: float) -> NDArray:
         """Value and two rates of a piece, also outside its interval."""
         x, polynomial = t - self.times[k], np.polynomial.Polynomial(self.pieces[k])
@@ -129,6 +149,7 @@ def with_corners(function: Callable[[float], float], corners: Sequence[float]) -
     """
     remedy = f"corners are {inputs.shown(corners)}: give a list of times"
     times = np.unique(inputs.vector(corners, "corners", remedy=remedy))
+    inputs.function(function, "function", "give a function of time")
     return History(functions=(compile_history(function, LOAD),), corners=tuple(times.tolist()))
 
 
