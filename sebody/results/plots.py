@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.results.result import Result
@@ -64,6 +65,7 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     InputError
         See `check_picture`; unknown nodes.
     """
+    inputs.instance(result, "result", Result, "give the Result of a run")
     check_picture(path)
     start, end = _spatial(result[f"{base}.position"]), _spatial(result[f"{tip}.position"])
     title, rates = _rates(result, base, tip)

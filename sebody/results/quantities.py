@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
@@ -42,6 +43,7 @@ def look_up(recording: Recording, name: str) -> NDArray:
     InputError
         A name that nothing has, or a quantity its owner does not have.
     """
+    inputs.name(name, "name of a quantity")
     if name in OF_MODEL:
         return OF_MODEL[name](recording)
     owner, _, quantity = name.rpartition(".")
