@@ -7,7 +7,7 @@ import pytest
 
 from sebody import InputError, Model, Result, SimulationError, simulate
 from sebody.results import save_picture
-from sebody.results.quantities import OF_MODEL, OWNERS, look_up
+from sebody.results.quantities import OF_MODEL, OWNERS
 from sebody.scenes import four_bar, heavy_top, hinged_beam, squeezer
 
 
@@ -43,7 +43,7 @@ def answers(result):
              for quantity in kind.quantities]
     for name in ["nothing.position", *OF_MODEL, *names]:
         try:
-            found[name] = look_up(result, name)
+            found[name] = result[name]
         except InputError as error:
             found[name] = str(error)
     return found
