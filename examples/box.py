@@ -45,7 +45,7 @@ def build(layout: str = "small", modes: int = 6, elements: int = 4) -> Scene:
     model.fix("base", "position")
     model.force("tip", (0.2, 1.0, -0.6), PUSH)
     return Scene("box", "box of members with eight translation-only corners, on a spherical joint",
-                 model, h=0.005, t_end=2.0)
+                 model, h=0.005, t_end=20.0)
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ ROOMS = {
     "scenes": {"sebody", "fem", "reduction", "results"},
     "studies": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly",
                 "results", "analysis", "scenes"},
-    "cli": {"kernels", "results", "analysis", "scenes", "studies"},
+    "cli": {"kernels", "sebody", "results", "analysis", "scenes", "studies"},
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}
