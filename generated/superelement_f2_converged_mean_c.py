@@ -74,7 +74,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("n", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("n", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "6009f3eef845"     # hash of sebody/kernels, which this file was made for
+ROOM = "6b6bbd1e3460"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

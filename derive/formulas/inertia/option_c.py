@@ -352,6 +352,7 @@ def _derivative(form: sp.Expr, quantity: Quantity) -> sp.Matrix:
 INERTIA = InertiaOption(
     InertiaTraits(
         "the displacement field of the body, with slaved load modes (option C)", material=True,
+        field=True,
         constants=(
             Part("sizes", (2,), "slaved coordinates, resultants of second order"),
             Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
