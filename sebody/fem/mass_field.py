@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass
 
-import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
 
 @dataclass(frozen=True, eq=False)
 class MassField:
-    """Points of mass; the kinetic energy is ``sum_pq m_pq v_p . v_q / 2 + sum_p w_p . J_p w_p / 2``.
+    """Points of mass: ``T = sum_pq m_pq v_p . v_q / 2 + sum_p w_p . J_p w_p / 2``.
 
     An FE mass matrix alone does not tell what turning the body does to its inertia: consistent
     masses of beams, for one, couple nodal rotations to displacements between the nodes. Where the
