@@ -125,8 +125,8 @@ class InertiaInvariants:
         whole = np.eye(len(self.Mbar))
         whole[:len(by), :len(by)] = by
         return replace(
-            self, origin=rotation @ self.origin, c0=rotation @ self.c0, S1=rotation @ self.S1 @ whole.T,
-            J0=axes @ self.J0 @ axes.T, g=axes @ self.g @ whole.T,
+            self, origin=rotation @ self.origin, c0=rotation @ self.c0,
+            S1=rotation @ self.S1 @ whole.T, J0=axes @ self.J0 @ axes.T, g=axes @ self.g @ whole.T,
             h=np.einsum("ka,lb,abm,nm->kln", axes, axes, self.h, whole, optimize=True),
             K=np.einsum("ka,mi,aij,nj->kmn", axes, whole, self.K, whole, optimize=True),
             J2=np.einsum("ka,lb,mi,abij,nj->klmn", axes, axes, whole, self.J2, whole,
