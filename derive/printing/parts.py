@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from sebody.derive.printing.expressions import indented
-from sebody.kernels.layout import Part
+from sebody.kernels.layout import Counts, Part, axes_of
 
 
 def table(parts: Iterable[Part], levels: int = 0) -> str:
@@ -23,7 +23,20 @@ def _part(part: Part) -> str:
 
 def chain(parts: tuple[Part, ...], planar: bool) -> list[str]:
     """Pointers to the constants of a superelement, one after the other."""
-    known = {"D": 2 if planar else 3}
+    known = axes_of(planar)
     starts = ["constants, index[first + AT_CONSTANTS]"]
     starts += [f"{part.name}, {part.expression(known)}" for part in parts[:-1]]
-    return [f"{part.name} = at({start})" for part, start in zip(parts, starts, strict=True)]
+    lines = []
+    for part, start in zip(parts, starts, strict=True):
+        lines.append(f"{part.name} = at({start})")
+        if part.name == "sizes":        # of all parts that follow
+            lines += _counts(known)
+    return lines
+
+
+def _counts(known: Counts) -> list[str]:
+    """Counts of option C: slaved coordinates, resultants, and what follows from them."""
+    blocks = known["blocks"]
+    return ["slaved, resultants = int(sizes[0]), int(sizes[1])", "N = n + slaved",
+            f"quadratic, slaving, stressing = {blocks}*N, slaved*n, resultants*n",
+            f"hn, hN, deep = padded(n), padded(N), padded(N + {known['lines'] - known['pairs']})"]

@@ -16,6 +16,7 @@ from sebody.assembly.contracts import (
     index_row,
     positions_of,
 )
+from sebody.assembly.floating import floating_constants
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
@@ -142,13 +143,15 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     origin = body.alpha @ points
     of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
     damping = {} if reduced.damping is None else {"C": reduced.damping}
+    floating = {} if body.inertia != "c" else floating_constants(reduced.invariants.about(origin))
     filled = _filled(len(reduced.mass) - reduced.modes,
                      (reduced.stiffness, reduced.mass, *damping.values()))
     return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
             "alpha_rs": body.alpha_r, "X": points - origin, "S": reduced.stiffness,
             "M": reduced.mass, "mass_columns": of_translations, "mass_rows": of_translations.T,
             "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
-            "full": [filled], "masses": [reduced.total_mass], **damping}
+            "full": [filled], "masses": [reduced.total_mass], **damping,
+            **floating}
 
 
 def _filled(boundary: int, matrices: Iterable[NDArray]) -> int:

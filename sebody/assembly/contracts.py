@@ -120,8 +120,10 @@ def positions_of(element: Element) -> int:
 def counts_of(body: Superelement) -> Counts:
     """The counts that sizes of a superelement's rows are products of."""
     reduced = body.body
+    extra = reduced.invariants if body.inertia == "c" else None
     return superelement_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
-                               reduced.planar, _width(body))
+                               reduced.planar, _width(body), extra.slaved if extra else 0,
+                               extra.resultants if extra else 0)
 
 
 def _width(body: Superelement) -> int:

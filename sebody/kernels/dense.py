@@ -29,7 +29,19 @@ def columns_times(typingctx, A, x, out, rows, columns):
 
 
 @intrinsic
-def _add_columns_times(typingctx, A, x, out, rows, columns, height):
+def block_times(typingctx, A, x, out, rows, columns, height):
+    """``out = A x`` of the first `rows` of some columns that are `height` numbers apart."""
+    floats = types.CPointer(types.float64)
+
+    def codegen(context, builder, sig, args):
+        _multiply(builder, *args, False)
+        return context.get_dummy_value()
+
+    return types.void(floats, floats, floats, *[types.int64] * 3), codegen
+
+
+@intrinsic
+def add_block_times(typingctx, A, x, out, rows, columns, height):
     """``out += A x`` of the first `rows` of some columns that are `height` numbers apart."""
     floats = types.CPointer(types.float64)
 
@@ -50,9 +62,57 @@ def arrow_times(A, x, out, n, filled):
     columns_times(A, x, out, n, filled)
     if filled < n:
         height = padded(n)
-        _add_columns_times(at(A, filled * height), at(x, filled), out, filled, n - filled, height)
+        add_block_times(at(A, filled * height), at(x, filled), out, filled, n - filled, height)
         for k in range(filled, n):
             out[k] += A[k * height + k] * x[k]
+
+
+@intrinsic
+def rows_times(typingctx, A, x, out, rows, columns, height):
+    """``out_k = a_k . x`` with columns a_k that are `height` numbers apart.
+
+    Vectors are read to their padding, where those of A are zero and `x` is finite.
+    """
+    floats = types.CPointer(types.float64)
+
+    def codegen(context, builder, sig, args):
+        _dot(builder, *args, False)
+        return context.get_dummy_value()
+
+    return types.void(floats, floats, floats, *[types.int64] * 3), codegen
+
+
+@intrinsic
+def add_rows_times(typingctx, A, x, out, rows, columns, height):
+    """``out_k += a_k . x``; see `rows_times`."""
+    floats = types.CPointer(types.float64)
+
+    def codegen(context, builder, sig, args):
+        _dot(builder, *args, True)
+        return context.get_dummy_value()
+
+    return types.void(floats, floats, floats, *[types.int64] * 3), codegen
+
+
+def _dot(builder, A, x, out, rows, columns, height, add):
+    """Vector operations for products of columns with a vector."""
+    word = ir.IntType(64)
+    vector = ir.VectorType(ir.DoubleType(), LANES)
+    total = cgutils.alloca_once(builder, vector)
+    last = _whole_vectors(builder, rows)
+    with cgutils.for_range_slice(builder, word(0), columns, word(1)) as (column, _):
+        builder.store(ir.Constant(vector, [0.0] * LANES), total)
+        first = builder.mul(column, height)
+        with cgutils.for_range_slice(builder, word(0), last, word(LANES)) as (row, _):
+            product = builder.fmul(_load(builder, A, builder.add(first, row), vector),
+                                   _load(builder, x, row, vector), flags=("contract",))
+            builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
+        parts = builder.load(total)
+        result = builder.extract_element(parts, ir.IntType(32)(0))
+        for lane in range(1, LANES):
+            result = builder.fadd(result, builder.extract_element(parts, ir.IntType(32)(lane)))
+        place = builder.gep(out, [column])
+        builder.store(builder.fadd(builder.load(place), result) if add else result, place)
 
 
 def _multiply(builder, A, x, out, rows, columns, height, add):
@@ -150,6 +210,20 @@ def _broadcast(builder, number, vector):
     lane = builder.insert_element(undefined, number, ir.IntType(32)(0))
     lanes = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
     return builder.shuffle_vector(lane, undefined, lanes)
+
+
+@compiled
+def clear(row, count):
+    """Zeros."""
+    for k in range(count):
+        row[k] = 0.0
+
+
+@compiled
+def scale(row, factor, count):
+    """Numbers times a factor."""
+    for k in range(count):
+        row[k] *= factor
 
 
 @compiled

@@ -10,6 +10,7 @@ N_POSITIONS   nodes of the element that keep their position
 N_ROTATIONS   nodes that keep their rotation
 D             coordinates of a position: 3, in a plane 2
 n             unknowns of the element
+N             with the coordinates that follow them, in option C
 ============  ======================================================================================
 """
 
@@ -251,14 +252,36 @@ SUPERELEMENT_CONSTANTS = (
     Part("full", (1,), "leading rows and columns of S, M and C that are not diagonal"),
     Part("masses", (1,), "mass"),
 )
+MOST_SLAVED = 12        # coordinates that may follow the unknowns: load modes of three
+# translations, three rotations and six products of angular velocities
+MARGIN = MOST_SLAVED + 6    # what scratch rows of option C have beyond n: these, a force, a moment
 DAMPING_CONSTANTS = (Part("C", ("n", "n"), "reduced damping", columns=True),)
 
 
-def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int
-                        ) -> dict[str, int]:
+def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int,
+                        slaved: int = 0, resultants: int = 0) -> dict[str, int]:
     """The counts that sizes of a superelement's rows are products of."""
-    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, "D": 2 if planar else 3,
-            "n": unknowns}
+    N = unknowns + slaved
+    axes = axes_of(planar)
+    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, **axes, "n": unknowns, "N": N,
+            "resultants": resultants, "quadratic": axes["blocks"] * N,
+            "slaving": slaved * unknowns, "stressing": resultants * unknowns}
+
+
+def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: int) -> int:
+    """Scratch memory of a superelement's kernel: rows, and squares of as many rows."""
+    longest = max(unknowns + MARGIN * (work_squares > 0), 9 * rotations)
+    return (work_rows + work_squares * (unknowns + MARGIN)) * whole_vectors(longest)
+
+
+def axes_of(planar: bool) -> dict[str, int]:
+    """The counts that follow from the space: of a position, a rotation, a symmetric matrix.
+
+    ``lines`` are a first moment, a rotation and an inertia for each coordinate, ``blocks`` an
+    inertia and two rotations.
+    """
+    D, turns, pairs = (2, 1, 1) if planar else (3, 3, 6)
+    return {"D": D, "pairs": pairs, "lines": D + turns + pairs, "blocks": pairs + 2 * turns}
 
 
 def first_rotation(positions: int, planar: bool) -> int:

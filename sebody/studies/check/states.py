@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
-from sebody.kernels.abi import Arguments, call_kernel, padded
+from sebody.kernels.abi import Arguments, call_kernel
 from sebody.kernels.layout import (
     AT_POSITIONS,
     AT_ROTATIONS,
@@ -25,6 +25,7 @@ from sebody.kernels.layout import (
     Row,
     first_mode,
     first_rotation,
+    scratch_size,
     superelement_counts,
 )
 from sebody.kernels.pipeline import compiled
@@ -150,8 +151,14 @@ def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Ar
         T=np.tile(np.eye(3).ravel(), max(case.n_rotations, 1)), loads=case.loads,
         coefficients=np.array([*coefficients, *case.field], dtype=float), forces=np.zeros(n),
         matrices=np.zeros(n * n),
-        work=np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(case.n_rotations, 1)))),
+        work=np.zeros(scratch(case)),
         energies=np.zeros(POWERS + 1))
+
+
+def scratch(case: Case) -> int:
+    """Scratch memory of a kernel; elements have no squares."""
+    squares = getattr(case.module, "WORK_SQUARES", 0)
+    return scratch_size(case.module.WORK_ROWS, squares, case.n, max(case.n_rotations, 1))
 
 
 def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)
