@@ -9,6 +9,7 @@ from scipy.linalg import block_diag, eigh
 
 from sebody.errors import InputError
 from sebody.reduction import checks
+from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 
 
@@ -75,6 +76,9 @@ class ReducedBody:
             checks.check_matrix("damping", damping, names)
             self._store("damping", (damping + damping.T) / 2)
             checks.check_damping(self.damping, rigid, names)
+        if self.invariants is not None:
+            check_invariants(self.invariants, self.stiffness, self.mass,
+                             self.rigid_modes_about(self.invariants.origin), names)
 
     def _store(self, name: str, array: NDArray) -> None:
         object.__setattr__(self, name, _read_only(array))

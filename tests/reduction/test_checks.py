@@ -85,6 +85,7 @@ def test_verdict_does_not_depend_on_units(body):
         stiffness=body.stiffness / grid,
         mass=body.mass / grid,
         coordinates=1e3 * body.coordinates,
+        invariants=None,
     )
     # the reduced mass has the rounding of its condensation, EPS times a condition of 2e4
     assert_allclose(in_millimetres.centre_of_mass, [5e4, 4e4, 3e4], rtol=1e-10)
