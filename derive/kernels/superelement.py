@@ -39,6 +39,7 @@ from sebody.derive.symbolic.steps import (
 from sebody.kernels.layout import Part
 from sebody.kernels.names import superelement_name
 
+
 class Formulas(NamedTuple):
     """Steps at node level, the same for every layout."""
 
