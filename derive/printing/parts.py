@@ -40,7 +40,7 @@ def chain(parts: tuple[Part, ...], planar: bool) -> list[str]:
 
 def _counts(known: Counts) -> list[str]:
     """Counts of option C: slaved coordinates, resultants, and what follows from them."""
-    blocks = known["blocks"]
-    return ["slaved, resultants = int(sizes[0]), int(sizes[1])", "N = n + slaved",
-            f"quadratic, slaving = {blocks}*N, slaved*n",
-            f"hn, hN, deep = padded(n), padded(N), padded(N + {known['lines'] - known['pairs']})"]
+    motions = known["lines"] - known["pairs"]
+    return ["slaved, resultants = int(sizes[0]), int(sizes[1])", f"free = n - {motions}",
+            "N = free + slaved", f"quadratic, slaving = {known['blocks']}*N, slaved*free",
+            f"hn, hN, deep = padded(free), padded(N), padded(N + {motions})"]

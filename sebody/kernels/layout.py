@@ -10,7 +10,8 @@ N_POSITIONS   nodes of the element that keep their position
 N_ROTATIONS   nodes that keep their rotation
 D             coordinates of a position: 3, in a plane 2
 n             unknowns of the element
-N             with the coordinates that follow them, in option C
+free          local coordinates that determine the others in their frame, in option C
+N             these, and the coordinates that follow them
 ============  ======================================================================================
 """
 
@@ -261,11 +262,12 @@ DAMPING_CONSTANTS = (Part("C", ("n", "n"), "reduced damping", columns=True),)
 def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int,
                         slaved: int = 0, resultants: int = 0) -> dict[str, int]:
     """The counts that sizes of a superelement's rows are products of."""
-    N = unknowns + slaved
     axes = axes_of(planar)
-    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, **axes, "n": unknowns, "N": N,
-            "resultants": resultants, "quadratic": axes["blocks"] * N,
-            "slaving": slaved * unknowns, "stressing": resultants * unknowns}
+    free = unknowns - (axes["lines"] - axes["pairs"])
+    N = free + slaved
+    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, **axes, "n": unknowns,
+            "free": free, "N": N, "resultants": resultants, "quadratic": axes["blocks"] * N,
+            "slaving": slaved * free, "stressing": resultants * free}
 
 
 def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: int) -> int:

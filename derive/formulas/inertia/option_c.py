@@ -10,13 +10,17 @@ Everything is conjugate to y, to the origin and to the rotation of the frame, as
 Gravity is the acceleration of the origin that is not felt. Contractions of constants with
 coordinates are products of stacked matrices; the matrix has local tangents, made once, and then
 three products a column.
+
+In every frame the local coordinates obey as many linear conditions as the frame has motions, such
+as ``sum alpha_j u_j = 0`` and ``sum alpha_j psi_j = 0``: some coordinates determine the others. All
+constants are of these alone, and so are the forces, since only motions that obey the conditions do
+work.
 """
 
 import sympy as sp
 
 from sebody.derive.formulas import gravity
 from sebody.derive.formulas.damping import ADDED, FRICTION, rates
-from sebody.derive.formulas.elastic import ELASTIC
 from sebody.derive.formulas.frames.frame import Frame, origin_stage
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import slaved
@@ -29,7 +33,6 @@ from sebody.derive.symbolic.steps import (
     Call,
     Damping,
     Repeat,
-    Shift,
     Solve,
     Stage,
     Step,
@@ -41,6 +44,7 @@ from sebody.kernels.layout import InertiaTraits, Part, axes_of
 
 PLACE, RATE, SECOND = "Lz", "Lv", "La"      # local tangents, and the rows they multiply
 GEOMETRY = sp.Symbol("c_geo")
+ROWS = ("y", "z"), ("eta", "zd"), ("etad", "zdd")     # local coordinates and those of the products
 
 
 def option_c(q: Quantities) -> Inertia:
@@ -65,9 +69,9 @@ class _Floating:
         self.D, self.pairs, self.lines = counts["D"], counts["pairs"], counts["lines"]
         self.turns = self.lines - self.D - self.pairs
         self.force_rows = f"N + {self.D + self.turns}"
-        self.felt = self.of_element("felt", "vector", "etad", "N + {k}")
-        self.turning = self.of_element("turning", "axial", "etad", "N + {k}", self.D)
-        self.spin = self.of_element("spin", "axial", "eta", "N + {k}")
+        self.felt = self.of_element("felt", "vector", "zdd", "N + {k}")
+        self.turning = self.of_element("turning", "axial", "zdd", "N + {k}", self.D)
+        self.spin = self.of_element("spin", "axial", "zd", "N + {k}")
         self.on_origin = self.of_element("Rt", "vector", "local", "N + {k}")
         self.on_frame = self.of_element("Rr", "axial", "local", "N + {k}", self.D)
         self.sums, self.integrals = self.make_sums()
@@ -135,7 +139,8 @@ class _Floating:
                            adds=((q.F, self.on_origin.symbols), (q.W, self.on_frame.symbols)),
                            continues=True),
             energy=self.energy(), prepared=self.prepared(),
-            held=(*slaved.varied(), self.tangent_times("block_times", PLACE, "dy", "N")),
+            held=(gathered("dy", "dz"), *slaved.varied(),
+                  self.tangent_times("block_times", PLACE, "dz", "N")),
             column=self.column)
 
     def frame_motion(self) -> tuple[Step, ...]:
@@ -158,8 +163,7 @@ class _Floating:
         """Local forces: integrals, then factors of the columns, then their products."""
         factors = [*self.factors("moment_columns"), *self.factors("products")]
         return (
-            *slaved.slaving(), ELASTIC, *self.stress.forces,
-            Damping("structural damping", (FRICTION, ADDED)), *self.contractions(),
+            *(gathered(*rows) for rows in ROWS), *slaved.slaving(), *self.contractions(),
             self.integrals, self.factor_of_tangents,
             Stage("factors of the force on a coordinate", "element", sets=tuple(factors)),
             Call("force on the coordinates: first moments, couplings, inertia at rest",
@@ -170,12 +174,14 @@ class _Floating:
                  ("products", "by_products", "local", "N", str(self.pairs + 3 * self.turns), "hN"),
                  ("products", "by_products", "local")),
             Call("inertia force of deformation, Mbar zddot", "add_block_times",
-                 ("Mz", "etad", "local", "N", "N", "hN"), ("Mz", "etad", "local"), 1),
+                 ("Mz", "zdd", "local", "N", "N", "hN"), ("Mz", "zdd", "local"), 1),
+            Call("elastic force, Sbar y", "add_block_times",
+                 ("Sz", "z", "local", "free", "free", "hn"), ("Sz", "z", "local"), 1),
+            *self.stress.forces, slaved.pulled_back("local"),
             Stage("force and moment on the frame", "element",
                   sets=((self.on_origin, field.on_origin(self.motion, self.sums)),
                         (self.on_frame, field.on_frame(self.motion, self.sums)))),
-            Shift("forces conjugate to y, inertia included", "s", "local", "+"),
-            slaved.on_coordinates("local", "s"))
+            scattered("local", "s"), Damping("structural damping", (FRICTION, ADDED)))
 
     def contractions(self) -> tuple[Call, ...]:
         """Products of the constants with z and its rates, and of those with them again."""
@@ -183,7 +189,7 @@ class _Floating:
         blocks = f"{pairs + 2 * turns}*hN"
         sums = [Call(f"first moments and couplings of {row}", "columns_times",
                      ("moment_rows", row, out, str(lines), "N"), ("moment_rows", row, out))
-                for row, out in (("y", "line0"), ("eta", "line1"), ("etad", "line2"))]
+                for row, out in (("z", "line0"), ("zd", "line1"), ("zdd", "line2"))]
 
         def dots(row, out, first, columns):
             vectors = f"at(products, {first}*hN)" if first else "products"
@@ -192,13 +198,13 @@ class _Floating:
         return (
             *sums,
             Call("J2_kl z and K_k^T z", "block_times",
-                 ("quadratics", "y", "products", f"{pairs + turns}*hN", "N", blocks),
-                 ("quadratics", "y", "products"), (pairs + turns)),
+                 ("quadratics", "z", "products", f"{pairs + turns}*hN", "N", blocks),
+                 ("quadratics", "z", "products"), pairs + turns),
             Call("K_k^T zdot and (K_k^T - K_k) zdot", "block_times",
-                 (f"at(quadratics, {pairs}*hN)", "eta", f"at(products, {pairs + turns}*hN)",
-                  f"{2 * turns}*hN", "N", blocks), ("quadratics", "eta", "products"), 2 * turns),
-            dots("y", "product0", 0, pairs), dots("eta", "product1", 0, pairs + 2 * turns),
-            dots("etad", "product2", pairs, turns))
+                 (f"at(quadratics, {pairs}*hN)", "zd", f"at(products, {pairs + turns}*hN)",
+                  f"{2 * turns}*hN", "N", blocks), ("quadratics", "zd", "products"), 2 * turns),
+            dots("z", "product0", 0, pairs), dots("zd", "product1", 0, pairs + 2 * turns),
+            dots("zdd", "product2", pairs, turns))
 
     def factors(self, array: str) -> tuple:
         """Coefficients of the columns of an array in the force on a coordinate."""
@@ -212,21 +218,19 @@ class _Floating:
     def prepared(self) -> tuple[Step, ...]:
         """Local tangents, once for all columns."""
         q, N = self.q, "N"
-        clear = [Call("nothing behind a column's coordinates", "clear", (f"at({row}, n)", "hN - n"),
-                      (row,)) for row in ("dy", "deta", "detad")]
         pairs, turns = self.pairs, self.turns
         blocks = f"{pairs + 2 * turns}*hN"
         more = (Call("J2_kl zdot", "block_times",
-                     ("quadratics", "eta", "more", f"{pairs}*hN", N, blocks),
-                     ("quadratics", "eta", "more")),
+                     ("quadratics", "zd", "more", f"{pairs}*hN", N, blocks),
+                     ("quadratics", "zd", "more")),
                 Call("K_k^T zddot and (K_k^T - K_k) zddot", "block_times",
-                     (f"at(quadratics, {pairs}*hN)", "etad", f"at(more, {pairs}*hN)",
-                      f"{2 * turns}*hN", N, blocks), ("quadratics", "etad", "more")))
+                     (f"at(quadratics, {pairs}*hN)", "zdd", f"at(more, {pairs}*hN)",
+                      f"{2 * turns}*hN", N, blocks), ("quadratics", "zdd", "more")))
         one = self.of_element("one", "scalar", "ones")
         followed = q.space.quantity("followed", "scalar", "slaved", "by_followers")
-        on_eta = q.space.quantity("on_eta", "scalar", "slaved", "local", "n + b")
+        on_eta = q.space.quantity("on_eta", "scalar", "slaved", "local", "free + b")
         return (
-            *clear, slaved.stacked("etad", "Za"), *second_derivatives(q), *more,
+            slaved.stacked("zdd", "Za"), *second_derivatives(q), *more,
             Stage("factors of the local tangents", "element",
                   sets=(*self.block_factors("by_place", "j", "u", "", GEOMETRY),
                         *self.block_factors("by_rate", "", "v", "w"), (one, sp.ones(1, 1)))),
@@ -239,12 +243,13 @@ class _Floating:
                     ("by z", "quadratics", blocks, "by_place", PLACE, str(pairs + 2 * turns)),
                     ("by zdot", "quadratics", blocks, "by_rate", RATE, str(pairs + 2 * turns)),
                     ("by zddot", "Mz", "hN", "ones", SECOND, "1")))),
-            Repeat("elastic and slaved parts", "j", "n", (
+            Repeat("elastic and slaved parts", "j", "free", (
                 *(Call(title, "add_block_times",
-                       (f"at({source}, j*{step})", by, f"at({PLACE}, j*deep)", "n", count, "hn"),
+                       (f"at({source}, j*{step})", by, f"at({PLACE}, j*deep)", "free", count,
+                        "hn"),
                        (source, by, PLACE))
                   for title, source, step, by, count in (
-                      ("stiffness", "S", "hn", "ones", "1"),
+                      ("stiffness", "Sz", "hn", "ones", "1"),
                       ("forces on eta", "followers", "slaved*hn", "by_followers", "slaved"))),
                 *self.stress.stiffness)),
             *self.borders())
@@ -301,11 +306,11 @@ class _Floating:
         """A column of the matrix, once everything local has moved."""
         q = self.q
         steps: list[Step] = [chain.step(step) for step in velocities]
-        steps += [*slaved.rates_varied(), chain.stage(self.factor_of_tangents),
-                  self.tangent_times("add_block_times", RATE, "deta", f"N + {self.turns}"),
-                  self.tangent_times("add_block_times", SECOND, "detad", self.force_rows),
-                  Shift("differential: forces conjugate to y", "ds", "dlocal", ""),
-                  slaved.on_coordinates("dlocal", "ds"),
+        steps += [*(gathered("d" + row, "d" + to) for row, to in ROWS), *slaved.rates_varied(),
+                  chain.stage(self.factor_of_tangents),
+                  self.tangent_times("add_block_times", RATE, "dzd", f"N + {self.turns}"),
+                  self.tangent_times("add_block_times", SECOND, "dzdd", self.force_rows),
+                  slaved.pulled_back("dlocal"), scattered("dlocal", "ds"),
                   Damping("differential: structural damping",
                           (FRICTION.differential(), ADDED.differential()))]
         for quantity in (q.f, q.m, q.fm, self.on_origin, self.on_frame):
@@ -322,19 +327,31 @@ class _Floating:
         moment = self.sums.c + q.mass.symbols[0] * R0.T * x0
         return (
             Call("momentum of deformation, Mbar zdot", "block_times",
-                 ("Mz", "eta", "moved", "N", "N", "hN"), ("Mz", "eta", "moved")),
-            Call("twice its energy", "rows_times", ("moved", "eta", "squares", "N", "1", "hN"),
-                 ("moved", "eta", "squares")),
-            Call("elastic force, Sbar y", "arrow_times", ("S", "y", "moved", "n", "filled"),
-                 ("S", "y", "moved")),
+                 ("Mz", "zd", "moved", "N", "N", "hN"), ("Mz", "zd", "moved")),
+            Call("twice its energy", "rows_times", ("moved", "zd", "squares", "N", "1", "hN"),
+                 ("moved", "zd", "squares")),
+            Call("elastic force, Sbar y", "block_times",
+                 ("Sz", "z", "moved", "free", "free", "hn"), ("Sz", "z", "moved")),
             Call("twice its energy", "rows_times",
-                 ("moved", "y", "at(squares, 1)", "n", "1", "hn"), ("moved", "y", "squares")),
+                 ("moved", "z", "at(squares, 1)", "free", "1", "hn"), ("moved", "z", "squares")),
             Stage("energies, momentum and its moment about the origin", "element", sets=(
                 (q.kinetic, sp.Matrix([field.kinetic_energy(self.motion, self.sums,
                                                             squared.symbols[0])])),
                 (q.strain, elastic.symbols / 2 + sp.Matrix([self.stress.energy])),
                 (q.potential, sp.Matrix([-moment.dot(gamma)])), (q.P, R0 * pushed),
                 (q.H, cross(x0, R0 * pushed) + R0 * turned))))
+
+
+def gathered(row: str, to: str) -> Call:
+    """The coordinates that determine the others."""
+    return Call(f"coordinates that determine the others, of {row}", "gather",
+                (row, "kept", to, "free", "hN"), (row, "kept", to))
+
+
+def scattered(row: str, to: str) -> Call:
+    """Forces conjugate to them; those on the others are zero."""
+    return Call("forces conjugate to y", "scatter", (row, "kept", to, "free", "n"),
+                (row, "kept", to))
 
 
 def second_derivatives(q: Quantities) -> tuple[Values, ...]:
@@ -357,6 +374,7 @@ INERTIA = InertiaOption(
         field=True,
         constants=(
             Part("sizes", (2,), "slaved coordinates, resultants of second order"),
+            Part("kept", ("free",), "local coordinates that determine the others in the frame"),
             Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
             Part("J0", ("pairs",), "moments of inertia at rest"),
             Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
@@ -364,8 +382,9 @@ INERTIA = InertiaOption(
             Part("quadratics", ("N", "quadratic"),
                  "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
             Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
-            Part("followers", ("n", "slaving"), "column by column of Q_b", columns=True),
+            Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
+            Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
             Part("lam", ("resultants",), "eigenvalues of the resultants"),
-            Part("E", ("n", "resultants"), "their eigenvectors", columns=True),
-            Part("Ghat", ("n", "stressing"), "column by column of Ghat_e", columns=True))),
+            Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
+            Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True))),
     option_c)

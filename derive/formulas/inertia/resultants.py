@@ -34,19 +34,21 @@ def resultants(space: Space) -> Resultants:
     E = space.quantity("E_j", "scalar", "resultant", "E", "e*hn + j").symbols[0]
     Gy = space.quantity("Gy_j", "scalar", "resultant", "Gy", "e*hn + j").symbols[0]
     by_E, by_Gy, of_E, of_Gy = map(of_one, ("by_E", "by_Gy", "of_E", "of_Gy"))
-    size = ("n", "resultants", "hn")
+    size = ("free", "resultants", "hn")
     return Resultants(
         forces=(
             Call("Ghat_e y, all e", "block_times",
-                 ("Ghat", "y", "Gy", "resultants*hn", "n", "resultants*hn"), ("Ghat", "y", "Gy")),
-            Call("E_e . y", "rows_times", ("E", "y", "along", *size), ("E", "y", "along")),
-            Call("y . Ghat_e y", "rows_times", ("Gy", "y", "twice", *size), ("Gy", "y", "twice")),
+                 ("Ghat", "z", "Gy", "resultants*hn", "free", "resultants*hn"),
+                 ("Ghat", "z", "Gy")),
+            Call("E_e . y", "rows_times", ("E", "z", "along", *size), ("E", "z", "along")),
+            Call("y . Ghat_e y", "rows_times", ("Gy", "z", "twice", *size), ("Gy", "z", "twice")),
             Stage("stress resultants: factors of their gradients", "resultant",
                   sets=((by_E, sp.Matrix([half])), (by_Gy, sp.Matrix([r + half / lam]))),
                   adds=((extra, sp.Matrix([half * (r + half / (2 * lam))])),)),
-            Call("their forces", "add_block_times", ("E", "by_E", "s", *size), ("E", "by_E", "s")),
+            Call("their forces", "add_block_times", ("E", "by_E", "local", *size),
+                 ("E", "by_E", "local")),
             Call("and those of the geometric stiffness", "add_block_times",
-                 ("Gy", "by_Gy", "s", *size), ("Gy", "by_Gy", "s"))),
+                 ("Gy", "by_Gy", "local", *size), ("Gy", "by_Gy", "local"))),
         energy=extra.symbols[0],
         stiffness=(Stage("factors of the column", "resultant",
                          sets=((of_E, sp.Matrix([Gy])), (of_Gy, sp.Matrix([E + Gy / lam])))),

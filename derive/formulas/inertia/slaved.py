@@ -9,13 +9,13 @@ import sympy as sp
 from sebody.derive.symbolic.steps import Call
 from sebody.derive.symbolic.variation import along, check_same, differential
 
-_BY_Y = ("n", "slaved", "hn")       # products of the vectors Q_b y with vectors like y
+_BY_Y = ("free", "slaved", "hn")    # products of the vectors Q_b y with vectors like y
 
 
 def stacked(vector: str, out: str) -> Call:
     """``Q_b x`` of all b, one after the other."""
     return Call(f"Q_b {vector}, all b", "block_times",
-                ("followers", vector, out, "slaved*hn", "n", "slaved*hn"),
+                ("followers", vector, out, "slaved*hn", "free", "slaved*hn"),
                 ("followers", vector, out))
 
 
@@ -23,39 +23,37 @@ def slaving() -> tuple[Call, ...]:
     """Values and rates behind the coordinates y and theirs."""
     _prove()
     return (
-        *(Call("no numbers beyond the coordinates", "clear", (f"at({row}, n)", "hN - n"),
-               (row,)) for row in ("y", "eta", "etad")),
-        stacked("y", "Zq"), stacked("eta", "Zd"),
-        _dots("eta_b = y . Q_b y / 2", "Zq", "y", "y"),
-        Call("half of it", "scale", ("at(y, n)", "0.5", "slaved"), ("y",)),
-        _dots("their rates, Q_b y . ydot", "Zq", "eta", "eta"),
-        _dots("their accelerations, Q_b y . yddot", "Zq", "etad", "etad"),
-        _dots("and ydot . Q_b ydot", "Zd", "eta", "etad", "add_"))
+        stacked("z", "Zq"), stacked("zd", "Zd"),
+        _dots("eta_b = y . Q_b y / 2", "Zq", "z", "z"),
+        Call("half of it", "scale", ("at(z, free)", "0.5", "slaved"), ("z",)),
+        _dots("their rates, Q_b y . ydot", "Zq", "zd", "zd"),
+        _dots("their accelerations, Q_b y . yddot", "Zq", "zdd", "zdd"),
+        _dots("and ydot . Q_b ydot", "Zd", "zd", "zdd", "add_"))
 
 
 def varied() -> tuple[Call, ...]:
     """Differentials of the values; of y first."""
-    return (_dots("differential: eta_b", "Zq", "dy", "dy"),)
+    return (_dots("differential: eta_b", "Zq", "dz", "dz"),)
 
 
 def rates_varied() -> tuple[Call, ...]:
     """Differentials of the rates."""
-    return (_dots("differential: rates of eta", "Zq", "deta", "deta"),
-            _dots("of Q_b y", "Zd", "dy", "deta", "add_"),
-            _dots("differential: accelerations of eta", "Zq", "detad", "detad"),
-            _dots("of ydot, twice", "Zd", "deta", "detad", "add_"),
-            _dots("again", "Zd", "deta", "detad", "add_"),
-            _dots("of Q_b y", "Za", "dy", "detad", "add_"))
+    return (_dots("differential: rates of eta", "Zq", "dzd", "dzd"),
+            _dots("of Q_b y", "Zd", "dz", "dzd", "add_"),
+            _dots("differential: accelerations of eta", "Zq", "dzdd", "dzdd"),
+            _dots("of ydot, twice", "Zd", "dzd", "dzdd", "add_"),
+            _dots("again", "Zd", "dzd", "dzdd", "add_"),
+            _dots("of Q_b y", "Za", "dz", "dzdd", "add_"))
 
 
-def on_coordinates(force: str, out: str) -> Call:
-    """Forces on eta, pulled back to y."""
+def pulled_back(force: str) -> Call:
+    """Forces on eta, added to those on y in the same row."""
     return Call("forces on eta, pulled back", "add_block_times",
-                ("Zq", f"at({force}, n)", out, "n", "slaved", "hn"), ("Zq", force, out))
+                ("Zq", f"at({force}, free)", force, "free", "slaved", "hn"), ("Zq", force))
 
 
 def _dots(title: str, vectors: str, vector: str, out: str, add: str = "") -> Call:
-    return Call(title, f"{add}rows_times", (vectors, vector, f"at({out}, n)", *_BY_Y),
+    return Call(title, f"{add}rows_times", (vectors, vector, f"at({out}, free)", *_BY_Y),
                 (vectors, vector, out))
 
 

@@ -1,13 +1,15 @@
 """Generic bodies of option C, and their energies from the definition."""
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Mapping
 
-from sebody.assembly.floating import floating_constants
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.assembly.floating import determining, frame_conditions, packed
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import axes_of
 from sebody.reduction.invariants import InertiaInvariants
-from sebody.studies.check.definitions import frame_rotation, local_coordinates
+from sebody.studies.check.definitions import frame_rotation, frame_traits, local_coordinates
 from sebody.studies.check.states import Case, along_path, constants_of, derivative
 
 FOLLOWING = (3, 2), (0, 0)      # slaved coordinates and resultants, by state: gamma and plain C
@@ -37,35 +39,43 @@ def generic_invariants(random: np.random.Generator, n: int, slaved: int, resulta
         1.0 + random.uniform(size=resultants), any_of(n, resultants), symmetric(resultants, n, n))
 
 
-def generic_constants(random: np.random.Generator, case: Case, mass: float) -> dict[str, NDArray]:
-    """Values of the constants of option C by name."""
-    return floating_constants(generic_invariants(random, case.n, case.slaved, case.resultants,
-                                                 case.planar, mass))
+def generic_constants(random: np.random.Generator, case: Case,
+                      values: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
+    """Values of the constants of option C by name, with the conditions of the frame."""
+    free = case.counts["free"]
+    A = random.normal(size=(free, free))
+    conditions = frame_conditions(frame_traits(case.module), case.counts, values)
+    return packed(generic_invariants(random, free, case.slaved, case.resultants, case.planar,
+                                     values["masses"][0]), A @ A.T, determining(conditions)[0])
 
 
-def without_resultants(case: Case) -> dict[str, NDArray]:
-    """Constants of a body whose resultants have no energy."""
+def without_stiffness(case: Case) -> dict[str, NDArray]:
+    """Constants of a body without strain energy."""
     constants = constants_of(case)
-    return {name: np.zeros_like(constants[name]) for name in ("E", "Ghat")}
+    return {name: np.zeros_like(constants[name]) for name in ("Sz", "E", "Ghat")}
 
 
 def strain(case: Case, y: NDArray) -> float:
-    """``V`` of the resultants beyond ``y^T Sbar y / 2``."""
+    """``V`` of the local coordinates."""
     constants = constants_of(case)
+    y = _free(case, y)
     lam, E, Ghat = constants["lam"], constants["E"], _stack(constants["Ghat"], case.resultants)
     linear = lam * (E.T @ y)
     s = linear + np.einsum("i,eij,j->e", y, Ghat, y) / 2
-    return float(np.sum((s**2 - linear**2) / (2 * lam)))
+    return float(y @ constants["Sz"] @ y / 2 + np.sum((s**2 - linear**2) / (2 * lam)))
 
 
 def stiffness(case: Case, y: NDArray) -> NDArray:
-    """Second derivatives of the strain energy by the local coordinates."""
-    constants = constants_of(case)
+    """Second derivatives of the strain energy by the local coordinates, (n, n)."""
+    constants, whole = constants_of(case), np.zeros((case.n, case.n))
+    kept, y = constants["kept"].astype(int), _free(case, y)
     lam, E, Ghat = constants["lam"], constants["E"], _stack(constants["Ghat"], case.resultants)
     gradients = lam * E + np.einsum("eij,j->ie", Ghat, y)
     s = lam * (E.T @ y) + np.einsum("i,eij,j->e", y, Ghat, y) / 2
-    return (constants["S"] - E @ np.diag(lam) @ E.T + gradients / lam @ gradients.T
-            + np.einsum("e,eij->ij", s / lam, Ghat))
+    whole[np.ix_(kept, kept)] = (constants["Sz"] - E @ np.diag(lam) @ E.T
+                                 + gradients / lam @ gradients.T
+                                 + np.einsum("e,eij->ij", s / lam, Ghat))
+    return whole
 
 
 def first_moment(case: Case, y: NDArray) -> NDArray:
@@ -93,8 +103,13 @@ def kinetic(case: Case) -> float:
                  + w_kept @ J @ w_kept / 2 + w_kept @ B @ zd + zd @ constants["Mz"] @ zd / 2)
 
 
+def _free(case: Case, y: NDArray) -> NDArray:
+    return y[constants_of(case)["kept"].astype(int)]
+
+
 def _whole(case: Case, y: NDArray) -> NDArray:
-    """``z = (y, eta)``."""
+    """``z = (y, eta)``, of the coordinates that determine the others."""
+    y = _free(case, y)
     Q = _stack(constants_of(case)["followers"], case.slaved)
     return np.r_[y, np.einsum("i,bij,j->b", y, Q, y) / 2]
 

@@ -34,7 +34,7 @@ from sebody.studies.check.floating import (
     kinetic,
     stiffness,
     strain,
-    without_resultants,
+    without_stiffness,
 )
 from sebody.studies.check.states import (
     LIMIT,
@@ -118,7 +118,7 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     if is_floating(case):
         slaved, resultants = FOLLOWING[seed % len(FOLLOWING)]
         case = case._replace(slaved=slaved, resultants=resultants)
-        values |= generic_constants(random, case, values["masses"][0])
+        values |= generic_constants(random, case, values)
     return with_constants(case, values | _declared(case, values, random))
 
 
@@ -147,7 +147,7 @@ def without(case: Case, what: str) -> Case:
     name = {"stiffness": "S", "inertia": "M"}[what]
     without_it = changed(case, **{name: np.zeros((case.n, case.n))})
     if what == "stiffness" and is_floating(case):
-        without_it = changed(without_it, **without_resultants(case))
+        without_it = changed(without_it, **without_stiffness(case))
     return without_it._replace(field=0 * case.field) if what == "stiffness" else without_it
 
 
@@ -192,7 +192,7 @@ def energies(case: Case) -> float:
     computed = evaluate(case, ENERGY)[2]
     d, V = case.dimension, y @ constants["S"] @ y / 2
     if is_floating(case):
-        T, V, moment = kinetic(case), V + strain(case, y), first_moment(case, y)
+        T, V, moment = kinetic(case), strain(case, y), first_moment(case, y)
     else:
         yd = local_velocities(case)
         T = yd @ constants["M"] @ yd / 2
