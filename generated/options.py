@@ -44,6 +44,7 @@ INERTIA_OPTIONS = {
         field=True,
         constants=(
             Part("sizes", (2,), "slaved coordinates, resultants of second order"),
+            Part("kept", ("free",), "local coordinates that determine the others in the frame"),
             Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
             Part("J0", ("pairs",), "moments of inertia at rest"),
             Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
@@ -51,10 +52,11 @@ INERTIA_OPTIONS = {
             Part("quadratics", ("N", "quadratic"),
                  "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
             Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
-            Part("followers", ("n", "slaving"), "column by column of Q_b", columns=True),
+            Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
+            Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
             Part("lam", ("resultants",), "eigenvalues of the resultants"),
-            Part("E", ("n", "resultants"), "their eigenvectors", columns=True),
-            Part("Ghat", ("n", "stressing"), "column by column of Ghat_e", columns=True),
+            Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
+            Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
         ),
     ),
 }
