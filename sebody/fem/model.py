@@ -70,7 +70,9 @@ class FEModel:
                     f"{self.dofs_per_node} DOFs each need ({size}, {size})"
                 )
             object.__setattr__(self, name, matrix)
-        if self.mass_field is None and self.node_dofs == SOLID:
+        if self.mass_field is not None:
+            self.mass_field.check(size, dimension)
+        elif self.node_dofs == SOLID:
             object.__setattr__(self, "mass_field", nodal_field(self.mass, coordinates))
 
     @property

@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from sebody.fem.model import FEModel
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.boundary import BoundaryItem, RigidFace, boundary_of
 from sebody.reduction.clamped import ClampedInterior
-from sebody.reduction.constants import invariants_of
+from sebody.reduction.constants import with_constants
 
 _ROUNDING = 1e-11  # ratio of stiffness to its summands below which stiffness is rounding error
 
@@ -94,9 +94,7 @@ def craig_bampton(
                                            select)
     stiffness, mass = component.project(fe_model.stiffness, fe_model.mass)
     body = ReducedBody(stiffness, mass, edge.coordinates, edge.keeps, len(component.omega_squared))
-    if fe_model.mass_field is None:
-        return body
-    return replace(body, invariants=invariants_of(fe_model, edge, component.basis, interior, body))
+    return with_constants(body, fe_model, edge, component.basis, interior)
 
 
 def component_modes(
