@@ -65,14 +65,15 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
     Part("moment_rows", ("lines", "N"), "their transpose", columns=True),
-    Part("quadratics", ("N", "quadratic"), "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
+    Part("quadratics", ("N", "quadratic"),
+         "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
     Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
     Part("followers", ("n", "slaving"), "column by column of Q_b", columns=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
     Part("E", ("n", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("n", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "6009f3eef845"     # hash of sebody/kernels, which this file was made for
+ROOM = "848fdd752f75"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -154,7 +155,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         sizes = at(masses, 1)
         slaved, resultants = int(sizes[0]), int(sizes[1])
         N = n + slaved
-        quadratic, slaving, stressing = 3*N, slaved*n, resultants*n
+        quadratic, slaving = 3*N, slaved*n
         hn, hN, deep = padded(n), padded(N), padded(N + 3)
         c0 = at(sizes, 2)
         J0 = at(c0, 2)
@@ -281,11 +282,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[0] = R0_cos*field_x + R0_sin*field_y
         gamma[1] = R0_cos*field_y - R0_sin*field_x
         # no numbers beyond the coordinates
-        clear(at(y, n), padded(N) - n)
+        clear(at(y, n), hN - n)
         # no numbers beyond the coordinates
-        clear(at(eta, n), padded(N) - n)
+        clear(at(eta, n), hN - n)
         # no numbers beyond the coordinates
-        clear(at(etad, n), padded(N) - n)
+        clear(at(etad, n), hN - n)
         # Q_b y, all b
         block_times(followers, y, Zq, slaved*hn, n, slaved*hn)
         # Q_b eta, all b
@@ -491,11 +492,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             # nothing behind a column's coordinates
-            clear(at(dy, n), padded(N) - n)
+            clear(at(dy, n), hN - n)
             # nothing behind a column's coordinates
-            clear(at(deta, n), padded(N) - n)
+            clear(at(deta, n), hN - n)
             # nothing behind a column's coordinates
-            clear(at(detad, n), padded(N) - n)
+            clear(at(detad, n), hN - n)
             # Q_b etad, all b
             block_times(followers, etad, Za, slaved*hn, n, slaved*hn)
             # J2_kl zdot
@@ -527,7 +528,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # stiffness
                 add_block_times(at(S, j*hn), ones, at(Lz, j*deep), n, 1, hn)
                 # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), n, slaved, hn)
+                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), n,
+                                slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]

@@ -10,7 +10,6 @@ from sebody.derive.symbolic.rotations import inverse_tangent_times, inverse_tang
 from sebody.derive.symbolic.steps import Product, cross
 from sebody.derive.symbolic.variation import check_same, coefficients
 
-
 ELASTIC = Product("elastic force, s = Sbar y", "S", "y", "s")
 
 

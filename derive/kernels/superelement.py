@@ -17,8 +17,13 @@ from sebody.derive.formulas.gravity import TAKEN_OFF, Gravity, gravity, lineariz
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
 from sebody.derive.formulas.kinematics import local_displacement, local_velocity
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.kernels.layouts import Layout, check_frame
-from sebody.derive.kernels.options import FRAMES, INERTIA_OPTIONS, frame_traits
+from sebody.derive.kernels.layouts import Layout, check_frame, check_inertia
+from sebody.derive.kernels.options import (
+    FRAMES,
+    INERTIA_OPTIONS,
+    frame_traits,
+    inertia_traits,
+)
 from sebody.derive.symbolic.linearize import Linearizer
 from sebody.derive.symbolic.rotations import stumpff, tangent_inverse
 from sebody.derive.symbolic.spaces import Space
@@ -33,6 +38,7 @@ from sebody.derive.symbolic.steps import (
 )
 from sebody.kernels.layout import Part
 from sebody.kernels.names import superelement_name
+
 
 class Formulas(NamedTuple):
     """Steps at node level, the same for every layout."""
@@ -92,9 +98,10 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
     Raises
     ------
     LayoutError
-        If the layout cannot carry the frame.
+        If the layout cannot carry the frame, or the inertia option cannot have it.
     """
     check_frame(layout, frame, frame_traits())
+    check_inertia(frame, inertia, frame_traits(), inertia_traits())
     options = FRAMES[frame], INERTIA_OPTIONS[inertia]
     formulas = node_formulas(layout.planar, *options)
     return Superelement(layout, frame, inertia, options, formulas,

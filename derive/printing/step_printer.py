@@ -221,7 +221,8 @@ def _by_triplet(quantity: Quantity) -> bool:
 
 def _index(place: str, k: int) -> str:
     """An index without products and sums with zero."""
-    return place.format(k=k).replace("0*hN + ", "").removesuffix(" + 0") if k == 0 else place.format(k=k)
+    index = place.format(k=k)
+    return index if k else index.replace("0*hN + ", "").removesuffix(" + 0")
 
 
 def _sum(symbol: sp.Symbol, value: sp.Expr) -> Entry:

@@ -11,7 +11,7 @@ def floating_constants(invariants: InertiaInvariants) -> dict[str, ArrayLike]:
     i = invariants
     axes = len(i.J0)
     pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)) if axes == 3 else ((0, 0),)
-    moments = np.vstack([i.S1, i.g, *(i.h[k, l] + i.h[l, k] for k, l in pairs)])
+    moments = np.vstack([i.S1, i.g, *(i.h[r, c] + i.h[c, r] for r, c in pairs)])
     across = i.K.transpose(0, 2, 1)
     blocks = [*(i.J2[pair] for pair in pairs), *across, *(across - i.K)]
     return {"sizes": [i.slaved, i.resultants], "c0": i.c0, "J0": [i.J0[pair] for pair in pairs],

@@ -30,7 +30,9 @@ class System(Arrays):
     index               index rows of all elements, see `layout.INDEX`
     constants           constants of all elements
     g_unknown           coordinate of every entry of `State.g`
-    J_entry             entry of the matrix for every entry of `State.J`
+    J_place             entries of element matrices that are summed, from the start of each matrix:
+                        not those of fixed coordinates, nor zeros between internal modes
+    J_entry             entry of the matrix for each of them
     ------------------  ----------------------------------------------------------------------------
     iteration matrix: by columns, or in the blocks of a sparse elimination
     ------------------------------------------------------------------------------------------------
@@ -52,8 +54,9 @@ class System(Arrays):
     rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
                         solved for in: start and width of the matrix, row, axes of the unknown, of
                         the matrix
-    summands            (elements, 5) start and width of the element matrix, first and last + 1 row
-                        of `rotated_blocks`, row of `Links.elements` or -1
+    summands            (elements, 7) start and width of the element matrix, first and last + 1 row
+                        of `rotated_blocks`, row of `Links.elements` or -1, first and last + 1 of
+                        `J_place`
     linked              (1,) 1 where bodies that rotate against each other are coupled
     ------------------  ----------------------------------------------------------------------------
     power ports
@@ -86,6 +89,7 @@ class System(Arrays):
     index: NDArray
     constants: NDArray
     g_unknown: NDArray
+    J_place: NDArray
     J_entry: NDArray
     rows: NDArray
     columns: NDArray

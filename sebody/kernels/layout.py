@@ -116,7 +116,7 @@ class Row(NamedTuple):
             shape = tuple(counts[s] if isinstance(s, str) else s for s in part.shape)
             piece = row[self.slices(counts)[part.name]]
             if part.columns:
-                values[part.name] = piece.reshape(shape[1], -1)[:, :shape[0]].T
+                values[part.name] = piece.reshape(shape[1], whole_vectors(shape[0]))[:, :shape[0]].T
             else:
                 values[part.name] = piece.reshape(shape)
         return values
@@ -311,6 +311,8 @@ class InertiaTraits(NamedTuple):
 
     summary: str
     material: bool                  # T in material angular velocities; else in those of the frame
+    modes_apart: bool = False       # internal modes meet in S, M and C alone, nowhere else
+    field: bool = False             # T of the displacement field, from integrals over the body
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 
 

@@ -11,6 +11,7 @@ every integral by its gradient. The integrals are additive, so what holds for on
 shapes holds for all bodies (`prove`).
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import sympy as sp
@@ -122,9 +123,14 @@ def _vector(name: str) -> sp.Matrix:
 
 def _inertia(name: str) -> sp.Matrix:
     found = {}
-    for k, l in PAIRS:
-        found[k, l] = found[l, k] = sp.Symbol(f"{name}_{k}{l}")
-    return sp.Matrix(3, 3, lambda k, l: found[k, l])
+    for r, c in PAIRS:
+        found[r, c] = found[c, r] = sp.Symbol(f"{name}_{r}{c}")
+    return sp.Matrix(3, 3, lambda r, c: found[r, c])
+
+
+def _symmetric(name: str) -> sp.Matrix:
+    a, b, c = sp.symbols(f"{name}_:3")
+    return sp.Matrix([[a, b], [b, c]])
 
 
 class _Body:
@@ -136,18 +142,18 @@ class _Body:
         self.g = sp.Matrix(3, 2, sp.symbols("g_:6"))
         self.K = [sp.Matrix(2, 2, sp.symbols(f"K{k}_:4")) for k in range(3)]
         self.h = [_inertia(f"h{i}") for i in range(2)]
-        self.J2 = {(k, l): sp.Matrix(2, 2, lambda i, j, k=k, l=l:
-                                     sp.Symbol(f"J2_{min(k, l)}{max(k, l)}_{min(i, j)}{max(i, j)}"))
-                   for k in range(3) for l in range(3)}
-        self.M = sp.Matrix(2, 2, lambda i, j: sp.Symbol(f"M_{min(i, j)}{max(i, j)}"))
+        self.J2 = {}
+        for r, c in PAIRS:
+            self.J2[r, c] = self.J2[c, r] = _symmetric(f"J2_{r}{c}")
+        self.M = _symmetric("M")
         self.c0, self.J0 = _vector("c0"), _inertia("J0")
         self.in_time = along(self.z, self.zd) | along(self.zd, self.zdd)
 
     def sums(self) -> Sums:
         z, zd, zdd = self.z, self.zd, self.zdd
         B = sp.Matrix(3, 2, lambda k, i: self.g[k, i] + (z.T * self.K[k])[i])
-        J = self.J0 + sp.Matrix(3, 3, lambda k, l: sum(self.h[i][k, l] * z[i] for i in range(2))
-                                + z.dot(self.J2[k, l] * z))
+        J = (self.J0 + self.h[0] * z[0] + self.h[1] * z[1]
+             + sp.Matrix(3, 3, lambda r, c: z.dot(self.J2[r, c] * z)))
         return Sums(self.c0 + self.S1 * z, self.S1 * zd, self.S1 * zdd, J,
                     differential(J, self.in_time), B * zd, B * zdd,
                     differential(B, self.in_time) * zd)
@@ -159,11 +165,12 @@ class _Body:
             return sp.Matrix([((self.K[k].T - sign * self.K[k]) * x)[i] for k in range(3)])
 
         def squares(x):
-            return sp.Matrix(3, 3, lambda k, l: (self.J2[k, l] * x)[i])
+            return sp.Matrix(3, 3, lambda r, c: (self.J2[r, c] * x)[i])
         return Row(self.S1[:, i], self.g[:, i], self.h[i], squares(z), coupled(z, 0),
                    coupled(zd, 0), coupled(zd, 1), squares(zd), coupled(zdd, 0), coupled(zdd, 1))
 
 
+@cache
 def prove() -> None:
     """Energy of a mass point, forces by Hamilton's principle, gradients of the sums.
 
@@ -194,15 +201,15 @@ def _prove_energy() -> None:
     for k in range(3):
         values |= along(body.K[k], sp.Matrix(2, 2, lambda i, j, k=k:
                                              m * cross(e[k], shapes[i]).dot(shapes[j])))
-    for k, l in PAIRS:
-        values[body.J0[k, l]] = m * cross(e[k], X).dot(cross(e[l], X))
+    for r, c in PAIRS:
+        values[body.J0[r, c]] = m * cross(e[r], X).dot(cross(e[c], X))
         for i in range(2):
-            values[body.h[i][k, l]] = m * (cross(e[k], X).dot(cross(e[l], shapes[i]))
-                                           + cross(e[l], X).dot(cross(e[k], shapes[i])))
+            values[body.h[i][r, c]] = m * (cross(e[r], X).dot(cross(e[c], shapes[i]))
+                                           + cross(e[c], X).dot(cross(e[r], shapes[i])))
             for j in range(i, 2):
-                values[body.J2[k, l][i, j]] = m * (
-                    cross(e[k], shapes[i]).dot(cross(e[l], shapes[j]))
-                    + cross(e[l], shapes[i]).dot(cross(e[k], shapes[j]))) / 2
+                values[body.J2[r, c][i, j]] = m * (
+                    cross(e[r], shapes[i]).dot(cross(e[c], shapes[j]))
+                    + cross(e[c], shapes[i]).dot(cross(e[r], shapes[j]))) / 2
     T = kinetic_energy(motion, body.sums(), body.zd.dot(body.M * body.zd)).xreplace(values)
     v = motion.velocity + cross(motion.spin, X + A * body.z) + A * body.zd
     check_same("kinetic energy of a mass point", sp.Matrix([T]), sp.Matrix([m * v.dot(v) / 2]))

@@ -212,8 +212,8 @@ class _Floating:
     def prepared(self) -> tuple[Step, ...]:
         """Local tangents, once for all columns."""
         q, N = self.q, "N"
-        clear = [Call("nothing behind a column's coordinates", "clear",
-                      (f"at({row}, n)", "padded(N) - n"), (row,)) for row in ("dy", "deta", "detad")]
+        clear = [Call("nothing behind a column's coordinates", "clear", (f"at({row}, n)", "hN - n"),
+                      (row,)) for row in ("dy", "deta", "detad")]
         pairs, turns = self.pairs, self.turns
         blocks = f"{pairs + 2 * turns}*hN"
         more = (Call("J2_kl zdot", "block_times",
@@ -257,14 +257,15 @@ class _Floating:
             kind = getattr(self.quantities, like).kind
             factor = self.of_element(f"{out}_{first}", kind, out, first=first)
             zero = sp.zeros(3, 3 if kind == "inertia" else 1)
-            value = scale * _derivative(self.force, getattr(self.quantities, name)) if name else zero
+            value = (scale * _derivative(self.force, getattr(self.quantities, name)) if name
+                     else zero)
             found.append((factor, value))
             first += len(factor.kept)
         return found
 
     def borders(self) -> tuple[Stage, ...]:
         """Force and moment on the frame by the coordinates; everything by the frame's motion."""
-        q, frame = self.q, field.Motion
+        q = self.q
         totals = {"Rt": (field.on_origin, "vector", 0), "Rr": (field.on_frame, "axial", self.D)}
         rows, corner, columns = [], [], []
         for change, array in zip(field.gradients(self.row), (PLACE, RATE, SECOND), strict=True):
@@ -279,7 +280,8 @@ class _Floating:
             symbols = q.Om0d.symbols if vector is self.turning else vector.symbols
             for c, symbol in enumerate([s for s in symbols if isinstance(s, sp.Symbol)]):
                 at = f"(N + {first + c})*deep" if first + c else "N*deep"
-                column = q.space.quantity(f"{array}_{symbol}", "scalar", "shape", array, f"{at} + i")
+                column = q.space.quantity(f"{array}_{symbol}", "scalar", "shape", array,
+                                          f"{at} + i")
                 columns.append((column, sp.Matrix([self.force.diff(symbol)])))
                 for name, (force, kind, below) in totals.items():
                     entry = self.of_element(f"{name}_{array}_{symbol}", kind, array,
@@ -352,6 +354,7 @@ def _derivative(form: sp.Expr, quantity: Quantity) -> sp.Matrix:
 INERTIA = InertiaOption(
     InertiaTraits(
         "the displacement field of the body, with slaved load modes (option C)", material=True,
+        field=True,
         constants=(
             Part("sizes", (2,), "slaved coordinates, resultants of second order"),
             Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),

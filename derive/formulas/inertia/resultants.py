@@ -10,8 +10,8 @@ from typing import NamedTuple
 import sympy as sp
 
 from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Call, Repeat, Stage, Step
-from sebody.derive.symbolic.variation import along, check_same, differential
+from sebody.derive.symbolic.steps import Call, Stage, Step
+from sebody.derive.symbolic.variation import check_same
 
 
 class Resultants(NamedTuple):

@@ -23,7 +23,7 @@ def slaving() -> tuple[Call, ...]:
     """Values and rates behind the coordinates y and theirs."""
     _prove()
     return (
-        *(Call("no numbers beyond the coordinates", "clear", (f"at({row}, n)", "padded(N) - n"),
+        *(Call("no numbers beyond the coordinates", "clear", (f"at({row}, n)", "hN - n"),
                (row,)) for row in ("y", "eta", "etad")),
         stacked("y", "Zq"), stacked("eta", "Zd"),
         _dots("eta_b = y . Q_b y / 2", "Zq", "y", "y"),

@@ -67,6 +67,8 @@ class Case(NamedTuple):
     frames: NDArray
     field: NDArray = np.zeros(3)
     loads: NDArray = np.zeros(3)    # amplitude and two rates
+    slaved: int = 0             # of option C: coordinates that follow the others
+    resultants: int = 0         # and stress resultants of second order
 
     @property
     def planar(self) -> bool:
@@ -101,7 +103,8 @@ class Case(NamedTuple):
     @property
     def counts(self) -> dict[str, int]:
         """The counts that sizes of the constants are products of."""
-        return superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n)
+        return superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n,
+                                   self.slaved, self.resultants)
 
     @property
     def row(self) -> Row:
@@ -144,7 +147,7 @@ def _call(address, task, stride, width, arguments):
 
 def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Arguments:
     """Arguments of the kernel of a case for one element, results zero."""
-    n, module = case.n, case.module
+    n = case.n
     return Arguments(
         index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
         references=case.reference, frames=case.frames.copy(),
@@ -220,6 +223,28 @@ def tangent_mass(case: Case) -> float:
     columns = [evaluate(case._replace(a=case.a + d), RESIDUAL)[0]
                - evaluate(case, RESIDUAL)[0] for d in np.eye(case.n)]
     return difference(evaluate(case, TANGENT, (1, 0, 0, 1, 1))[1], np.array(columns).T)
+
+
+def mode_coupling(case: Case) -> float:
+    """Largest force on a mode by the motion of another one, relative to all it causes.
+
+    From differences of the force, with S, M and C without entries between modes. Assembly leaves
+    these entries of the matrix out where the inertia option declares `modes_apart`.
+    """
+    inner = np.arange(case.n) >= case.first_mode
+    between = inner[:, None] & inner & ~np.eye(case.n, dtype=bool)
+    constants = constants_of(case)
+    case = changed(case, **{name: np.where(between, 0.0, constants[name])
+                            for name in ("S", "M", "C") if name in constants})
+    motions = (lambda d: moved(case, d, 1.0), lambda d: case._replace(v=case.v + d),
+               lambda d: case._replace(a=case.a + d))
+    sizes = [0.0]
+    for motion in motions:
+        for d, others in zip(np.eye(case.n)[inner], between[inner], strict=True):
+            changes = derivative(lambda s, d=d, motion=motion: evaluate(motion(s * d),
+                                                                        RESIDUAL)[0], 0.1)
+            sizes.append(np.abs(changes[others]).max() / np.abs(changes).max())
+    return float(max(sizes))
 
 
 def momenta(case: Case) -> NDArray:
