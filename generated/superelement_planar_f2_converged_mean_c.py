@@ -73,7 +73,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("n", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("n", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "848fdd752f75"     # hash of sebody/kernels, which this file was made for
+ROOM = "975b6f0fe44c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
