@@ -8,7 +8,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.fem import frame
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -20,8 +20,19 @@ PUSH = [(0.0, 0.0), (0.3, 40.0), (0.6, 0.0)]
 
 
 def build(layout: str = "small", modes: int = 6, elements: int = 4) -> Scene:
-    """The scene; `layout` is 'small' (corners without rotation) or 'full'."""
-    keep = {"small": "translation", "full": "full"}[layout]
+    """The scene.
+
+    Parameters
+    ----------
+    layout : str
+        'small': corners without rotation; 'full': with it.
+    modes : int
+        Internal modes.
+    elements : int
+        Finite elements a member.
+    """
+    keeps = {"small": "translation", "full": "full"}
+    keep = keeps[inputs.choice(layout, "layout", keeps)]
     edges = [(i, j) for i, j in combinations(range(8), 2)
              if np.count_nonzero(CORNERS[i] != CORNERS[j]) == 1]
     fe_model = frame(CORNERS, edges, SECTION, elements)

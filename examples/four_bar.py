@@ -4,7 +4,7 @@ One degree of freedom. Each rocker and coupler is one angle; a coupler hangs on 
 rocker by a rigid link, and two multipliers close each loop.
 """
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.scenes.scene import Scene
 
 GRAVITY = (0.0, -9.81)
@@ -12,7 +12,14 @@ INERTIA = 1.0 / 12.0        # of a rod of mass and length one about its middle
 
 
 def build(loops: int = 2) -> Scene:
-    """The scene: upright, its first joint moving with velocity one (IFToMM benchmark A02)."""
+    """The scene: upright, its first joint moving with velocity one (IFToMM benchmark A02).
+
+    Parameters
+    ----------
+    loops : int
+        Number of four-bar loops side by side.
+    """
+    loops = inputs.integer(loops, "loops", least=1)
     model = Model(planar=True)
     model.gravity(GRAVITY)
     for k in range(loops + 1):

@@ -5,7 +5,7 @@ The load node needs no rotation: three unknowns less, and nothing lost (`layout=
 
 import numpy as np
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.fem import frame
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -16,8 +16,19 @@ PUSH = [(0.0, 0.0), (0.5, 60.0), (1.0, 0.0)]
 
 
 def build(layout: str = "small", modes: int = 6, elements: int = 10) -> Scene:
-    """The scene; `layout` is 'small' (load node without rotation) or 'full'."""
-    keep = {"small": "translation", "full": "full"}[layout]
+    """The scene.
+
+    Parameters
+    ----------
+    layout : str
+        'small': load node without rotation; 'full': with it.
+    modes : int
+        Internal modes.
+    elements : int
+        Finite elements a leg.
+    """
+    keeps = {"small": "translation", "full": "full"}
+    keep = keeps[inputs.choice(layout, "layout", keeps)]
     fe_model = frame(POINTS, [(0, 1), (1, 2)], SECTION, elements)
     body = craig_bampton(fe_model, [(0, "full"), (1, "full"), (2, keep)], modes)
     model = Model()

@@ -7,7 +7,7 @@ spin, and the two layouts drop different parts).
 
 import numpy as np
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.fem import straight_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -18,9 +18,20 @@ TORQUE = [(0.0, 0.0), (0.2, 1.0), (0.8, 1.0), (1.0, 0.0)]
 
 
 def build(layout: str = "small", modes: int = 8, elements: int = 16) -> Scene:
-    """The scene; `layout` is 'small' (gear seat without position) or 'full'."""
-    keep = {"small": "rotation", "full": "full"}[layout]
-    half = elements // 2
+    """The scene.
+
+    Parameters
+    ----------
+    layout : str
+        'small': gear seat without position; 'full': with it.
+    modes : int
+        Internal modes.
+    elements : int
+        Finite elements, an even number.
+    """
+    keeps = {"small": "rotation", "full": "full"}
+    keep = keeps[inputs.choice(layout, "layout", keeps)]
+    half = inputs.integer(elements / 2, "half the number of elements", least=1)
     start, end = np.zeros(3), np.array([LENGTH, 0.0, 0.0])
     fe_model = straight_beam(start, end, SECTION, elements)
     body = craig_bampton(fe_model, [(0, "full"), (elements, "full"), (half, keep)], modes)

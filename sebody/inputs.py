@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from numbers import Real
 from pathlib import Path
 from stat import S_ISDIR
+from types import UnionType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -109,8 +110,8 @@ def array(value: Any, what: str, shape: Sequence[int | None], *,
     shape = tuple(shape)
     if remedy is None:
         remedy = f"give {_size(shape)} finite number{'s' * (shape != (1,))}"
-    found = numbers(value)
-    if found is None or (len(shape) == 1 and not _fits(found, shape)):
+    found = reals(value, what, remedy)
+    if len(shape) == 1 and not _fits(found, shape):
         raise refusal(what, value, remedy)
     if not _fits(found, shape):
         raise InputError(f"{what} has shape {found.shape}: {remedy}")
@@ -122,9 +123,10 @@ def array(value: Any, what: str, shape: Sequence[int | None], *,
     return found
 
 
-def vector(value: ArrayLike, what: str, size: int | None = None) -> NDArray:
+def vector(value: ArrayLike, what: str, size: int | None = None, *,
+           remedy: str | None = None) -> NDArray:
     """Finite real numbers in a row: so many, or any number of them; see `array`."""
-    return array(value, what, (size,))
+    return array(value, what, (size,), remedy=remedy)
 
 
 def rotation(value: ArrayLike, what: str, dimension: int = 3) -> NDArray:
@@ -135,7 +137,7 @@ def rotation(value: ArrayLike, what: str, dimension: int = 3) -> NDArray:
     InputError
         Another shape, axes that are not orthonormal, or a reflection.
     """
-    remedy = f"give a proper rotation matrix of shape ({dimension}, {dimension})"
+    remedy = f"it must be a proper rotation matrix of shape ({dimension}, {dimension})"
     R = array(value, what, (dimension, dimension), remedy=remedy)
     if not np.abs(R.T @ R - np.eye(dimension)).max() <= ORTHOGONAL or np.linalg.det(R) < 0:
         raise InputError(f"{what} must be a proper rotation matrix of shape ({dimension}, "
@@ -178,13 +180,11 @@ def choice(value: Any, what: str, options: Iterable[Kind], remedy: str | None = 
         same_kind = isinstance(value, str) == isinstance(option, str)
         if same_kind and not isinstance(value, bool) and np.ndim(value) == 0 and value == option:
             return option
-    raise refusal(what, value, remedy or "use " + listed(options))
-
-
-def listed(options: Sequence[object]) -> str:
-    """Options in words."""
-    *most, last = map(str, options)
-    return f"{', '.join(most)} or {last}" if most else last
+    if remedy:
+        raise refusal(what, value, remedy)
+    *most, last = map(repr, options)
+    listed = f"{', '.join(most)} or {last}" if most else last
+    raise InputError(f"{what} {shown(value)} is unknown: use {listed}")
 
 
 def function(value: Any, what: str, remedy: str) -> Callable:
@@ -200,8 +200,8 @@ def function(value: Any, what: str, remedy: str) -> Callable:
     return value
 
 
-def instance(value: Any, what: str, kind: type[Kind], remedy: str) -> Kind:
-    """An object of a class of this package.
+def instance(value: Any, what: str, kind: type[Kind] | UnionType, remedy: str) -> Kind:
+    """An object of a class of this package, or of one of several.
 
     Raises
     ------
@@ -260,11 +260,25 @@ def path(value: Any, what: str, suffixes: Sequence[str] = ()) -> Path:
     return found
 
 
-def numbers(value: Any) -> NDArray | None:
-    """Real numbers as a new array of floats, perhaps not finite; None if they are no such."""
+def reals(value: Any, what: str, remedy: str) -> NDArray:
+    """Real numbers of any shape as a new array of floats, perhaps not finite.
+
+    Raises
+    ------
+    InputError
+        Texts, complex numbers, truth values, rows of different lengths.
+    """
+    found = _numbers(value)
+    if found is None:
+        raise refusal(what, value, remedy)
+    return found
+
+
+def _numbers(value: Any) -> NDArray | None:
+    """An array of floats; None for what cannot be one."""
     try:
         found = value if isinstance(value, np.ndarray) else np.asarray(value, dtype=object)
-        if found.dtype.kind not in "iuf" and not (found.dtype.kind == "O" and found.ndim
+        if found.dtype.kind not in "iuf" and not (found.dtype.kind == "O"
                                                   and all(map(_is_real, found.flat))):
             return None
         return np.array(found, dtype=float)

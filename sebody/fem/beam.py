@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.beam_model import beam_model
 from sebody.fem.model import FEModel
@@ -78,18 +79,14 @@ def frame(
     Raises
     ------
     InputError
-        A member with an unknown point or no length, no element, or `up` along a member.
+        A member with an unknown point or no length, one that is given twice, no element, `up`
+        along a member, or `up` in a plane.
     """
-    points = np.asarray(points, dtype=float)
-    points = _points(points, 2 if points.shape[-1] == 2 else 3)
-    _check_elements(elements)
+    points = inputs.reals(points, "points", "give 2 or 3 finite coordinates for each")
+    points = _points(points, 2 if points.shape[-1:] == (2,) else 3)
+    elements = _count(elements)
     nodes, pairs = list(points), []
-    for member in members:
-        if not all(0 <= point < len(points) for point in member):
-            raise InputError(
-                f"member {member} names an unknown point; there are points 0 to {len(points) - 1}"
-            )
-        first, last = member
+    for first, last in _members(members, len(points)):
         inner = range(len(nodes), len(nodes) + elements - 1)
         nodes.extend(np.linspace(points[first], points[last], elements + 1)[1:-1])
         chain = [first, *inner, last]
@@ -97,29 +94,50 @@ def frame(
     return _beam_model(np.array(nodes), np.array(pairs), section, elements, up)
 
 
+def _members(members: Sequence[tuple[int, int]], points: int) -> list[tuple[int, int]]:
+    """Start and end of each member."""
+    remedy = "give pairs (start, end) of numbers of points"
+    found: list[tuple[int, int]] = []
+    for member in inputs.items(members, "members", remedy):
+        pair = inputs.items(member, "a member", remedy)
+        if len(pair) != 2:
+            raise inputs.refusal("a member", member, remedy)
+        ends = tuple(inputs.integer(point, f"a point of member {member}") for point in pair)
+        if not all(0 <= point < points for point in ends):
+            raise InputError(f"member {member} names an unknown point: there are points 0 to "
+                             f"{points - 1}")
+        if ends in found or ends[::-1] in found:
+            raise InputError(f"member {member} is given twice: leave one out")
+        found.append(ends)
+    if not found:
+        raise InputError(f"members is empty: {remedy}")
+    return found
+
+
 def _line(ends: NDArray, section: AnySection, elements: int, up: ArrayLike | None) -> FEModel:
-    _check_elements(elements)
+    elements = _count(elements)
     nodes = np.linspace(ends[0], ends[1], elements + 1)
     first = np.arange(elements)
     return _beam_model(nodes, np.column_stack([first, first + 1]), section, elements, up)
 
 
 def _points(points: ArrayLike, dimension: int) -> NDArray:
-    points = np.array(points, dtype=float)
-    if points.ndim != 2 or points.shape[1] != dimension or not np.all(np.isfinite(points)):
-        raise InputError(f"points {points.tolist()}: give {dimension} finite coordinates for each")
-    return points
+    remedy = f"give {dimension} finite coordinates for each"
+    return inputs.array(points, "points", (None, dimension), remedy=remedy)
 
 
-def _check_elements(elements: int) -> None:
-    if elements < 1:
-        raise InputError(f"elements is {elements}; a beam needs at least one")
+def _count(elements: int) -> int:
+    return inputs.integer(elements, "elements", least=1)
 
 
 def _beam_model(
     nodes: NDArray, pairs: NDArray, section: AnySection, elements: int, up: ArrayLike | None
 ) -> FEModel:
     """One element for each pair of nodes; `elements` of them in a row make a member."""
+    if up is not None:
+        if nodes.shape[1] == 2:
+            raise InputError("up is for beams in space: a planar beam bends with inertia_z")
+        up = inputs.vector(up, "up", 3)
     sections = [section_at(section, (k + 0.5) / elements) for k in range(elements)]
     members = pairs.reshape(-1, elements, 2)
     lines = np.zeros((len(members), 3))
@@ -139,7 +157,6 @@ def _section_axes(axis: NDArray, up: ArrayLike | None) -> NDArray:
     if up is None:
         vertical = np.hypot(x[0], x[1]) < 1e-6
         up = np.array([0.0, 1.0, 0.0]) if vertical else np.cross([0.0, 0.0, 1.0], x)
-    up = np.asarray(up, dtype=float)
     y = up - (up @ x) * x
     if np.linalg.norm(y) <= 1e-6 * np.linalg.norm(up):
         raise InputError(f"up = {up.tolist()} lies along a beam; choose another direction")

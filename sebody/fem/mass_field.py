@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.errors import InputError
+
 
 @dataclass(frozen=True, eq=False)
 class MassField:
@@ -34,6 +36,20 @@ class MassField:
     mass: sparse.csr_array
     rotation: sparse.csr_array | None = None
     inertia: NDArray | None = None
+
+    def check(self, size: int, dimension: int) -> None:
+        """Raise InputError unless the parts fit a model of `size` DOFs in so many dimensions."""
+        count, angles = len(self.points), 1 if dimension == 2 else 3
+        wanted = {"points": (count, dimension), "translation": (dimension * count, size),
+                  "mass": (count, count), "rotation": (angles * count, size),
+                  "inertia": (count, angles, angles)}
+        for name, shape in wanted.items():
+            part = getattr(self, name)
+            if part is not None and part.shape != shape:
+                raise InputError(f"mass_field.{name} has shape {part.shape}; {count} points of a "
+                                 f"model with {size} DOFs need {shape}")
+        if (self.rotation is None) != (self.inertia is None):
+            raise InputError("mass_field has rotation or inertia without the other; give both")
 
     def matrix(self) -> sparse.csc_array:
         """The FE mass matrix these points make, (n_dofs, n_dofs)."""

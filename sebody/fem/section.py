@@ -3,8 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 
-import numpy as np
-
+from sebody import inputs
 from sebody.errors import InputError
 
 
@@ -109,10 +108,7 @@ class Section:
         for factor in self._shear_factors():
             if factor is not None:
                 _check_number(self, "shear_factor", factor)
-        if not -1 < self.poisson_ratio <= 0.5:
-            raise InputError(
-                f"Section.poisson_ratio is {self.poisson_ratio}; give a value in (-1, 0.5]"
-            )
+        inputs.number(self.poisson_ratio, "Section.poisson_ratio", above=-1, most=0.5)
 
     @property
     def shear_modulus(self) -> float:
@@ -157,8 +153,8 @@ def section_at(section: AnySection, place: float) -> StiffnessSection:
     found = section(place) if callable(section) else section
     if not isinstance(found, (Section, StiffnessSection)):
         raise InputError(
-            f"section {found!r} is none: give a Section, a StiffnessSection or a function of the "
-            "place along the beam, from 0 to 1, that returns one"
+            f"section {inputs.shown(found)} is none: give a Section, a StiffnessSection or a "
+            "function of the place along the beam, from 0 to 1, that returns one"
         )
     return found.stiffnesses
 
@@ -171,10 +167,5 @@ def part_of(section: AnySection, first: float, last: float) -> AnySection:
 
 
 def _check_number(section: object, name: str, value: float, may_be_zero: bool = False) -> None:
-    try:
-        fits = np.isfinite(value) and (value > 0 or may_be_zero and value == 0)
-    except TypeError:
-        fits = False
-    if not fits:
-        wanted = "number >= 0" if may_be_zero else "positive number"
-        raise InputError(f"{type(section).__name__}.{name} is {value}; give a {wanted}")
+    bound = {"least": 0} if may_be_zero else {"above": 0}
+    inputs.number(value, f"{type(section).__name__}.{name}", **bound)

@@ -8,6 +8,7 @@ shear_factor=None)` takes out the shear deformation.
 
 import numpy as np
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.section import Section
 
@@ -31,7 +32,7 @@ def rectangle(height: float, width: float, youngs_modulus: float, poisson_ratio:
     InputError
         Sides or material that no section has.
     """
-    _check_lengths("rectangle", height=height, width=width)
+    _check("rectangle", poisson_ratio, height=height, width=width)
     short, long = sorted((height, width))
     n = np.arange(1, 1000, 2)       # what is left out is 1e-13 of the sum
     series = np.sum(np.tanh(n * np.pi * long / (2 * short)) / n**5.0)
@@ -55,6 +56,7 @@ def circle(radius: float, youngs_modulus: float, poisson_ratio: float, density: 
     InputError
         A radius or material that no section has.
     """
+    _check("circle", poisson_ratio, radius=radius)
     return tube(radius, radius, youngs_modulus, poisson_ratio, density)
 
 
@@ -79,7 +81,7 @@ def tube(radius: float, thickness: float, youngs_modulus: float, poisson_ratio: 
     InputError
         A wall thicker than the radius, lengths or material that no section has.
     """
-    _check_lengths("tube", radius=radius, thickness=thickness)
+    _check("tube", poisson_ratio, radius=radius, thickness=thickness)
     if thickness > radius:
         raise InputError(f"tube: thickness is {thickness}, more than its radius {radius}; give "
                          "the thickness of the wall")
@@ -117,7 +119,7 @@ def i_profile(height: float, width: float, web: float, flange: float, youngs_mod
     InputError
         A web or flanges thicker than there is room, lengths or material that no section has.
     """
-    _check_lengths("i_profile", height=height, width=width, web=web, flange=flange)
+    _check("i_profile", poisson_ratio, height=height, width=width, web=web, flange=flange)
     if not (2 * flange < height and web < width):
         raise InputError(f"i_profile: web {web} and flanges {flange} do not fit into width {width} "
                          f"and height {height}; give thinner walls")
@@ -139,7 +141,7 @@ def _rectangle_factor(poisson_ratio: float) -> float:
     return 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
 
 
-def _check_lengths(shape: str, **lengths: float) -> None:
+def _check(shape: str, poisson_ratio: float, **lengths: float) -> None:
     for name, value in lengths.items():
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(f"{shape}: {name} is {value}; give a positive number")
+        inputs.number(value, f"{shape}: {name}", above=0)
+    inputs.number(poisson_ratio, f"{shape}: poisson_ratio", above=-1, most=0.5)

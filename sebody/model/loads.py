@@ -2,15 +2,15 @@
 
 from collections.abc import Callable, Iterable
 
-import numpy as np
 from numpy.typing import ArrayLike
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.user_functions import compile_force
 from sebody.model.histories import History, clock, history
 from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Node
+from sebody.model.parts import Element, Node, positions, rotations
 
 
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,
@@ -23,11 +23,14 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
     node = known(model, node)
     on = triplet(node, "position")
     constants = {"d": vector(model, direction, f"force on {on.name}")}
-    triplets = (on, triplet(node, "rotation")) if follower else (on,)
+    places = positions(node)
+    if inputs.flag(follower, "follower"):
+        triplet(node, "rotation")
+        places += rotations(node)
     kind = model.kind_of("follower_" * follower + "force")
     course = history(amplitude)
     name = chosen_name(model, name, f"force on {on.name}")
-    return _add(model, Element(name, kind, triplets, constants, history=course))
+    return _add(model, Element(name, kind, places, constants, history=course))
 
 
 def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
@@ -37,12 +40,14 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
 
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
-    on = triplet(known(model, node), "rotation")
+    node = known(model, node)
+    on = triplet(node, "rotation")
     constants = {"d": rotation_vector(model, direction, f"torque on {on.name}")}
+    follower = inputs.flag(follower, "follower")
     kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
     course = history(amplitude)
     name = chosen_name(model, name, f"torque on {on.name}")
-    return _add(model, Element(name, kind, (on,), constants, history=course))
+    return _add(model, Element(name, kind, rotations(node), constants, history=course))
 
 
 def mode_force(model: Mechanism, body: str, mode: int, factor: float,
@@ -52,17 +57,17 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
 
     A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
     """
-    if body not in model.bodies:
+    if not isinstance(body, str) or body not in model.bodies:
         raise InputError(f"superelement {body!r} is unknown: the model has "
                          f"{', '.join(model.bodies) or 'none'}")
     count = model.bodies[body].body.modes
-    if mode not in range(count):
+    mode = inputs.integer(mode, f"mode of superelement {body!r}")
+    if not 0 <= mode < count:
         raise InputError(f"superelement {body!r} has no mode {mode!r}: it has {count}, from 0")
-    if not np.isfinite(factor):
-        raise InputError(f"force on mode {mode} of {body!r} is {factor}: give a finite number")
+    factor = inputs.number(factor, f"force on mode {mode} of {body!r}")
     course = history(amplitude)
     name = chosen_name(model, name, f"force on mode {mode} of {body}")
-    return _add(model, Element(name, "mode_force", (), {"factor": float(factor)}, history=course,
+    return _add(model, Element(name, "mode_force", (), {"factor": factor}, history=course,
                                mode=(body, mode)))
 
 
@@ -83,13 +88,17 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
     InputError
         A function that cannot be compiled, or no nodes.
     """
-    triplets = tuple(triplet(known(model, n), "position") for n in nodes)
-    if not triplets:
+    inputs.name(name, "name of a user force")
+    places = positions(*(known(model, n) for n in inputs.items(
+        nodes, f"nodes of user force {name!r}", "give a list of nodes")))
+    for place in places:
+        triplet(place.node, "position")
+    if not places:
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")
-    address = compile_force(name, function)
+    compiled = compile_force(name, function, model.dimension * len(places))
     name = chosen_name(model, name, "user force")
-    return _add(model, Element(name, "user_force", triplets, {}, history=clock(),
-                               function=address))
+    return _add(model, Element(name, "user_force", places, {}, history=clock(),
+                               function=compiled))
 
 
 def gravity(model: Mechanism, field: ArrayLike) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.reduction.checks import KEEPS
@@ -22,10 +23,25 @@ class RigidFace:
         The boundary node, in FE axes [length].
     nodes : sequence of int
         FE nodes tied to it, with all their DOFs.
+
+    Raises
+    ------
+    InputError
+        No finite point, or no nodes.
     """
 
     point: NDArray
     nodes: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        point = inputs.vector(self.point, "point of a rigid face")
+        remedy = "name the FE nodes tied to it"
+        nodes = tuple(inputs.integer(node, "node of a rigid face", remedy=remedy)
+                      for node in inputs.items(self.nodes, "nodes of a rigid face", remedy))
+        if not nodes:
+            raise InputError(f"a rigid face has no nodes: {remedy}")
+        object.__setattr__(self, "point", point)
+        object.__setattr__(self, "nodes", nodes)
 
 
 BoundaryItem = tuple[int | RigidFace, str]
@@ -77,8 +93,7 @@ def boundary_of(fe_model: FEModel,
     InputError
         Unknown or repeated nodes, or triplets that nodes do not have.
     """
-    pairs = list(items.items() if isinstance(items, Mapping) else items)
-    _check(fe_model, pairs)
+    pairs = _pairs(fe_model, items)
     blocks, faces, width = [], [], 0
     for kind in ("translation", "rotation"):
         for item, keep in pairs:
@@ -100,7 +115,7 @@ def _translations(fe_model: FEModel, face: RigidFace) -> NDArray:
 
 
 def _arms(fe_model: FEModel, face: RigidFace) -> NDArray:
-    return fe_model.coordinates[list(face.nodes)] - np.asarray(face.point, dtype=float)
+    return fe_model.coordinates[list(face.nodes)] - face.point
 
 
 def _motion(fe_model: FEModel, item: int | RigidFace, kind: str) -> sparse.coo_array:
@@ -125,7 +140,19 @@ def _motion(fe_model: FEModel, item: int | RigidFace, kind: str) -> sparse.coo_a
                             shape=(fe_model.stiffness.shape[0], motion.shape[2]))
 
 
-def _check(fe_model: FEModel, pairs: list[BoundaryItem]) -> None:
+def _pairs(fe_model: FEModel, items: Mapping[int | RigidFace, str] | Iterable[BoundaryItem]
+           ) -> list[BoundaryItem]:
+    """Boundary nodes and what they keep."""
+    remedy = "give pairs (node, 'full', 'translation' or 'rotation'), or a dict of them"
+    pairs = []
+    for one in inputs.items(items.items() if isinstance(items, Mapping) else items, "boundary",
+                            remedy):
+        pair = inputs.items(one, "a boundary node", remedy)
+        if len(pair) != 2:
+            raise inputs.refusal("a boundary node", one, remedy)
+        node = pair[0]
+        pairs.append((node if isinstance(node, RigidFace) else
+                      inputs.integer(node, "boundary node"), pair[1]))
     if not pairs:
         raise InputError("boundary is empty; name one boundary node at least")
     taken = [node for item, _ in pairs
@@ -135,6 +162,7 @@ def _check(fe_model: FEModel, pairs: list[BoundaryItem]) -> None:
             _check_face(fe_model, item, keep, taken)
         else:
             _check_node(fe_model, item, keep, taken)
+    return pairs
 
 
 def _check_node(fe_model: FEModel, node: int, keep: str, taken: list[int]) -> None:
@@ -143,7 +171,7 @@ def _check_node(fe_model: FEModel, node: int, keep: str, taken: list[int]) -> No
         raise InputError(f"boundary node {node} unknown; the model has nodes 0 to {count - 1}")
     if taken.count(node) > 1:
         raise InputError(f"boundary node {node} appears more than once; name it once")
-    if keep not in KEEPS:
+    if not isinstance(keep, str) or keep not in KEEPS:
         raise InputError(
             f"boundary node {node} keeps {keep!r}; choose one of {', '.join(KEEPS)}"
         )
@@ -156,20 +184,21 @@ def _check_node(fe_model: FEModel, node: int, keep: str, taken: list[int]) -> No
 
 def _check_face(fe_model: FEModel, face: RigidFace, keep: str, taken: list[int]) -> None:
     count, dimension = fe_model.coordinates.shape
-    point = np.asarray(face.point, dtype=float)
-    if point.shape != (dimension,) or not np.isfinite(point).all():
-        raise InputError(f"point of a rigid face is {face.point}; give {dimension} finite numbers")
+    if face.point.shape != (dimension,):
+        raise InputError(f"point of a rigid face is {face.point}: give {dimension} finite numbers")
     if keep != "full":
-        raise InputError(f"a rigid face keeps {keep!r}; its boundary node is 'full'")
-    if not face.nodes:
-        raise InputError("a rigid face has no nodes; name the FE nodes tied to it")
+        raise InputError(f"a rigid face keeps {keep!r}: its boundary node is 'full'")
     for node in face.nodes:
         if not 0 <= node < count:
-            raise InputError(f"node {node} of a rigid face unknown; the model has nodes 0 to "
+            raise InputError(f"node {node} of a rigid face unknown: the model has nodes 0 to "
                              f"{count - 1}")
         if taken.count(node) > 1:
             raise InputError(f"boundary node {node} appears more than once; name it once")
-    if not len(fe_model.dofs(0, "rotation")) and np.linalg.matrix_rank(
-            _arms(fe_model, face), tol=1e-8 * np.abs(_arms(fe_model, face)).max()) < 2:
-        raise InputError("the nodes of a rigid face lie on a line with its point, so they do not "
-                         "hold its rotation; name more nodes")
+    if not len(fe_model.dofs(0, "rotation")) and _collinear(_arms(fe_model, face)):
+        raise InputError("the nodes of a rigid face lie on a line, so they do not hold its "
+                         "rotation about the line: name more nodes")
+
+
+def _collinear(points: NDArray) -> bool:
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return len(points) < 3 or spread[1] < 1e-8 * spread[0]

@@ -4,19 +4,20 @@
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import block_diag
 
+from sebody import inputs
 from sebody.errors import InputError
-from sebody.fem.model import FEModel
+from sebody.fem.model import FEModel, fe_matrix
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.boundary import BoundaryItem, RigidFace, boundary_of
 from sebody.reduction.clamped import ClampedInterior
-from sebody.reduction.constants import invariants_of
+from sebody.reduction.constants import with_constants
 
 _ROUNDING = 1e-11  # ratio of stiffness to its summands below which stiffness is rounding error
 
@@ -89,14 +90,13 @@ def craig_bampton(
         Unknown or repeated boundary node, a triplet the nodes do not have, more modes than there
         are, or boundary nodes that leave a mechanism inside.
     """
+    inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
     edge = boundary_of(fe_model, boundary)
     component, interior = _component_modes(fe_model.stiffness, fe_model.mass, edge.motion, modes,
                                            select)
     stiffness, mass = component.project(fe_model.stiffness, fe_model.mass)
     body = ReducedBody(stiffness, mass, edge.coordinates, edge.keeps, len(component.omega_squared))
-    if fe_model.mass_field is None:
-        return body
-    return replace(body, invariants=invariants_of(fe_model, edge, component.basis, interior, body))
+    return with_constants(body, fe_model, edge, component.basis, interior)
 
 
 def component_modes(
@@ -122,8 +122,11 @@ def component_modes(
     InputError
         More modes than there are, a wrong selection, or a mechanism inside.
     """
-    stiffness, mass = sparse.csc_array(stiffness), sparse.csc_array(mass)
-    boundary_dofs = np.asarray(boundary_dofs)
+    stiffness, mass = fe_matrix(stiffness, "stiffness"), fe_matrix(mass, "mass")
+    if not stiffness.shape == mass.shape == (stiffness.shape[0],) * 2:
+        raise InputError(f"stiffness has shape {stiffness.shape} and mass {mass.shape}: give "
+                         "square matrices of one size")
+    boundary_dofs = _boundary_rows(boundary_dofs, stiffness.shape[0])
     count = len(boundary_dofs)
     held = sparse.csc_array((np.ones(count), (boundary_dofs, np.arange(count))),
                             shape=(stiffness.shape[0], count))
@@ -136,12 +139,15 @@ def _component_modes(
 ) -> tuple[ComponentModes, ClampedInterior]:
     """Modes of a boundary whose unit coordinates move the DOFs by `motion`; the rest is inside."""
     internal = np.setdiff1d(np.arange(stiffness.shape[0]), motion.indices)
+    modes = inputs.integer(modes, "modes")
     if not 0 <= modes <= len(internal):
         raise InputError(
             f"modes is {modes}, but the clamped body has {len(internal)} internal DOFs; ask for "
             f"0 to {len(internal)} or refine the FE model"
         )
-    chosen = list(range(modes)) if select is None else list(select)
+    chosen = list(range(modes)) if select is None else [
+        inputs.integer(mode, "select: one mode") for mode in inputs.items(
+            select, "select", "give a list of modes, counted from 0")]
     if len(set(chosen)) != len(chosen) or not set(chosen) <= set(range(modes)):
         raise InputError(
             f"select = {chosen} must name different modes among the {modes} computed, counted "
@@ -152,3 +158,12 @@ def _component_modes(
     constraint = moved - interior.displacement(stiffness @ moved)
     omega_squared, shapes = interior.vibrations(modes)
     return ComponentModes(constraint, shapes[:, chosen], omega_squared[chosen]), interior
+
+
+def _boundary_rows(rows: Sequence[int], size: int) -> NDArray:
+    remedy = f"give different rows of the matrices, from 0 to {size - 1}"
+    found = [inputs.integer(row, "boundary_dofs: one", least=0, most=size - 1, remedy=remedy)
+             for row in inputs.items(rows, "boundary_dofs", remedy)]
+    if len(set(found)) != len(found):
+        raise inputs.refusal("boundary_dofs", found, remedy)
+    return np.array(found, dtype=int)

@@ -82,7 +82,8 @@ def _check_rigid(invariants: InertiaInvariants, rigid: NDArray, scale: NDArray) 
 
 def _check_resultants(invariants: InertiaInvariants, stiffness: NDArray, scale: NDArray) -> None:
     if not np.all(invariants.lam > 0):
-        raise InputError(f"invariants.lam is {invariants.lam}; give positive stiffnesses")
+        raise InputError(f"invariants.lam has {invariants.lam.min():.3g}; give positive "
+                         "stiffnesses")
     rest = stiffness - (invariants.E * invariants.lam) @ invariants.E.T
     unit = np.outer(scale, scale)
     values = np.linalg.eigvalsh(rest / unit)

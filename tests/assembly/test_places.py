@@ -32,7 +32,7 @@ def mixed_modes():
 
 
 def mechanism(body, linked=False):
-    """Two equal bodies on a joint, moving; the second one on a rigid link of the first if linked."""
+    """Two equal bodies that share a node, or the end of a rigid link on it, moving."""
     model = Model()
     ends = [np.array(end) for end in ENDS]
     base, middle = model.node("base", ends[0]), model.node("middle", ends[1])

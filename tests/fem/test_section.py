@@ -184,17 +184,17 @@ def test_frequencies_do_not_depend_on_the_unit_of_length():
 @pytest.mark.parametrize(
     ("build", "text"),
     [
-        (lambda: replace(BY_STIFFNESS, axial=0.0), r"StiffnessSection\.axial is 0\.0; give a pos"),
+        (lambda: replace(BY_STIFFNESS, axial=0.0), r"StiffnessSection\.axial is 0\.0: give a pos"),
         (lambda: replace(BY_STIFFNESS, shear_z=-1), r"StiffnessSection\.shear_z is -1"),
-        (lambda: replace(BY_STIFFNESS, inertia_x=-1), r"inertia_x is -1; give a number >= 0"),
-        (lambda: replace(BY_STIFFNESS, mass="7"), r"mass is 7; give a positive number"),
+        (lambda: replace(BY_STIFFNESS, inertia_x=-1), r"inertia_x is -1: give a finite number >="),
+        (lambda: replace(BY_STIFFNESS, mass="7"), r"mass is '7': give a positive number"),
         (lambda: Section(1, 1, 1, 1, 1, 0.3, 1, (0.8, 0.8, 0.8)), "give one number, or two for"),
         (lambda: Section(1, 1, 1, 1, 1, 0.3, 1, (0.8, 0.0)), r"Section\.shear_factor is 0\.0"),
         (lambda: straight_beam(START, END, "I 200", 2), "section 'I 200' is none: give a Section"),
         (lambda: straight_beam(START, END, lambda place: None, 2), "section None is none"),
         (lambda: rectangle(0.1, -1.0, *STEEL), "rectangle: width is -1.0"),
         (lambda: tube(0.1, 0.2, *STEEL), "tube: thickness is 0.2, more than its radius 0.1"),
-        (lambda: circle(np.nan, *STEEL), "radius is nan; give a positive number"),
+        (lambda: circle(np.nan, *STEEL), "circle: radius is nan: give a positive number"),
         (lambda: i_profile(0.2, 0.1, 0.006, 0.1, *STEEL), "do not fit into width 0.1 and height"),
     ],
 )

@@ -16,7 +16,8 @@ SECTION = Section(9.0, 6.75, 6.75, 11.387, 2.1e6, 0.3, 7.8e-3)
 @pytest.fixture(scope="module")
 def body():
     model = straight_beam([0, 0, 0], [100, 80, 60], SECTION, 10)
-    return craig_bampton(model, {0: "full", 10: "full"}, 2)
+    # imported matrices come without constants of inertia, which belong to one mass
+    return replace(craig_bampton(model, {0: "full", 10: "full"}, 2), invariants=None)
 
 
 def changed(matrix, *entries):
@@ -85,7 +86,6 @@ def test_verdict_does_not_depend_on_units(body):
         stiffness=body.stiffness / grid,
         mass=body.mass / grid,
         coordinates=1e3 * body.coordinates,
-        invariants=None,
     )
     # the reduced mass has the rounding of its condensation, EPS times a condition of 2e4
     assert_allclose(in_millimetres.centre_of_mass, [5e4, 4e4, 3e4], rtol=1e-10)
