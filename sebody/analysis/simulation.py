@@ -149,7 +149,7 @@ class Simulation:
             self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
                            f"run ends at t = {last * self.h:.9g}")
         if self.state.control[ADAPTIVE] == 0:
-            for name, message in unseen(self.system, self.numbering, self.h, self.time, t_end):
+            for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)
         record = self._room(last)
         self.state.control[RECORDED] = 0
