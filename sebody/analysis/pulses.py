@@ -53,9 +53,4 @@ def _known(history: History) -> NDArray:
 
 def _values(history: History, times: NDArray) -> NDArray:
     """Values of a history, constant outside a table."""
-    if history.functions:
-        return np.array([history.functions[0].ctypes(t) for t in times])
-    starts = np.array(history.times)
-    row = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
-    since = np.maximum(times - starts[row], 0.0)
-    return (np.array(history.cubics)[row] * since[:, None] ** np.arange(4)).sum(axis=1)
+    return np.array([history.at(t)[0] for t in times])
