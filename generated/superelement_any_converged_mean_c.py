@@ -13,13 +13,13 @@ from sebody.kernels.abi import at, padded
 from sebody.kernels.dense import (
     add_block_times,
     add_rows_times,
-    arrow_times,
     block_times,
-    clear,
     columns_times,
+    gather,
     inverse_3,
     rows_times,
     scale,
+    scatter,
 )
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.layout import (
@@ -57,7 +57,7 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = False        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 111
+WORK_ROWS = 117
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
@@ -65,6 +65,7 @@ OPERATIONS = {"residual": (508, 168, 750, 17),
               "column": (75, 228, 2420, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (2,), "slaved coordinates, resultants of second order"),
+    Part("kept", ("free",), "local coordinates that determine the others in the frame"),
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
@@ -72,12 +73,13 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("quadratics", ("N", "quadratic"),
          "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
     Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
-    Part("followers", ("n", "slaving"), "column by column of Q_b", columns=True),
+    Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
+    Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
-    Part("E", ("n", "resultants"), "their eigenvectors", columns=True),
-    Part("Ghat", ("n", "stressing"), "column by column of Ghat_e", columns=True),
+    Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
+    Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "05ba010a58ce"     # hash of sebody/kernels, which this file was made for
+ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -101,29 +103,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     eta = at(work, 8*row)
     etad = at(work, 9*row)
     gamma = at(work, 10*row)
-    s = at(work, 11*row)
-    along = at(work, 12*row)
-    twice = at(work, 13*row)
-    by_E = at(work, 14*row)
-    by_Gy = at(work, 15*row)
-    line0 = at(work, 16*row)
-    line1 = at(work, 17*row)
-    line2 = at(work, 18*row)
-    product0 = at(work, 19*row)
-    product1 = at(work, 20*row)
-    product2 = at(work, 21*row)
-    by_moment_columns = at(work, 22*row)
-    by_products = at(work, 23*row)
-    local = at(work, 24*row)
-    h = at(work, 25*row)
-    moved = at(work, 26*row)
-    squares = at(work, 27*row)
-    dqe = at(work, 28*row)
-    dve = at(work, 29*row)
-    dae = at(work, 30*row)
-    dy = at(work, 31*row)
-    deta = at(work, 32*row)
-    detad = at(work, 33*row)
+    z = at(work, 11*row)
+    zd = at(work, 12*row)
+    zdd = at(work, 13*row)
+    line0 = at(work, 14*row)
+    line1 = at(work, 15*row)
+    line2 = at(work, 16*row)
+    product0 = at(work, 17*row)
+    product1 = at(work, 18*row)
+    product2 = at(work, 19*row)
+    by_moment_columns = at(work, 20*row)
+    by_products = at(work, 21*row)
+    local = at(work, 22*row)
+    along = at(work, 23*row)
+    twice = at(work, 24*row)
+    by_E = at(work, 25*row)
+    by_Gy = at(work, 26*row)
+    s = at(work, 27*row)
+    h = at(work, 28*row)
+    moved = at(work, 29*row)
+    squares = at(work, 30*row)
+    dqe = at(work, 31*row)
+    dve = at(work, 32*row)
+    dae = at(work, 33*row)
     e2s = at(work, 34*row)
     by_place = at(work, 35*row)
     by_rate = at(work, 36*row)
@@ -131,22 +133,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     by_followers = at(work, 38*row)
     of_E = at(work, 39*row)
     of_Gy = at(work, 40*row)
-    dlocal = at(work, 41*row)
-    dyd = at(work, 42*row)
-    dacc = at(work, 43*row)
-    dgamma = at(work, 44*row)
-    ds = at(work, 45*row)
-    dh = at(work, 46*row)
-    dg = at(work, 47*row)
-    Zq = at(work, 48*row)
-    Zd = at(work, 60*row)
-    products = at(work, 72*row)
-    Za = at(work, 87*row)
-    more = at(work, 99*row)
-    Gy = at(work, (111 + 0*(n + 18))*row)
-    Lz = at(work, (111 + 1*(n + 18))*row)
-    Lv = at(work, (111 + 2*(n + 18))*row)
-    La = at(work, (111 + 3*(n + 18))*row)
+    dy = at(work, 41*row)
+    dz = at(work, 42*row)
+    dlocal = at(work, 43*row)
+    dyd = at(work, 44*row)
+    dacc = at(work, 45*row)
+    deta = at(work, 46*row)
+    detad = at(work, 47*row)
+    dgamma = at(work, 48*row)
+    dzd = at(work, 49*row)
+    dzdd = at(work, 50*row)
+    ds = at(work, 51*row)
+    dh = at(work, 52*row)
+    dg = at(work, 53*row)
+    Zq = at(work, 54*row)
+    Zd = at(work, 66*row)
+    products = at(work, 78*row)
+    Za = at(work, 93*row)
+    more = at(work, 105*row)
+    Gy = at(work, (117 + 0*(n + 18))*row)
+    Lz = at(work, (117 + 1*(n + 18))*row)
+    Lv = at(work, (117 + 2*(n + 18))*row)
+    La = at(work, (117 + 3*(n + 18))*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
@@ -165,19 +173,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         masses = at(full, 1)
         sizes = at(masses, 1)
         slaved, resultants = int(sizes[0]), int(sizes[1])
-        N = n + slaved
-        quadratic, slaving = 12*N, slaved*n
-        hn, hN, deep = padded(n), padded(N), padded(N + 6)
-        c0 = at(sizes, 2)
+        free = n - 6
+        N = free + slaved
+        quadratic, slaving = 12*N, slaved*free
+        hn, hN, deep = padded(free), padded(N), padded(N + 6)
+        kept = at(sizes, 2)
+        c0 = at(kept, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
         moment_rows = at(moment_columns, 12*padded(N))
         quadratics = at(moment_rows, N*padded(12))
         Mz = at(quadratics, quadratic*padded(N))
-        followers = at(Mz, N*padded(N))
-        lam = at(followers, slaving*padded(n))
+        Sz = at(Mz, N*padded(N))
+        followers = at(Sz, free*padded(free))
+        lam = at(followers, slaving*padded(free))
         E = at(lam, resultants)
-        Ghat = at(E, resultants*padded(n))
+        Ghat = at(E, resultants*padded(free))
         filled = int(full[0])
         g = at(forces, element*n)
         for i in range(n):
@@ -472,65 +483,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
         gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
         gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
-        # no numbers beyond the coordinates
-        clear(at(y, n), hN - n)
-        # no numbers beyond the coordinates
-        clear(at(eta, n), hN - n)
-        # no numbers beyond the coordinates
-        clear(at(etad, n), hN - n)
-        # Q_b y, all b
-        block_times(followers, y, Zq, slaved*hn, n, slaved*hn)
-        # Q_b eta, all b
-        block_times(followers, eta, Zd, slaved*hn, n, slaved*hn)
+        # coordinates that determine the others, of y
+        gather(y, kept, z, free, hN)
+        # coordinates that determine the others, of eta
+        gather(eta, kept, zd, free, hN)
+        # coordinates that determine the others, of etad
+        gather(etad, kept, zdd, free, hN)
+        # Q_b z, all b
+        block_times(followers, z, Zq, slaved*hn, free, slaved*hn)
+        # Q_b zd, all b
+        block_times(followers, zd, Zd, slaved*hn, free, slaved*hn)
         # eta_b = y . Q_b y / 2
-        rows_times(Zq, y, at(y, n), n, slaved, hn)
+        rows_times(Zq, z, at(z, free), free, slaved, hn)
         # half of it
-        scale(at(y, n), 0.5, slaved)
+        scale(at(z, free), 0.5, slaved)
         # their rates, Q_b y . ydot
-        rows_times(Zq, eta, at(eta, n), n, slaved, hn)
+        rows_times(Zq, zd, at(zd, free), free, slaved, hn)
         # their accelerations, Q_b y . yddot
-        rows_times(Zq, etad, at(etad, n), n, slaved, hn)
+        rows_times(Zq, zdd, at(zdd, free), free, slaved, hn)
         # and ydot . Q_b ydot
-        add_rows_times(Zd, eta, at(etad, n), n, slaved, hn)
-        # elastic force, s = Sbar y
-        arrow_times(S, y, s, n, filled)
-        # Ghat_e y, all e
-        block_times(Ghat, y, Gy, resultants*hn, n, resultants*hn)
-        # E_e . y
-        rows_times(E, y, along, n, resultants, hn)
-        # y . Ghat_e y
-        rows_times(Gy, y, twice, n, resultants, hn)
-        # stress resultants: factors of their gradients
-        stiffened = 0.0
-        for e in range(resultants):
-            lam_e = lam[e]
-            along_e = along[e]
-            twice_e = twice[e]
-            t105 = (0.5)*twice_e
-            t106 = 1/lam_e
-            by_E[e] = t105
-            by_Gy[e] = along_e + t105*t106
-            stiffened += t105*(along_e + (0.25)*t106*twice_e)
-        # their forces
-        add_block_times(E, by_E, s, n, resultants, hn)
-        # and those of the geometric stiffness
-        add_block_times(Gy, by_Gy, s, n, resultants, hn)
-        # first moments and couplings of y
-        columns_times(moment_rows, y, line0, 12, N)
-        # first moments and couplings of eta
-        columns_times(moment_rows, eta, line1, 12, N)
-        # first moments and couplings of etad
-        columns_times(moment_rows, etad, line2, 12, N)
+        add_rows_times(Zd, zd, at(zdd, free), free, slaved, hn)
+        # first moments and couplings of z
+        columns_times(moment_rows, z, line0, 12, N)
+        # first moments and couplings of zd
+        columns_times(moment_rows, zd, line1, 12, N)
+        # first moments and couplings of zdd
+        columns_times(moment_rows, zdd, line2, 12, N)
         # J2_kl z and K_k^T z
-        block_times(quadratics, y, products, 9*hN, N, 12*hN)
+        block_times(quadratics, z, products, 9*hN, N, 12*hN)
         # K_k^T zdot and (K_k^T - K_k) zdot
-        block_times(at(quadratics, 6*hN), eta, at(products, 9*hN), 6*hN, N, 12*hN)
-        # quadratic parts, by y
-        rows_times(products, y, product0, N, 6, hN)
-        # quadratic parts, by eta
-        rows_times(products, eta, product1, N, 12, hN)
-        # quadratic parts, by etad
-        rows_times(at(products, 6*hN), etad, product2, N, 3, hN)
+        block_times(at(quadratics, 6*hN), zd, at(products, 9*hN), 6*hN, N, 12*hN)
+        # quadratic parts, by z
+        rows_times(products, z, product0, N, 6, hN)
+        # quadratic parts, by zd
+        rows_times(products, zd, product1, N, 12, hN)
+        # quadratic parts, by zdd
+        rows_times(at(products, 6*hN), zdd, product2, N, 3, hN)
         # integrals over the body
         c0_x, c0_y, c0_z = c0[0], c0[1], c0[2]
         J0_xx, J0_yy, J0_zz, J0_xy, J0_xz, J0_yz = J0[0], J0[1], J0[2], J0[3], J0[4], J0[5]
@@ -582,41 +570,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         sum_coupled_z = vzd_z
         # motion of the frame as a factor of local tangents
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        etad[N] = a0_x - gamma_x
-        etad[N + 1] = a0_y - gamma_y
-        etad[N + 2] = a0_z - gamma_z
-        etad[N + 3] = Om0d_x
-        etad[N + 4] = Om0d_y
-        etad[N + 5] = Om0d_z
-        eta[N] = Om0_x
-        eta[N + 1] = Om0_y
-        eta[N + 2] = Om0_z
+        zdd[N] = a0_x - gamma_x
+        zdd[N + 1] = a0_y - gamma_y
+        zdd[N + 2] = a0_z - gamma_z
+        zdd[N + 3] = Om0d_x
+        zdd[N + 4] = Om0d_y
+        zdd[N + 5] = Om0d_z
+        zd[N] = Om0_x
+        zd[N + 1] = Om0_y
+        zd[N + 2] = Om0_z
         # factors of the force on a coordinate
-        felt_x, felt_y, felt_z = etad[N], etad[N + 1], etad[N + 2]
-        t107 = Om0_x*Om0_x
-        t108 = Om0_y*Om0_y
-        t109 = Om0_z*Om0_z
-        t110 = Om0_x*Om0_y
-        t111 = Om0_x*Om0_z
-        t112 = Om0_y*Om0_z
+        felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
+        t105 = Om0_x*Om0_x
+        t106 = Om0_y*Om0_y
+        t107 = Om0_z*Om0_z
+        t108 = Om0_x*Om0_y
+        t109 = Om0_x*Om0_z
+        t110 = Om0_y*Om0_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
         by_moment_columns[3] = Om0d_x
         by_moment_columns[4] = Om0d_y
         by_moment_columns[5] = Om0d_z
-        by_moment_columns[6] = -0.5*t107
-        by_moment_columns[7] = -0.5*t108
-        by_moment_columns[8] = -0.5*t109
-        by_moment_columns[9] = -t110
-        by_moment_columns[10] = -t111
-        by_moment_columns[11] = -t112
-        by_products[0] = -t107
-        by_products[1] = -t108
-        by_products[2] = -t109
-        by_products[3] = -2*t110
-        by_products[4] = -2*t111
-        by_products[5] = -2*t112
+        by_moment_columns[6] = -0.5*t105
+        by_moment_columns[7] = -0.5*t106
+        by_moment_columns[8] = -0.5*t107
+        by_moment_columns[9] = -t108
+        by_moment_columns[10] = -t109
+        by_moment_columns[11] = -t110
+        by_products[0] = -t105
+        by_products[1] = -t106
+        by_products[2] = -t107
+        by_products[3] = -2*t108
+        by_products[4] = -2*t109
+        by_products[5] = -2*t110
         by_products[6] = Om0d_x
         by_products[7] = Om0d_y
         by_products[8] = Om0d_z
@@ -631,9 +619,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # of the deformed body
         add_block_times(products, by_products, local, N, 15, hN)
         # inertia force of deformation, Mbar zddot
-        add_block_times(Mz, etad, local, N, N, hN)
+        add_block_times(Mz, zdd, local, N, N, hN)
+        # elastic force, Sbar y
+        add_block_times(Sz, z, local, free, free, hn)
+        # Ghat_e y, all e
+        block_times(Ghat, z, Gy, resultants*hn, free, resultants*hn)
+        # E_e . y
+        rows_times(E, z, along, free, resultants, hn)
+        # y . Ghat_e y
+        rows_times(Gy, z, twice, free, resultants, hn)
+        # stress resultants: factors of their gradients
+        stiffened = 0.0
+        for e in range(resultants):
+            lam_e = lam[e]
+            along_e = along[e]
+            twice_e = twice[e]
+            t111 = (0.5)*twice_e
+            t112 = 1/lam_e
+            by_E[e] = t111
+            by_Gy[e] = along_e + t111*t112
+            stiffened += t111*(along_e + (0.25)*t112*twice_e)
+        # their forces
+        add_block_times(E, by_E, local, free, resultants, hn)
+        # and those of the geometric stiffness
+        add_block_times(Gy, by_Gy, local, free, resultants, hn)
+        # forces on eta, pulled back
+        add_block_times(Zq, at(local, free), local, free, slaved, hn)
         # force and moment on the frame
-        felt_x, felt_y, felt_z = etad[N], etad[N + 1], etad[N + 2]
+        felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
         mass = masses[0]
         t113 = 2*sum_cd_z
         t114 = 2*Om0_z
@@ -658,11 +671,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         local[N + 5] = (Om0_x*sum_Jd_xz + Om0_x*sum_spun_y + Om0_x*t119 + Om0_y*sum_Jd_yz -
             Om0_y*sum_spun_x - Om0_y*t120 + Om0_z*sum_Jd_zz + Om0d_x*sum_J_xz + Om0d_y*sum_J_yz +
             Om0d_z*sum_J_zz - felt_x*sum_c_y + felt_y*sum_c_x + sum_accelerated_z + sum_coupled_z)
-        # forces conjugate to y, inertia included
-        for i in range(n):
-            s[i] += local[i]
-        # forces on eta, pulled back
-        add_block_times(Zq, at(local, n), s, n, slaved, hn)
+        # forces conjugate to y
+        scatter(local, kept, s, free, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -762,13 +772,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[k] = fm
         if task == ENERGY:
             # momentum of deformation, Mbar zdot
-            block_times(Mz, eta, moved, N, N, hN)
+            block_times(Mz, zd, moved, N, N, hN)
             # twice its energy
-            rows_times(moved, eta, squares, N, 1, hN)
+            rows_times(moved, zd, squares, N, 1, hN)
             # elastic force, Sbar y
-            arrow_times(S, y, moved, n, filled)
+            block_times(Sz, z, moved, free, free, hn)
             # twice its energy
-            rows_times(moved, y, at(squares, 1), n, 1, hn)
+            rows_times(moved, z, at(squares, 1), free, 1, hn)
             # energies, momentum and its moment about the origin
             mass = masses[0]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -818,23 +828,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
-            # nothing behind a column's coordinates
-            clear(at(dy, n), hN - n)
-            # nothing behind a column's coordinates
-            clear(at(deta, n), hN - n)
-            # nothing behind a column's coordinates
-            clear(at(detad, n), hN - n)
-            # Q_b etad, all b
-            block_times(followers, etad, Za, slaved*hn, n, slaved*hn)
+            # Q_b zdd, all b
+            block_times(followers, zdd, Za, slaved*hn, free, slaved*hn)
             # second derivative of the coefficients of T^-1
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 e2s[j] = (inverse_tangent_second(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2]
                     * y[j3 + 2]))
             # J2_kl zdot
-            block_times(quadratics, eta, more, 6*hN, N, 12*hN)
+            block_times(quadratics, zd, more, 6*hN, N, 12*hN)
             # K_k^T zddot and (K_k^T - K_k) zddot
-            block_times(at(quadratics, 6*hN), etad, at(more, 6*hN), 6*hN, N, 12*hN)
+            block_times(at(quadratics, 6*hN), zdd, at(more, 6*hN), 6*hN, N, 12*hN)
             # factors of the local tangents
             t167 = 2*Om0_x*c_geo
             by_place[0] = -Om0_x*Om0_x*c_geo
@@ -864,7 +868,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
-                on_eta = local[n + b]
+                on_eta = local[free + b]
                 by_followers[b] = c_geo*on_eta
             # local tangents: columns of the coordinates
             for j in range(N):
@@ -875,11 +879,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # by zddot
                 block_times(at(Mz, j*hN), ones, at(La, j*deep), N, 1, hN)
             # elastic and slaved parts
-            for j in range(n):
+            for j in range(free):
                 # stiffness
-                add_block_times(at(S, j*hn), ones, at(Lz, j*deep), n, 1, hn)
+                add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
                 # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), n,
+                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), free,
                                 slaved, hn)
                 # factors of the column
                 for e in range(resultants):
@@ -889,14 +893,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
                 # change of the resultants
-                add_block_times(E, of_E, at(Lz, j*deep), n, resultants, hn)
+                add_block_times(E, of_E, at(Lz, j*deep), free, resultants, hn)
                 # the same
-                add_block_times(Gy, of_Gy, at(Lz, j*deep), n, resultants, hn)
+                add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
                 # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), n, resultants, hn)
+                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free, resultants,
+                                hn)
             # local tangents: force and moment on the frame
             for i in range(N):
-                felt_x, felt_y, felt_z = etad[N], etad[N + 1], etad[N + 2]
+                felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
                 row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
@@ -1172,10 +1177,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
+                # coordinates that determine the others, of dy
+                gather(dy, kept, dz, free, hN)
                 # differential: eta_b
-                rows_times(Zq, dy, at(dy, n), n, slaved, hn)
-                # differential of the local forces by dy
-                block_times(Lz, dy, dlocal, N + 6, N, deep)
+                rows_times(Zq, dz, at(dz, free), free, slaved, hn)
+                # differential of the local forces by dz
+                block_times(Lz, dz, dlocal, N + 6, N, deep)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
@@ -1686,38 +1693,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
                 dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
                 dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
+                # coordinates that determine the others, of dy
+                gather(dy, kept, dz, free, hN)
+                # coordinates that determine the others, of deta
+                gather(deta, kept, dzd, free, hN)
+                # coordinates that determine the others, of detad
+                gather(detad, kept, dzdd, free, hN)
                 # differential: rates of eta
-                rows_times(Zq, deta, at(deta, n), n, slaved, hn)
+                rows_times(Zq, dzd, at(dzd, free), free, slaved, hn)
                 # of Q_b y
-                add_rows_times(Zd, dy, at(deta, n), n, slaved, hn)
+                add_rows_times(Zd, dz, at(dzd, free), free, slaved, hn)
                 # differential: accelerations of eta
-                rows_times(Zq, detad, at(detad, n), n, slaved, hn)
+                rows_times(Zq, dzdd, at(dzdd, free), free, slaved, hn)
                 # of ydot, twice
-                add_rows_times(Zd, deta, at(detad, n), n, slaved, hn)
+                add_rows_times(Zd, dzd, at(dzdd, free), free, slaved, hn)
                 # again
-                add_rows_times(Zd, deta, at(detad, n), n, slaved, hn)
+                add_rows_times(Zd, dzd, at(dzdd, free), free, slaved, hn)
                 # of Q_b y
-                add_rows_times(Za, dy, at(detad, n), n, slaved, hn)
+                add_rows_times(Za, dz, at(dzdd, free), free, slaved, hn)
                 # differential: motion of the frame as a factor of local tangents
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                detad[N] = da0_x - dgamma_x
-                detad[N + 1] = da0_y - dgamma_y
-                detad[N + 2] = da0_z - dgamma_z
-                detad[N + 3] = dOm0d_x
-                detad[N + 4] = dOm0d_y
-                detad[N + 5] = dOm0d_z
-                deta[N] = dOm0_x
-                deta[N + 1] = dOm0_y
-                deta[N + 2] = dOm0_z
-                # differential of the local forces by deta
-                add_block_times(Lv, deta, dlocal, N + 6, N + 3, deep)
-                # differential of the local forces by detad
-                add_block_times(La, detad, dlocal, N + 6, N + 6, deep)
-                # differential: forces conjugate to y
-                for i in range(n):
-                    ds[i] = dlocal[i]
+                dzdd[N] = da0_x - dgamma_x
+                dzdd[N + 1] = da0_y - dgamma_y
+                dzdd[N + 2] = da0_z - dgamma_z
+                dzdd[N + 3] = dOm0d_x
+                dzdd[N + 4] = dOm0d_y
+                dzdd[N + 5] = dOm0d_z
+                dzd[N] = dOm0_x
+                dzd[N + 1] = dOm0_y
+                dzd[N + 2] = dOm0_z
+                # differential of the local forces by dzd
+                add_block_times(Lv, dzd, dlocal, N + 6, N + 3, deep)
+                # differential of the local forces by dzdd
+                add_block_times(La, dzdd, dlocal, N + 6, N + 6, deep)
                 # forces on eta, pulled back
-                add_block_times(Zq, at(dlocal, n), ds, n, slaved, hn)
+                add_block_times(Zq, at(dlocal, free), dlocal, free, slaved, hn)
+                # forces conjugate to y
+                scatter(dlocal, kept, ds, free, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0

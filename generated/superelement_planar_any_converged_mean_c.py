@@ -13,12 +13,12 @@ from sebody.kernels.abi import at, padded
 from sebody.kernels.dense import (
     add_block_times,
     add_rows_times,
-    arrow_times,
     block_times,
-    clear,
     columns_times,
+    gather,
     rows_times,
     scale,
+    scatter,
 )
 from sebody.kernels.frame_search import planar_mean
 from sebody.kernels.layout import (
@@ -55,7 +55,7 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = False        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 108
+WORK_ROWS = 114
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
@@ -63,6 +63,7 @@ OPERATIONS = {"residual": (248, 76, 7, 6),
               "column": (6, 93, 9, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (2,), "slaved coordinates, resultants of second order"),
+    Part("kept", ("free",), "local coordinates that determine the others in the frame"),
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
@@ -70,12 +71,13 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("quadratics", ("N", "quadratic"),
          "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
     Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
-    Part("followers", ("n", "slaving"), "column by column of Q_b", columns=True),
+    Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
+    Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
-    Part("E", ("n", "resultants"), "their eigenvectors", columns=True),
-    Part("Ghat", ("n", "stressing"), "column by column of Ghat_e", columns=True),
+    Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
+    Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "05ba010a58ce"     # hash of sebody/kernels, which this file was made for
+ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -97,51 +99,57 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     eta = at(work, 6*row)
     etad = at(work, 7*row)
     gamma = at(work, 8*row)
-    s = at(work, 9*row)
-    along = at(work, 10*row)
-    twice = at(work, 11*row)
-    by_E = at(work, 12*row)
-    by_Gy = at(work, 13*row)
-    line0 = at(work, 14*row)
-    line1 = at(work, 15*row)
-    line2 = at(work, 16*row)
-    product0 = at(work, 17*row)
-    product1 = at(work, 18*row)
-    product2 = at(work, 19*row)
-    by_moment_columns = at(work, 20*row)
-    by_products = at(work, 21*row)
-    local = at(work, 22*row)
-    h = at(work, 23*row)
-    moved = at(work, 24*row)
-    squares = at(work, 25*row)
-    dqe = at(work, 26*row)
-    dve = at(work, 27*row)
-    dae = at(work, 28*row)
-    dy = at(work, 29*row)
-    deta = at(work, 30*row)
-    detad = at(work, 31*row)
+    z = at(work, 9*row)
+    zd = at(work, 10*row)
+    zdd = at(work, 11*row)
+    line0 = at(work, 12*row)
+    line1 = at(work, 13*row)
+    line2 = at(work, 14*row)
+    product0 = at(work, 15*row)
+    product1 = at(work, 16*row)
+    product2 = at(work, 17*row)
+    by_moment_columns = at(work, 18*row)
+    by_products = at(work, 19*row)
+    local = at(work, 20*row)
+    along = at(work, 21*row)
+    twice = at(work, 22*row)
+    by_E = at(work, 23*row)
+    by_Gy = at(work, 24*row)
+    s = at(work, 25*row)
+    h = at(work, 26*row)
+    moved = at(work, 27*row)
+    squares = at(work, 28*row)
+    dqe = at(work, 29*row)
+    dve = at(work, 30*row)
+    dae = at(work, 31*row)
     by_place = at(work, 32*row)
     by_rate = at(work, 33*row)
     ones = at(work, 34*row)
     by_followers = at(work, 35*row)
     of_E = at(work, 36*row)
     of_Gy = at(work, 37*row)
-    dlocal = at(work, 38*row)
-    dyd = at(work, 39*row)
-    dacc = at(work, 40*row)
-    dgamma = at(work, 41*row)
-    ds = at(work, 42*row)
-    dh = at(work, 43*row)
-    dg = at(work, 44*row)
-    Zq = at(work, 45*row)
-    Zd = at(work, 57*row)
-    products = at(work, 69*row)
-    Za = at(work, 84*row)
-    more = at(work, 96*row)
-    Gy = at(work, (108 + 0*(n + 18))*row)
-    Lz = at(work, (108 + 1*(n + 18))*row)
-    Lv = at(work, (108 + 2*(n + 18))*row)
-    La = at(work, (108 + 3*(n + 18))*row)
+    dy = at(work, 38*row)
+    dz = at(work, 39*row)
+    dlocal = at(work, 40*row)
+    dyd = at(work, 41*row)
+    dacc = at(work, 42*row)
+    deta = at(work, 43*row)
+    detad = at(work, 44*row)
+    dgamma = at(work, 45*row)
+    dzd = at(work, 46*row)
+    dzdd = at(work, 47*row)
+    ds = at(work, 48*row)
+    dh = at(work, 49*row)
+    dg = at(work, 50*row)
+    Zq = at(work, 51*row)
+    Zd = at(work, 63*row)
+    products = at(work, 75*row)
+    Za = at(work, 90*row)
+    more = at(work, 102*row)
+    Gy = at(work, (114 + 0*(n + 18))*row)
+    Lz = at(work, (114 + 1*(n + 18))*row)
+    Lv = at(work, (114 + 2*(n + 18))*row)
+    La = at(work, (114 + 3*(n + 18))*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
@@ -160,19 +168,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         masses = at(full, 1)
         sizes = at(masses, 1)
         slaved, resultants = int(sizes[0]), int(sizes[1])
-        N = n + slaved
-        quadratic, slaving = 3*N, slaved*n
-        hn, hN, deep = padded(n), padded(N), padded(N + 3)
-        c0 = at(sizes, 2)
+        free = n - 3
+        N = free + slaved
+        quadratic, slaving = 3*N, slaved*free
+        hn, hN, deep = padded(free), padded(N), padded(N + 3)
+        kept = at(sizes, 2)
+        c0 = at(kept, free)
         J0 = at(c0, 2)
         moment_columns = at(J0, 1)
         moment_rows = at(moment_columns, 4*padded(N))
         quadratics = at(moment_rows, N*padded(4))
         Mz = at(quadratics, quadratic*padded(N))
-        followers = at(Mz, N*padded(N))
-        lam = at(followers, slaving*padded(n))
+        Sz = at(Mz, N*padded(N))
+        followers = at(Sz, free*padded(free))
+        lam = at(followers, slaving*padded(free))
         E = at(lam, resultants)
-        Ghat = at(E, resultants*padded(n))
+        Ghat = at(E, resultants*padded(free))
         filled = int(full[0])
         g = at(forces, element*n)
         for i in range(n):
@@ -287,65 +298,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         field_x, field_y = field[0], field[1]
         gamma[0] = R0_cos*field_x + R0_sin*field_y
         gamma[1] = R0_cos*field_y - R0_sin*field_x
-        # no numbers beyond the coordinates
-        clear(at(y, n), hN - n)
-        # no numbers beyond the coordinates
-        clear(at(eta, n), hN - n)
-        # no numbers beyond the coordinates
-        clear(at(etad, n), hN - n)
-        # Q_b y, all b
-        block_times(followers, y, Zq, slaved*hn, n, slaved*hn)
-        # Q_b eta, all b
-        block_times(followers, eta, Zd, slaved*hn, n, slaved*hn)
+        # coordinates that determine the others, of y
+        gather(y, kept, z, free, hN)
+        # coordinates that determine the others, of eta
+        gather(eta, kept, zd, free, hN)
+        # coordinates that determine the others, of etad
+        gather(etad, kept, zdd, free, hN)
+        # Q_b z, all b
+        block_times(followers, z, Zq, slaved*hn, free, slaved*hn)
+        # Q_b zd, all b
+        block_times(followers, zd, Zd, slaved*hn, free, slaved*hn)
         # eta_b = y . Q_b y / 2
-        rows_times(Zq, y, at(y, n), n, slaved, hn)
+        rows_times(Zq, z, at(z, free), free, slaved, hn)
         # half of it
-        scale(at(y, n), 0.5, slaved)
+        scale(at(z, free), 0.5, slaved)
         # their rates, Q_b y . ydot
-        rows_times(Zq, eta, at(eta, n), n, slaved, hn)
+        rows_times(Zq, zd, at(zd, free), free, slaved, hn)
         # their accelerations, Q_b y . yddot
-        rows_times(Zq, etad, at(etad, n), n, slaved, hn)
+        rows_times(Zq, zdd, at(zdd, free), free, slaved, hn)
         # and ydot . Q_b ydot
-        add_rows_times(Zd, eta, at(etad, n), n, slaved, hn)
-        # elastic force, s = Sbar y
-        arrow_times(S, y, s, n, filled)
-        # Ghat_e y, all e
-        block_times(Ghat, y, Gy, resultants*hn, n, resultants*hn)
-        # E_e . y
-        rows_times(E, y, along, n, resultants, hn)
-        # y . Ghat_e y
-        rows_times(Gy, y, twice, n, resultants, hn)
-        # stress resultants: factors of their gradients
-        stiffened = 0.0
-        for e in range(resultants):
-            lam_e = lam[e]
-            along_e = along[e]
-            twice_e = twice[e]
-            t2 = (0.5)*twice_e
-            t3 = 1/lam_e
-            by_E[e] = t2
-            by_Gy[e] = along_e + t2*t3
-            stiffened += t2*(along_e + (0.25)*t3*twice_e)
-        # their forces
-        add_block_times(E, by_E, s, n, resultants, hn)
-        # and those of the geometric stiffness
-        add_block_times(Gy, by_Gy, s, n, resultants, hn)
-        # first moments and couplings of y
-        columns_times(moment_rows, y, line0, 4, N)
-        # first moments and couplings of eta
-        columns_times(moment_rows, eta, line1, 4, N)
-        # first moments and couplings of etad
-        columns_times(moment_rows, etad, line2, 4, N)
+        add_rows_times(Zd, zd, at(zdd, free), free, slaved, hn)
+        # first moments and couplings of z
+        columns_times(moment_rows, z, line0, 4, N)
+        # first moments and couplings of zd
+        columns_times(moment_rows, zd, line1, 4, N)
+        # first moments and couplings of zdd
+        columns_times(moment_rows, zdd, line2, 4, N)
         # J2_kl z and K_k^T z
-        block_times(quadratics, y, products, 2*hN, N, 3*hN)
+        block_times(quadratics, z, products, 2*hN, N, 3*hN)
         # K_k^T zdot and (K_k^T - K_k) zdot
-        block_times(at(quadratics, 1*hN), eta, at(products, 2*hN), 2*hN, N, 3*hN)
-        # quadratic parts, by y
-        rows_times(products, y, product0, N, 1, hN)
-        # quadratic parts, by eta
-        rows_times(products, eta, product1, N, 3, hN)
-        # quadratic parts, by etad
-        rows_times(at(products, 1*hN), etad, product2, N, 1, hN)
+        block_times(at(quadratics, 1*hN), zd, at(products, 2*hN), 2*hN, N, 3*hN)
+        # quadratic parts, by z
+        rows_times(products, z, product0, N, 1, hN)
+        # quadratic parts, by zd
+        rows_times(products, zd, product1, N, 3, hN)
+        # quadratic parts, by zdd
+        rows_times(at(products, 1*hN), zdd, product2, N, 1, hN)
         # integrals over the body
         c0_x, c0_y = c0[0], c0[1]
         J0_zz = J0[0]
@@ -374,18 +362,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         sum_coupled_z = vzd_z
         # motion of the frame as a factor of local tangents
         gamma_x, gamma_y = gamma[0], gamma[1]
-        etad[N] = a0_x - gamma_x
-        etad[N + 1] = a0_y - gamma_y
-        etad[N + 2] = Om0d_z
-        eta[N] = Om0_z
+        zdd[N] = a0_x - gamma_x
+        zdd[N + 1] = a0_y - gamma_y
+        zdd[N + 2] = Om0d_z
+        zd[N] = Om0_z
         # factors of the force on a coordinate
-        felt_x, felt_y = etad[N], etad[N + 1]
-        t4 = Om0_z*Om0_z
+        felt_x, felt_y = zdd[N], zdd[N + 1]
+        t2 = Om0_z*Om0_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = Om0d_z
-        by_moment_columns[3] = -0.5*t4
-        by_products[0] = -t4
+        by_moment_columns[3] = -0.5*t2
+        by_products[0] = -t2
         by_products[1] = Om0d_z
         by_products[2] = 0
         by_products[3] = Om0_z
@@ -394,9 +382,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # of the deformed body
         add_block_times(products, by_products, local, N, 4, hN)
         # inertia force of deformation, Mbar zddot
-        add_block_times(Mz, etad, local, N, N, hN)
+        add_block_times(Mz, zdd, local, N, N, hN)
+        # elastic force, Sbar y
+        add_block_times(Sz, z, local, free, free, hn)
+        # Ghat_e y, all e
+        block_times(Ghat, z, Gy, resultants*hn, free, resultants*hn)
+        # E_e . y
+        rows_times(E, z, along, free, resultants, hn)
+        # y . Ghat_e y
+        rows_times(Gy, z, twice, free, resultants, hn)
+        # stress resultants: factors of their gradients
+        stiffened = 0.0
+        for e in range(resultants):
+            lam_e = lam[e]
+            along_e = along[e]
+            twice_e = twice[e]
+            t3 = (0.5)*twice_e
+            t4 = 1/lam_e
+            by_E[e] = t3
+            by_Gy[e] = along_e + t3*t4
+            stiffened += t3*(along_e + (0.25)*t4*twice_e)
+        # their forces
+        add_block_times(E, by_E, local, free, resultants, hn)
+        # and those of the geometric stiffness
+        add_block_times(Gy, by_Gy, local, free, resultants, hn)
+        # forces on eta, pulled back
+        add_block_times(Zq, at(local, free), local, free, slaved, hn)
         # force and moment on the frame
-        felt_x, felt_y = etad[N], etad[N + 1]
+        felt_x, felt_y = zdd[N], zdd[N + 1]
         mass = masses[0]
         t5 = 2*Om0_z
         t6 = Om0_z*Om0_z
@@ -404,11 +417,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         local[N + 1] = Om0d_z*sum_c_x + felt_y*mass - sum_c_y*t6 + sum_cd_x*t5 + sum_cdd_y
         local[N + 2] = (Om0_z*sum_Jd_zz + Om0d_z*sum_J_zz - felt_x*sum_c_y + felt_y*sum_c_x +
             sum_accelerated_z + sum_coupled_z)
-        # forces conjugate to y, inertia included
-        for i in range(n):
-            s[i] += local[i]
-        # forces on eta, pulled back
-        add_block_times(Zq, at(local, n), s, n, slaved, hn)
+        # forces conjugate to y
+        scatter(local, kept, s, free, n)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = 0.0
         W_z = 0.0
@@ -459,13 +469,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[k] = fm
         if task == ENERGY:
             # momentum of deformation, Mbar zdot
-            block_times(Mz, eta, moved, N, N, hN)
+            block_times(Mz, zd, moved, N, N, hN)
             # twice its energy
-            rows_times(moved, eta, squares, N, 1, hN)
+            rows_times(moved, zd, squares, N, 1, hN)
             # elastic force, Sbar y
-            arrow_times(S, y, moved, n, filled)
+            block_times(Sz, z, moved, free, free, hn)
             # twice its energy
-            rows_times(moved, y, at(squares, 1), n, 1, hn)
+            rows_times(moved, z, at(squares, 1), free, 1, hn)
             # energies, momentum and its moment about the origin
             mass = masses[0]
             gamma_x, gamma_y = gamma[0], gamma[1]
@@ -497,18 +507,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
-            # nothing behind a column's coordinates
-            clear(at(dy, n), hN - n)
-            # nothing behind a column's coordinates
-            clear(at(deta, n), hN - n)
-            # nothing behind a column's coordinates
-            clear(at(detad, n), hN - n)
-            # Q_b etad, all b
-            block_times(followers, etad, Za, slaved*hn, n, slaved*hn)
+            # Q_b zdd, all b
+            block_times(followers, zdd, Za, slaved*hn, free, slaved*hn)
             # J2_kl zdot
-            block_times(quadratics, eta, more, 1*hN, N, 3*hN)
+            block_times(quadratics, zd, more, 1*hN, N, 3*hN)
             # K_k^T zddot and (K_k^T - K_k) zddot
-            block_times(at(quadratics, 1*hN), etad, at(more, 1*hN), 2*hN, N, 3*hN)
+            block_times(at(quadratics, 1*hN), zdd, at(more, 1*hN), 2*hN, N, 3*hN)
             # factors of the local tangents
             by_place[0] = -Om0_z*Om0_z*c_geo
             by_place[1] = Om0d_z*c_geo
@@ -519,7 +523,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
-                on_eta = local[n + b]
+                on_eta = local[free + b]
                 by_followers[b] = c_geo*on_eta
             # local tangents: columns of the coordinates
             for j in range(N):
@@ -530,11 +534,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # by zddot
                 block_times(at(Mz, j*hN), ones, at(La, j*deep), N, 1, hN)
             # elastic and slaved parts
-            for j in range(n):
+            for j in range(free):
                 # stiffness
-                add_block_times(at(S, j*hn), ones, at(Lz, j*deep), n, 1, hn)
+                add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
                 # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), n,
+                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), free,
                                 slaved, hn)
                 # factors of the column
                 for e in range(resultants):
@@ -544,14 +548,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
                 # change of the resultants
-                add_block_times(E, of_E, at(Lz, j*deep), n, resultants, hn)
+                add_block_times(E, of_E, at(Lz, j*deep), free, resultants, hn)
                 # the same
-                add_block_times(Gy, of_Gy, at(Lz, j*deep), n, resultants, hn)
+                add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
                 # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), n, resultants, hn)
+                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free, resultants,
+                                hn)
             # local tangents: force and moment on the frame
             for i in range(N):
-                felt_x, felt_y = etad[N], etad[N + 1]
+                felt_x, felt_y = zdd[N], zdd[N + 1]
                 row_S1_x, row_S1_y = moment_columns[i], moment_columns[1*hN + i]
                 row_g_z = moment_columns[2*hN + i]
                 row_h_zz = moment_columns[3*hN + i]
@@ -644,10 +649,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
+                # coordinates that determine the others, of dy
+                gather(dy, kept, dz, free, hN)
                 # differential: eta_b
-                rows_times(Zq, dy, at(dy, n), n, slaved, hn)
-                # differential of the local forces by dy
-                block_times(Lz, dy, dlocal, N + 3, N, deep)
+                rows_times(Zq, dz, at(dz, free), free, slaved, hn)
+                # differential of the local forces by dz
+                block_times(Lz, dz, dlocal, N + 3, N, deep)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
                 for i in range(n):
                     dy[i] *= c_geo
@@ -748,33 +755,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 gamma_x, gamma_y = gamma[0], gamma[1]
                 dgamma[0] = dth0_z*gamma_y
                 dgamma[1] = -dth0_z*gamma_x
+                # coordinates that determine the others, of dy
+                gather(dy, kept, dz, free, hN)
+                # coordinates that determine the others, of deta
+                gather(deta, kept, dzd, free, hN)
+                # coordinates that determine the others, of detad
+                gather(detad, kept, dzdd, free, hN)
                 # differential: rates of eta
-                rows_times(Zq, deta, at(deta, n), n, slaved, hn)
+                rows_times(Zq, dzd, at(dzd, free), free, slaved, hn)
                 # of Q_b y
-                add_rows_times(Zd, dy, at(deta, n), n, slaved, hn)
+                add_rows_times(Zd, dz, at(dzd, free), free, slaved, hn)
                 # differential: accelerations of eta
-                rows_times(Zq, detad, at(detad, n), n, slaved, hn)
+                rows_times(Zq, dzdd, at(dzdd, free), free, slaved, hn)
                 # of ydot, twice
-                add_rows_times(Zd, deta, at(detad, n), n, slaved, hn)
+                add_rows_times(Zd, dzd, at(dzdd, free), free, slaved, hn)
                 # again
-                add_rows_times(Zd, deta, at(detad, n), n, slaved, hn)
+                add_rows_times(Zd, dzd, at(dzdd, free), free, slaved, hn)
                 # of Q_b y
-                add_rows_times(Za, dy, at(detad, n), n, slaved, hn)
+                add_rows_times(Za, dz, at(dzdd, free), free, slaved, hn)
                 # differential: motion of the frame as a factor of local tangents
                 dgamma_x, dgamma_y = dgamma[0], dgamma[1]
-                detad[N] = da0_x - dgamma_x
-                detad[N + 1] = da0_y - dgamma_y
-                detad[N + 2] = dOm0d_z
-                deta[N] = dOm0_z
-                # differential of the local forces by deta
-                add_block_times(Lv, deta, dlocal, N + 3, N + 1, deep)
-                # differential of the local forces by detad
-                add_block_times(La, detad, dlocal, N + 3, N + 3, deep)
-                # differential: forces conjugate to y
-                for i in range(n):
-                    ds[i] = dlocal[i]
+                dzdd[N] = da0_x - dgamma_x
+                dzdd[N + 1] = da0_y - dgamma_y
+                dzdd[N + 2] = dOm0d_z
+                dzd[N] = dOm0_z
+                # differential of the local forces by dzd
+                add_block_times(Lv, dzd, dlocal, N + 3, N + 1, deep)
+                # differential of the local forces by dzdd
+                add_block_times(La, dzdd, dlocal, N + 3, N + 3, deep)
                 # forces on eta, pulled back
-                add_block_times(Zq, at(dlocal, n), ds, n, slaved, hn)
+                add_block_times(Zq, at(dlocal, free), dlocal, free, slaved, hn)
+                # forces conjugate to y
+                scatter(dlocal, kept, ds, free, n)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = 0.0
                 dW_z = 0.0

@@ -75,7 +75,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "7e71dd2e1781"     # hash of sebody/kernels, which this file was made for
+ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
