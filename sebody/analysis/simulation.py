@@ -14,10 +14,12 @@ from sebody.analysis.first_run import prepare
 from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
 from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.sparse import SINGULAR
 from sebody.analysis.tolerance import Tolerance
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
+from sebody.engine.relaxation import relax
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
@@ -32,6 +34,7 @@ from sebody.engine.state import (
     REASON,
     REASONS,
     RECORDED,
+    RELAXED,
     SOLVE,
     TIME,
     Record,
@@ -135,9 +138,10 @@ class Simulation:
                 self.factorize()
             elif code == SOLVE:
                 n = self.numbering.free
-                scale = self.state.scale[:n]
-                self.state.correction[:n] = scale * self._factors.solve(
-                    scale * self.state.residual[:n])
+                self.state.correction[:n] = self._solved(self.state.residual[:n])
+                if self.state.control[RELAXED]:
+                    self.state.correction[:n] -= self._solved(
+                        self.state.relaxation[:n] * self.state.correction[:n])
             self.seconds += time.perf_counter() - began
             if progress and code in (CHUNK, DONE):
                 progress(self.time / t_end if t_end else 1.0)
@@ -187,9 +191,24 @@ class Simulation:
 
     def factorize(self) -> None:
         """Factorize with row exchanges, where elimination by blocks met a small pivot."""
+        if not self._factorized():
+            relax(self.system, self.state)
+            self._factorized()
+
+    def _factorized(self) -> bool:
+        """Whether the factors are those of a regular matrix."""
         scale = diags(self.state.scale[:self.numbering.free])
         matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
-        self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
+        try:
+            self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
+        except RuntimeError:        # a pivot is exactly zero
+            return False
+        pivots = np.abs(self._factors.U.diagonal())
+        return bool(pivots.min() >= SINGULAR * pivots.max())
+
+    def _solved(self, right: NDArray) -> NDArray:
+        scale = self.state.scale[:self.numbering.free]
+        return scale * self._factors.solve(scale * right)
 
     def _explain(self) -> str:
         reason = REASONS[int(self.state.control[REASON])]

@@ -46,7 +46,9 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         **_batch_arrays(batches), J_entry=own_entries.astype(np.int32), **matrix, **axes,
         is_multiplier=_multipliers(model, numbering), rotation_at=_rotation_starts(numbering),
         summands=summands(batches, axes["rotated_blocks"], links),
-        dimension=np.array([model.dimension]), magnitude=_magnitude(model, numbering),
+        dimension=np.array([model.dimension]), part=_parts(model, numbering),
+        inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
+        magnitude=_magnitude(model, numbering),
         **port_arrays(numbering.histories, numbering.prescribed),
         links=with_entries(links, linked_entries), relaxed=np.zeros(1, dtype=np.int64),
         damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
@@ -89,6 +91,20 @@ def _multipliers(model: Mechanism, numbering: Numbering) -> NDArray:
     for equation in model.constraints:
         first = numbering.multipliers[id(equation)]
         found[first:first + equation.multipliers] = 1.0
+    return found
+
+
+def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
+    """First coordinate of the position, rotation or equation each coordinate belongs to."""
+    found = np.arange(numbering.total)
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                own = stretch(numbering, triplet)
+                found[own] = own.start
+    for equation in model.constraints:
+        first = numbering.multipliers[id(equation)]
+        found[first:first + equation.multipliers] = first
     return found
 
 

@@ -6,6 +6,7 @@ The factorized matrix is kept in body axes and reused until slow convergence ask
 import numpy as np
 
 from sebody.engine.evaluate import to_body_axes, update_rotations
+from sebody.engine.matrix import ROUNDING
 from sebody.engine.state import (
     ACCELERATION_NORM,
     AGE,
@@ -26,8 +27,10 @@ from sebody.engine.state import (
     ITERATIONS,
     KEPT,
     LAST_NORM,
+    LEAVES_GAP,
     MATRICES,
     NEW_MATRIX,
+    RELAXED,
     ROTATED,
     SECANT,
     SPAN,
@@ -47,6 +50,7 @@ LONGEST_BACK_OFF = 32   # at most so many steps refresh the matrix before reuse 
 POOR = 0.3              # a contraction rate above this asks for a new matrix at once
 MOST_MATRICES = 4       # factorizations in a step
 ACCELERATION_TOLERANCE = 100.0  # tolerance relative to accelerations, over that of the increment
+WIDEST_GAP = 1e-5       # between what joints demand, relative to the extent of the model
 QUICK = 0.05            # a contraction rate below this needs no acceleration by mixing
 
 
@@ -66,7 +70,27 @@ def apply_correction(system, state, scheme, mixed):
     target = min(scheme.tolerance * size,
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock[FLOOR]
     state.clock[ACCELERATION_NORM], state.clock[TARGET] = accelerations, target
-    return _verdict(system, state, norm, left_norm, target)
+    verdict = _verdict(system, state, norm, left_norm, target)
+    if verdict == CONVERGED and state.control[RELAXED] == 1 and leaves_gap(
+            system, state, norm, scheme.stabilized):
+        return LEAVES_GAP
+    return verdict
+
+
+@compiled
+def leaves_gap(system, state, norm, stabilized):
+    """Whether a residual is left that the corrections of a regularized matrix cannot remove.
+
+    That of the iterate before the last correction is at most the correction times the matrix, whose
+    scaled entries are at most one.
+    """
+    n, left = system.diagonal.size, 0.0
+    for i in range(n):
+        residual = state.residual[i]
+        if stabilized:
+            residual += state.constraint_residuals[i]
+        left += residual * residual * state.scale[i] * state.scale[i]
+    return np.sqrt(left) > n * norm + WIDEST_GAP / ROUNDING * state.clock[FLOOR]
 
 
 @compiled(forceinline=True)

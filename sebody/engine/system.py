@@ -47,6 +47,11 @@ class System(Arrays):
     is_multiplier       (N, padded) 1.0 for multipliers
     rotation_at         (r,) first coordinate of each rotation
     dimension           (1,) coordinates of a position
+    part                (N,) first coordinate of the position, rotation or equation that a coordinate
+                        or multiplier belongs to
+    inertias            (N,) largest mass or moment of inertia of that position or rotation at the
+                        start, which sets it
+    thin                (N,) the same where about some axis there is nearly none, zero elsewhere
     magnitude           (N,) size of each coordinate: for the rounding floor and for tolerances
     rotated             (k, 2) positions not solved for in global axes: first unknown, axes
     rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
@@ -69,7 +74,7 @@ class System(Arrays):
     others
     ------------------------------------------------------------------------------------------------
     links               rigid links
-    relaxed             (1,) 1 where constraints are redundant
+    relaxed             (1,) 1 where constraints are redundant or something without mass can move
     damped              (1,) 1 where a superelement has structural damping
     ==================  ============================================================================
     """
@@ -102,6 +107,9 @@ class System(Arrays):
     summands: NDArray
     linked: NDArray
     dimension: NDArray
+    part: NDArray
+    inertias: NDArray
+    thin: NDArray
     magnitude: NDArray
     table_at: NDArray
     table_times: NDArray
