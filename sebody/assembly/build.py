@@ -41,10 +41,12 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     entries, matrix = (dense_layout(row, column, numbering.free)
                        if numbering.free <= DENSE_LIMIT else
                        sparse_layout(row, column, numbering))
+    is_multiplier = _multipliers(model, numbering)
     own_entries, linked_entries = entries[:len(own_row)], entries[len(own_row):]
     system = System(
         **_batch_arrays(batches), J_entry=own_entries.astype(np.int32), **matrix, **axes,
-        is_multiplier=_multipliers(model, numbering), rotation_at=_rotation_starts(numbering),
+        is_multiplier=is_multiplier, pulls=_pulls(matrix, is_multiplier, numbering.free),
+        rotation_at=_rotation_starts(numbering),
         summands=summands(batches, axes["rotated_blocks"], links),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
@@ -92,6 +94,13 @@ def _multipliers(model: Mechanism, numbering: Numbering) -> NDArray:
         first = numbering.multipliers[id(equation)]
         found[first:first + equation.multipliers] = 1.0
     return found
+
+
+def _pulls(matrix: dict[str, NDArray], is_multiplier: NDArray, free: int) -> NDArray:
+    """Entries in rows of coordinates and columns of multipliers."""
+    moving, pulling = is_multiplier == 0.0, is_multiplier > 0.0
+    moving[free:] = pulling[free:] = False
+    return np.flatnonzero(moving[matrix["rows"]] & pulling[matrix["columns"]])
 
 
 def _parts(model: Mechanism, numbering: Numbering) -> NDArray:

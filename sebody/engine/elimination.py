@@ -16,7 +16,7 @@ from sebody.kernels.layout import LANES
 from sebody.kernels.pipeline import compiled
 
 BLOCK = LANES * LANES
-SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
+SMALL_PIVOT = 1e-11     # relative to the scaled matrix, whose diagonal is one
 
 
 @compiled

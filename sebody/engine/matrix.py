@@ -132,7 +132,7 @@ def invert_dense(system, state, n, relaxed, wanted):
     if relaxed:
         if wanted == EVALUATED:
             spread(system, state, inverse, True)
-        project_inverse(state, inverse, n)
+        project_inverse(system, state, inverse, n)
     for j in range(n):
         if (not relaxed and system.is_multiplier[j] > 0.0
                 and WEAKEST * abs(inverse[j, j]) > 1.0):

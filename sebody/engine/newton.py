@@ -7,6 +7,7 @@ import numpy as np
 
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.matrix import ROUNDING
+from sebody.engine.relaxation import force_norms
 from sebody.engine.state import (
     ACCELERATION_NORM,
     AGE,
@@ -97,9 +98,14 @@ def leaves_gap(system, state, norm, stabilized):
 def _norms(system, state, n):
     """Norms of the correction, of the increment with the multipliers, and of the accelerations."""
     norm = size = accelerations = 0.0
+    relaxed = state.control[RELAXED] == 1
+    if relaxed:
+        norm, size = force_norms(system, state)
     for i in range(n):
         d = state.correction[i] * state.weight[i]
         x = state.dq[i] + system.is_multiplier[i] * state.q_old[i]      # a multiplier itself
+        if relaxed and system.is_multiplier[i] > 0.0:
+            d = x = 0.0
         z = state.a[i] * state.weight[i]
         s = state.shift[i] * state.weight[i]
         norm += d * d + s * s

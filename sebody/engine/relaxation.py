@@ -22,15 +22,17 @@ from sebody.engine.state import RELAXED
 from sebody.kernels.layout import C_MASS
 from sebody.kernels.pipeline import compiled
 
-RELAXATION = 1e-7       # of R at multipliers
-LIGHT = 1e-4            # of R at thin bodies, relative to their largest moment of inertia
-WEAKEST = 1e-6          # strength of constraints below which a small matrix is regularized
-CLEANINGS = 3           # projections of the multipliers: what they leave of a part, see `spread`
+RELAXATION = 1e-8       # of R at multipliers
+LIGHT = 1e-2            # of R at thin bodies, relative to their largest moment of inertia
+WEAKEST = 1e-7          # strength of constraints below which a small matrix is regularized
+PROJECTIONS = 2         # of corrections: rounding over RELAXATION to this power is left
 
 
 @compiled
 def relax(system, state):
     """Add R to the iteration matrix."""
+    for k in range(system.pulls.size):
+        state.pulls[k] = state.matrix[system.pulls[k]]
     _set_relaxation(system, state)
     for i in range(system.diagonal.size):
         state.matrix[system.diagonal[i]] += state.relaxation[i]
@@ -67,30 +69,33 @@ def _set_relaxation(system, state):
 
 
 @compiled
-def project_inverse(state, inverse, n):
-    """Make the scaled inverse of A, transposed, that of ``A^-1 M A^-1``; in place."""
-    product = inverse.copy()
+def project_inverse(system, state, inverse, n):
+    """Project the scaled inverse of A, transposed, in place."""
+    R, result, row = np.zeros((n, n)), inverse.copy(), np.empty(n)
     for k in range(n):
-        R = state.relaxation[k] * state.scale[k] * state.scale[k]
         for j in range(n):
-            product[k, j] *= R
-    row = np.empty(n)
-    for i in range(n):
-        row[:] = inverse[i]
-        for k in range(n):
-            for j in range(n):
-                inverse[i, j] -= row[k] * product[k, j]
+            R[k, j] = (state.relaxation[k] * system.is_multiplier[k] * state.scale[k]
+                       * state.scale[k] * inverse[k, j])
+    for _ in range(PROJECTIONS):
+        for i in range(n):
+            row[:] = result[i]
+            for k in range(n):
+                for j in range(n):
+                    result[i, j] -= row[k] * R[k, j]
+    inverse[:] = result
 
 
 @compiled
 def project(system, state):
     """Project the correction that was solved for by blocks."""
     n = system.diagonal.size
-    for i in range(n):
-        state.projected[i] = state.relaxation[i] * state.correction[i]
-    elimination.solve(system, state, state.projected, state.projected)
-    for i in range(n):
-        state.correction[i] -= state.projected[i]
+    for _ in range(PROJECTIONS):
+        for i in range(n):
+            state.projected[i] = (state.relaxation[i] * system.is_multiplier[i]
+                                  * state.correction[i])
+        elimination.solve(system, state, state.projected, state.projected)
+        for i in range(n):
+            state.correction[i] -= state.projected[i]
 
 
 @compiled
@@ -103,7 +108,7 @@ def spread(system, state, inverse, dense):
     n, part = system.diagonal.size, state.projected
     for i in range(n):
         part[i] = state.q[i] * system.is_multiplier[i]
-    for _ in range(CLEANINGS):
+    for _ in range(PROJECTIONS):
         for i in range(n):
             part[i] *= state.relaxation[i] * system.is_multiplier[i]
         if dense:
@@ -127,3 +132,25 @@ def _times_inverse(state, inverse, x, n):
         for j in range(n):
             total += inverse[j, i] * right[j]
         x[i] = state.scale[i] * total
+
+
+@compiled
+def force_norms(system, state):
+    """Squared norms of the forces of a correction of the multipliers, and of the multipliers.
+
+    Forces are divided by the scales of the matrix, as corrections of coordinates are: a part of the
+    multipliers that exerts little force may be as uncertain as the force allows.
+    """
+    n, change, force = system.diagonal.size, state.projected, state.pulled
+    for i in range(n):
+        change[i] = force[i] = 0.0
+    for k in range(system.pulls.size):
+        i, j = system.rows[system.pulls[k]], system.columns[system.pulls[k]]
+        change[i] += state.pulls[k] * state.correction[j]
+        force[i] += state.pulls[k] * state.q[j]
+    norm = size = 0.0
+    for i in range(n):
+        x, y = change[i] * state.scale[i], force[i] * state.scale[i]
+        norm += x * x
+        size += y * y
+    return norm, size

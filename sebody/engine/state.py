@@ -102,7 +102,8 @@ class State(Arrays):
     weight                (N,) one over `scale`: norms of corrections are weighted by these
     inverse               (n, padded n) inverse of a small matrix, scales included, by columns
     relaxation            (N,) diagonal R of a regularized matrix, see `sebody.engine.relaxation`
-    projected             (N,) scratch memory of its projections
+    pulls                 entries `System.pulls` of the matrix, before elimination
+    projected, pulled     (N,) scratch memory of projections
     column                scratch memory of the elimination for a column of blocks
     --------------------  --------------------------------------------------------------------------
     counters
@@ -152,7 +153,9 @@ class State(Arrays):
     weight: NDArray
     inverse: NDArray
     relaxation: NDArray
+    pulls: NDArray
     projected: NDArray
+    pulled: NDArray
     column: NDArray
     work: NDArray
     energy: NDArray

@@ -36,6 +36,7 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     rows, columns       of every stored entry
     diagonal            (n,) entry on the diagonal of each unknown
+    pulls               entries in columns of multipliers, without their diagonal
     padding             entries with ones: the diagonal of free slots
     block_starts        pattern of the blocks, see `sebody.engine.elimination`; empty for a small
     block_rows          matrix, as the next ones
@@ -95,6 +96,7 @@ class System(Arrays):
     rows: NDArray
     columns: NDArray
     diagonal: NDArray
+    pulls: NDArray
     padding: NDArray
     block_starts: NDArray
     block_rows: NDArray
