@@ -165,11 +165,13 @@ def accelerate(state, n, norm):
     """Anderson mixing with the last correction; returns the norm of the mixed correction.
 
     With matrices of the predicted state the error of a taut chain that rotates decays slowly in
-    one direction, which mixing with one correction removes.
+    one direction, which mixing with one correction removes. With a regularized matrix the
+    multipliers are too uncertain for it.
     """
     correction, last, change = state.correction, state.last_correction, state.last_change
     along = square = mix = 0.0
-    if state.control[SECANT] == 1 and norm > QUICK * state.clock[LAST_NORM]:
+    if (state.control[SECANT] == 1 and norm > QUICK * state.clock[LAST_NORM]
+            and state.control[RELAXED] == 0):
         for i in range(n):
             w = state.weight[i]
             difference = (correction[i] - last[i]) * w
