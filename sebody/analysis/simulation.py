@@ -19,7 +19,7 @@ from sebody.analysis.tolerance import Tolerance
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
-from sebody.engine.relaxation import relax
+from sebody.engine.relaxation import RELAXATION, relax
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
@@ -192,7 +192,7 @@ class Simulation:
     def factorize(self) -> None:
         """Factorize with row exchanges, where elimination by blocks met a small pivot."""
         if not self._factorized():
-            relax(self.system, self.state)
+            relax(self.system, self.state, RELAXATION)
             self._factorized()
 
     def _factorized(self) -> bool:

@@ -4,7 +4,15 @@ import numpy as np
 
 from sebody.engine import elimination
 from sebody.engine.links import add_expanded, add_second_order
-from sebody.engine.relaxation import WEAKEST, project, project_inverse, relax, spread
+from sebody.engine.relaxation import (
+    EXCHANGED,
+    RELAXATION,
+    WEAKEST,
+    project,
+    project_inverse,
+    relax,
+    spread,
+)
 from sebody.engine.state import EVALUATED, FLOOR, PIVOTED, RELAXED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
@@ -159,10 +167,10 @@ def refactorize(system, state, wanted, dense):
         n = system.diagonal.size
         if not relaxed and invert_dense(system, state, n, False, wanted):
             return True
-        relax(system, state)
+        relax(system, state, EXCHANGED)
         return invert_dense(system, state, n, True, wanted)
     if relaxed:
-        relax(system, state)
+        relax(system, state, RELAXATION)
     done = elimination.eliminate(
         system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
         pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
@@ -171,7 +179,7 @@ def refactorize(system, state, wanted, dense):
     if not done:
         sum_matrices(system, state, state.forces)
         if relaxed:
-            relax(system, state)
+            relax(system, state, RELAXATION)
     elif relaxed and wanted == EVALUATED:
         spread(system, state, state.inverse, False)
     return True

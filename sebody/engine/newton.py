@@ -59,7 +59,8 @@ QUICK = 0.05            # a contraction rate below this needs no acceleration by
 def apply_correction(system, state, scheme, mixed):
     """Subtract the solved correction; returns the verdict on the step, CONVERGED to GIVE_UP."""
     n = system.diagonal.size
-    norm, size, accelerations = _norms(system, state, n)
+    relaxed = state.control[RELAXED] == 1
+    norm, size, accelerations = _norms(system, state, n, relaxed)
     if not np.isfinite(norm):
         state.clock[LAST_NORM] = norm
         return GIVE_UP
@@ -72,8 +73,8 @@ def apply_correction(system, state, scheme, mixed):
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock[FLOOR]
     state.clock[ACCELERATION_NORM], state.clock[TARGET] = accelerations, target
     verdict = _verdict(system, state, norm, left_norm, target)
-    if verdict == CONVERGED and state.control[RELAXED] == 1 and leaves_gap(
-            system, state, norm, scheme.stabilized):
+    ended = verdict == CONVERGED or verdict == GIVE_UP
+    if ended and relaxed and leaves_gap(system, state, norm, scheme.stabilized):
         return LEAVES_GAP
     return verdict
 
@@ -95,10 +96,9 @@ def leaves_gap(system, state, norm, stabilized):
 
 
 @compiled(forceinline=True)
-def _norms(system, state, n):
+def _norms(system, state, n, relaxed):
     """Norms of the correction, of the increment with the multipliers, and of the accelerations."""
     norm = size = accelerations = 0.0
-    relaxed = state.control[RELAXED] == 1
     if relaxed:
         norm, size = force_norms(system, state)
     for i in range(n):

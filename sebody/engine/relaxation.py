@@ -22,25 +22,26 @@ from sebody.engine.state import RELAXED
 from sebody.kernels.layout import C_MASS
 from sebody.kernels.pipeline import compiled
 
-RELAXATION = 1e-8       # of R at multipliers
-LIGHT = 1e-2            # of R at thin bodies, relative to their largest moment of inertia
+RELAXATION = 1e-8       # of R at multipliers, for elimination without row exchanges
+EXCHANGED = 1e-10       # the same for inverses, which rounding spoils less
+LIGHT = 1e-4            # of R at thin bodies, relative to their largest moment of inertia
 WEAKEST = 1e-7          # strength of constraints below which a small matrix is regularized
 PROJECTIONS = 2         # of corrections: rounding over RELAXATION to this power is left
 
 
 @compiled
-def relax(system, state):
+def relax(system, state, relaxation):
     """Add R to the iteration matrix."""
     for k in range(system.pulls.size):
         state.pulls[k] = state.matrix[system.pulls[k]]
-    _set_relaxation(system, state)
+    _set_relaxation(system, state, relaxation)
     for i in range(system.diagonal.size):
         state.matrix[system.diagonal[i]] += state.relaxation[i]
     state.control[RELAXED] = 1
 
 
 @compiled
-def _set_relaxation(system, state):
+def _set_relaxation(system, state, relaxation):
     """R from the masses and from the rows of the constraints, in units of the matrix."""
     n, size, R = system.diagonal.size, state.projected, state.relaxation
     mass = state.coefficients[C_MASS]
@@ -63,8 +64,9 @@ def _set_relaxation(system, state):
             R[i] = LIGHT * mass * system.thin[i]
         else:
             strength = size[system.part[i]]
-            R[i] = -RELAXATION * (strength if strength > 0.0 else 1.0)
-            state.weight[i] = np.sqrt(-R[i] / RELAXATION)
+            strength = strength if strength > 0.0 else 1.0
+            R[i] = -relaxation * strength
+            state.weight[i] = np.sqrt(strength)
             state.scale[i] = 1.0 / state.weight[i]
 
 
