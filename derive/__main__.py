@@ -24,6 +24,7 @@ from sebody.derive.kernels.options import (
     inertia_traits,
 )
 from sebody.derive.printing.options import options_text
+from sebody.files import replacing
 from sebody.kernels.loader import user_directory
 from sebody.kernels.names import PREFIXES
 
@@ -78,7 +79,8 @@ def write(directory: Path, files: dict[str, str]) -> list[str]:
     for name, text in files.items():
         path = directory / name
         if not path.exists() or path.read_text() != text:
-            path.write_text(text)
+            with replacing(path, "kernel") as file:
+                file.write(text.encode())
             changed.append(name)
     return changed
 

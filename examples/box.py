@@ -20,7 +20,17 @@ PUSH = [(0.0, 0.0), (0.3, 40.0), (0.6, 0.0)]
 
 
 def build(layout: str = "small", modes: int = 6, elements: int = 4) -> Scene:
-    """The scene; `layout` is 'small' (corners without rotation) or 'full'."""
+    """The scene.
+
+    Parameters
+    ----------
+    layout : str
+        'small': corners without rotation; 'full': with it.
+    modes : int
+        Internal modes.
+    elements : int
+        Finite elements a member.
+    """
     keep = {"small": "translation", "full": "full"}[layout]
     edges = [(i, j) for i, j in combinations(range(8), 2)
              if np.count_nonzero(CORNERS[i] != CORNERS[j]) == 1]

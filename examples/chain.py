@@ -24,7 +24,15 @@ def link_body(modes: int = 4, elements: int = 10) -> ReducedBody:
 
 
 def build(links: int = 16, modes: int = 4) -> Scene:
-    """The scene: `links` links of `modes` internal modes, the first one hinged to the ground."""
+    """The scene: a chain let go from the horizontal.
+
+    Parameters
+    ----------
+    links : int
+        Number of links, the first one hinged to the ground.
+    modes : int
+        Internal modes a link.
+    """
     body, model = link_body(modes), Model()
     model.gravity(GRAVITY)
     base = model.node("base", np.zeros(3))

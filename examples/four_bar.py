@@ -12,7 +12,13 @@ INERTIA = 1.0 / 12.0        # of a rod of mass and length one about its middle
 
 
 def build(loops: int = 2) -> Scene:
-    """The scene: upright, its first joint moving with velocity one (IFToMM benchmark A02)."""
+    """The scene: upright, its first joint moving with velocity one (IFToMM benchmark A02).
+
+    Parameters
+    ----------
+    loops : int
+        Number of four-bar loops side by side.
+    """
     model = Model(planar=True)
     model.gravity(GRAVITY)
     for k in range(loops + 1):

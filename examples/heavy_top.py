@@ -12,7 +12,13 @@ SPIN = (0.0, 150.0, -4.61538)               # [rad/s]
 
 
 def build(explicit: bool = False) -> Scene:
-    """The scene: axis along y, gravity along -z."""
+    """The scene: axis along y, gravity along -z.
+
+    Parameters
+    ----------
+    explicit : bool
+        Hold the pivot by a spherical joint with multipliers, the node being the centre of mass.
+    """
     model = Model()
     model.gravity((0.0, 0.0, -9.81))
     pivot, centre = (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)

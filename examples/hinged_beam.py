@@ -11,7 +11,23 @@ TORQUE = [(0.0, 0.0), (2.5, 1.2e4), (5.0, 1.2e4), (7.5, 0.0)]
 
 def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 4,
           elements: int = 20, frame_node: int = 0, bodies: int = 1) -> Scene:
-    """The scene: beam of length 100 sqrt(2) along (1, 1, 0), hinged about z at its base."""
+    """The scene: beam of length 100 sqrt(2) along (1, 1, 0), hinged about z at its base.
+
+    Parameters
+    ----------
+    frame : str
+        Frame of the bodies: converged_mean, mean, mean_small, or node (attached to a node).
+    inertia : str
+        Inertia option, a or b: angular velocities in frame axes or material.
+    modes : int
+        Internal modes a body.
+    elements : int
+        Finite elements of the whole beam; bodies with one element and no modes are nonlinear beams.
+    frame_node : int
+        With frame=node, the node of a body that its frame is attached to: 0 or 1.
+    bodies : int
+        Number of equal superelements the beam is divided into.
+    """
     model = Model()
     base, tip = model.node("base", (0.0, 0.0, 0.0)), model.node("tip", (100.0, 100.0, 0.0))
     model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia,

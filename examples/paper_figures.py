@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import simulate
+from sebody.results.plots import write_picture
 from sebody.scenes import hinged_beam, spherical_beam
 from sebody.scenes.scene import Scene
 
@@ -98,7 +99,7 @@ def draw(hinged: dict[str, Run], spherical: dict[str, Run], path: Path) -> None:
         axes.legend(frameon=False, fontsize=9)
     panels[-1].axis("off")
     panels[-1].text(0.0, 0.9, table(hinged, spherical), family="monospace", fontsize=10, va="top")
-    figure.savefig(path, dpi=120)
+    write_picture(figure, path, 120)
 
 
 def main() -> None:

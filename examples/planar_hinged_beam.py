@@ -7,7 +7,21 @@ from sebody.scenes.scene import Scene
 
 def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 2,
           elements: int = 20, bodies: int = 1) -> Scene:
-    """The scene; two modes in the plane are what is left of the four of the spatial one."""
+    """The scene; two modes in the plane are what is left of the four of the spatial one.
+
+    Parameters
+    ----------
+    frame : str
+        Frame of the bodies: converged_mean, or node (attached to their first node).
+    inertia : str
+        Inertia option, a or b: angular velocities in frame axes or material.
+    modes : int
+        Internal modes a body.
+    elements : int
+        Finite elements of the whole beam; bodies with one element and no modes are nonlinear beams.
+    bodies : int
+        Number of equal superelements the beam is divided into.
+    """
     model = Model(planar=True)
     base, tip = model.node("base", (0.0, 0.0)), model.node("tip", (100.0, 100.0))
     model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia)

@@ -16,7 +16,17 @@ PUSH = [(0.0, 0.0), (0.5, 60.0), (1.0, 0.0)]
 
 
 def build(layout: str = "small", modes: int = 6, elements: int = 10) -> Scene:
-    """The scene; `layout` is 'small' (load node without rotation) or 'full'."""
+    """The scene.
+
+    Parameters
+    ----------
+    layout : str
+        'small': load node without rotation; 'full': with it.
+    modes : int
+        Internal modes.
+    elements : int
+        Finite elements a leg.
+    """
     keep = {"small": "translation", "full": "full"}[layout]
     fe_model = frame(POINTS, [(0, 1), (1, 2)], SECTION, elements)
     body = craig_bampton(fe_model, [(0, "full"), (1, "full"), (2, keep)], modes)

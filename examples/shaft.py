@@ -18,7 +18,17 @@ TORQUE = [(0.0, 0.0), (0.2, 1.0), (0.8, 1.0), (1.0, 0.0)]
 
 
 def build(layout: str = "small", modes: int = 8, elements: int = 16) -> Scene:
-    """The scene; `layout` is 'small' (gear seat without position) or 'full'."""
+    """The scene.
+
+    Parameters
+    ----------
+    layout : str
+        'small': gear seat without position; 'full': with it.
+    modes : int
+        Internal modes.
+    elements : int
+        Finite elements, an even number.
+    """
     keep = {"small": "rotation", "full": "full"}[layout]
     half = elements // 2
     start, end = np.zeros(3), np.array([LENGTH, 0.0, 0.0])

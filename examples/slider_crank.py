@@ -19,7 +19,21 @@ ELEMENTS = 24
 
 def build(bodies: int = 1, modes: int = 5, elements: int = ELEMENTS,
           frame: str = "converged_mean", inertia: str = "b") -> Scene:
-    """The scene: the rod is divided into equal superelements."""
+    """The scene, moving from the start.
+
+    Parameters
+    ----------
+    bodies : int
+        Number of equal superelements the rod is divided into.
+    modes : int
+        Internal modes a body.
+    elements : int
+        Finite elements of the whole rod; bodies with one element and no modes are nonlinear beams.
+    frame : str
+        Frame of the bodies: converged_mean, or node (attached to their first node).
+    inertia : str
+        Inertia option, a or b: angular velocities in frame axes or material.
+    """
     model = Model(planar=True)
     pin = model.node("pin", (RADIUS, 0.0))
     slider = model.node("slider", (RADIUS + LENGTH, 0.0))

@@ -14,7 +14,23 @@ PUSH = [(15.0, 0.0), (15.2, 100.0), (15.4, 0.0)]
 
 def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 8,
           elements: int = 20, frame_node: int = 0, bodies: int = 1) -> Scene:
-    """The scene: a torque of impulse 2000 about z at the base, an impulse of 20 along z at 15."""
+    """The scene: a torque of impulse 2000 about z at the base, an impulse of 20 along z at 15.
+
+    Parameters
+    ----------
+    frame : str
+        Frame of the bodies: converged_mean, mean, mean_small, or node (attached to a node).
+    inertia : str
+        Inertia option, a or b: angular velocities in frame axes or material.
+    modes : int
+        Internal modes a body.
+    elements : int
+        Finite elements of the whole beam; bodies with one element and no modes are nonlinear beams.
+    frame_node : int
+        With frame=node, the node of a body that its frame is attached to: 0 or 1.
+    bodies : int
+        Number of equal superelements the beam is divided into.
+    """
     model = Model()
     base, tip = model.node("base", (0.0, 0.0, 0.0)), model.node("tip", (LENGTH, 0.0, 0.0))
     model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia,

@@ -14,7 +14,23 @@ def strike(t: float) -> float:
 
 def build(F0: float = 2800.0, frame: str = "converged_mean", inertia: str = "b",
           modes: int = 4, elements: int = 20, bodies: int = 1) -> Scene:
-    """The scene: torque of the hinged beam, then a force of peak `F0` along z at the tip."""
+    """The scene: torque of the hinged beam, then a blow at the tip.
+
+    Parameters
+    ----------
+    F0 : float
+        Peak of the force along z at the tip.
+    frame : str
+        Frame of the bodies: converged_mean, mean, mean_small, or node (attached to a node).
+    inertia : str
+        Inertia option, a or b: angular velocities in frame axes or material.
+    modes : int
+        Internal modes a body.
+    elements : int
+        Finite elements of the whole beam; bodies with one element and no modes are nonlinear beams.
+    bodies : int
+        Number of equal superelements the beam is divided into.
+    """
     model = Model()
     base, tip = model.node("base", (0.0, 0.0, 0.0)), model.node("tip", (100.0, 100.0, 0.0))
     model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia)

@@ -18,7 +18,22 @@ CASES = {   # length, final speed, axial, shear and bending stiffness, mass a le
 
 def build(case: str = "kane", bodies: int = 8, modes: int = 0, elements: int = 32,
           frame: str = "converged_mean", inertia: str = "b") -> Scene:
-    """The scene: the arm is divided into equal superelements.
+    """The scene: the root turns as prescribed.
+
+    Parameters
+    ----------
+    case : str
+        'kane' or 'simo': length, stiffnesses, mass and final speed of the arm.
+    bodies : int
+        Number of equal superelements the arm is divided into.
+    modes : int
+        Internal modes a body.
+    elements : int
+        Finite elements of the whole arm; bodies with one element and no modes are nonlinear beams.
+    frame : str
+        Frame of the bodies: converged_mean, or node (attached to their first node).
+    inertia : str
+        Inertia option, a or b: angular velocities in frame axes or material.
 
     Raises
     ------

@@ -5,7 +5,15 @@ from sebody.scenes.scene import Scene
 
 
 def build(inertia: tuple = (1.0, 2.0, 3.0), spin: tuple = (0.01, 1.0, 0.01)) -> Scene:
-    """The scene: principal moments of inertia and initial angular velocity."""
+    """The scene: a rigid body held at its centre.
+
+    Parameters
+    ----------
+    inertia : tuple
+        Principal moments of inertia.
+    spin : tuple
+        Initial angular velocity.
+    """
     model = Model()
     centre = model.node("centre", (0.0, 0.0, 0.0))
     model.fix(centre, "position")

@@ -31,9 +31,11 @@ INERTIA_OPTIONS = {
     "a": InertiaTraits(
         "angular velocities in frame axes (option A)",
         material=False,
+        modes_apart=True,
     ),
     "b": InertiaTraits(
         "material angular velocities (option B)",
         material=True,
+        modes_apart=True,
     ),
 }

@@ -50,7 +50,7 @@ WORK_ROWS = 32
 OPERATIONS = {"residual": (300, 136, 375, 3),
               "column": (81, 172, 1195, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "bb80a864fade"     # hash of sebody/kernels, which this file was made for
+ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -50,7 +50,7 @@ WORK_ROWS = 35
 OPERATIONS = {"residual": (425, 136, 247, 3),
               "column": (337, 172, 709, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "bb80a864fade"     # hash of sebody/kernels, which this file was made for
+ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

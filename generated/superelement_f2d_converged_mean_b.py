@@ -53,7 +53,7 @@ WORK_ROWS = 35
 OPERATIONS = {"residual": (300, 157, 329, 4),
               "column": (81, 205, 1036, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "bb80a864fade"     # hash of sebody/kernels, which this file was made for
+ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -50,7 +50,7 @@ WORK_ROWS = 31
 OPERATIONS = {"residual": (300, 136, 249, 3),
               "column": (81, 172, 811, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "bb80a864fade"     # hash of sebody/kernels, which this file was made for
+ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

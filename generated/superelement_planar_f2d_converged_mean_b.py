@@ -52,7 +52,7 @@ WORK_ROWS = 33
 OPERATIONS = {"residual": (212, 72, 6, 4),
               "column": (13, 85, 8, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "bb80a864fade"     # hash of sebody/kernels, which this file was made for
+ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -49,7 +49,7 @@ WORK_ROWS = 29
 OPERATIONS = {"residual": (212, 61, 5, 3),
               "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "bb80a864fade"     # hash of sebody/kernels, which this file was made for
+ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -4,11 +4,18 @@ from sebody.analysis.accuracy import simulate_within
 from sebody.analysis.schemes import generalized_alpha, hht
 from sebody.analysis.simulation import Simulation, simulate
 from sebody.analysis.tolerance import Tolerance
-from sebody.errors import InputError, LimitWarning, SebodyError, SimulationError
+from sebody.errors import (
+    InputError,
+    Interrupted,
+    LimitWarning,
+    SebodyError,
+    SimulationError,
+    WriteError,
+)
 from sebody.model.histories import with_corners
 from sebody.model.model import Model
 from sebody.results.result import Result
 
-__all__ = ["InputError", "LimitWarning", "Model", "Result", "SebodyError", "Simulation",
-           "SimulationError", "Tolerance", "generalized_alpha", "hht", "simulate",
-           "simulate_within", "with_corners"]
+__all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
+           "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha", "hht",
+           "simulate", "simulate_within", "with_corners"]

@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 ROOMS = {
-    "sebody": {"InputError", "LimitWarning", "Model", "Result", "SebodyError", "Simulation",
-               "SimulationError", "Tolerance", "generalized_alpha", "hht", "simulate",
-               "simulate_within", "with_corners"},
+    "sebody": {"InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
+               "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha",
+               "hht", "simulate", "simulate_within", "with_corners"},
     "sebody.analysis": {"Linearization", "Modes", "Vibrations", "equilibrium", "linearize",
                         "modes", "resume", "save_state", "spin_limit", "vibrations"},
     "sebody.results": {"Recording", "Result", "Start", "save_picture"},
-    "sebody.fem": {"FEModel", "Section", "frame", "hexahedral_block", "planar_beam",
-                   "straight_beam"},
+    "sebody.fem": {"FEModel", "Section", "StiffnessSection", "circle", "frame", "hexahedral_block",
+                   "i_profile", "planar_beam", "rectangle", "straight_beam", "tube"},
     "sebody.reduction": {"ComponentModes", "ReducedBody", "body_weights", "component_modes",
                          "craig_bampton", "frame_weights"},
     "sebody.io": set(),

@@ -110,8 +110,9 @@ class StepPrinter:
         rows, columns = step.shape
         if rows == columns:
             self.products += 1
-            columns = "filled"
-        return [f"{step.call}({step.matrix}, {step.vector}, {step.out}, {rows}, {columns})"]
+            columns = "filled" if self.layout.modes is None else rows
+        call = product_name(step.call, self.layout)
+        return [f"{call}({step.matrix}, {step.vector}, {step.out}, {rows}, {columns})"]
 
     def _solve(self, step: Solve) -> list[str]:
         unknown = step.unknown
@@ -215,3 +216,8 @@ def _axis(symbol: sp.Symbol) -> str:
 
 def _zero(symbols: list) -> str:
     return " = ".join(map(str, symbols)) + " = 0.0"
+
+
+def product_name(name: str, layout: Layout) -> str:
+    """The function for a product: where n is a constant the product is inlined, zeros and all."""
+    return "columns_times" if name == "arrow_times" and layout.modes is not None else name

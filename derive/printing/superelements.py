@@ -10,7 +10,7 @@ from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.printing import parts, templates
 from sebody.derive.printing.expressions import indented
 from sebody.derive.printing.imports import import_lines
-from sebody.derive.printing.step_printer import StepPrinter
+from sebody.derive.printing.step_printer import StepPrinter, product_name
 from sebody.kernels.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS
 from sebody.kernels.sources import room_hash
 
@@ -26,7 +26,7 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     tangent = printer.lines(kernel.tangent)
     return templates.SUPERELEMENT.format(
         **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
-        filled="int(full[0])" if layout.modes is None else "n",
+        filled=templates.FILLED * (layout.modes is None),
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
         reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows), rows=indented([*_reads(layout), *_rows(uses.rows)], 1),
@@ -64,7 +64,8 @@ def _constants(kernel: Superelement) -> dict[str, str]:
 
 def _names(kernel: Superelement, uses: Resources) -> set[str]:
     """Names of the runtime in the file."""
-    names = {*templates.SUPERELEMENT_NAMES, *uses.calls}
+    names = {*templates.SUPERELEMENT_NAMES, *(product_name(name, kernel.layout)
+                                              for name in uses.calls)}
     names |= set(templates.DAMPING_NAMES) if kernel.layout.damped else set()
     names |= set(templates.GENERAL_NAMES) if kernel.layout.nodes is None else set()
     return names | ({"Part"} if kernel.declared else set())

@@ -52,8 +52,7 @@ ROOM = "{room}"     # hash of sebody/kernels, which this file was made for
 {reference}        nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
 {chain}
-        filled = {filled}
-        g = at(forces, element*n)
+{filled}        g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
             ve[i] = v[unknowns[i]]
@@ -97,6 +96,7 @@ FRICTION = (
     "energies[POWERS + index[first + AT_PORT]] = lost",
 )
 
+FILLED = "        filled = int(full[0])\n"
 REFERENCE = "        reference = at(references, 9*index[first + AT_FRAME])\n"
 
 # position rows and columns of a matrix are in the axes of the frame, where it hardly changes

@@ -4,11 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sebody import inputs
 from sebody.analysis.simulation import Simulation
-from sebody.analysis.tolerance import Tolerance
+from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.numbering import rotational
 from sebody.engine.state import Scheme
-from sebody.errors import SimulationError
+from sebody.errors import Interrupted, SimulationError
 from sebody.model.model import Model
 from sebody.results.result import Result
 
@@ -47,14 +48,26 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     SimulationError
         A run fails, or the error does not fall: the motion may be chaotic. The last run is the
         `result` of the exception.
+    Interrupted
+        Ctrl-C; the last whole run is the `result`, or what there is of the first one.
     """
-    wanted = (tolerance or Tolerance()).check()
+    inputs.instance(model, "model", Model, "give a sebody.Model")
+    wanted = given(tolerance) or Tolerance()
+    points = [np.abs(node.point).max() for node in model.nodes.values()]
+    wanted.check_reachable(max(points, default=0.0))
     share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
     before: Result | None = None
     differences: list[float] = []
     while True:
         local = Tolerance(*(share * value for value in wanted))
-        now = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
+        try:
+            now = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
+        except KeyboardInterrupt as stop:
+            if before is None:
+                raise
+            before.failure = (f"{stop or 'interrupted'}; kept is the run before, of larger steps, "
+                              "whose error may be above the tolerance")
+            raise Interrupted(before.failure, before) from stop
         seconds += now.seconds
         now.all_seconds = seconds
         if before is None:

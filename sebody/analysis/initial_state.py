@@ -6,6 +6,7 @@ from scipy.sparse import csc_matrix
 
 from sebody.analysis.evaluation import evaluate, matrix
 from sebody.analysis.redundancy import Solver, least, part_sizes
+from sebody.analysis.user_faults import fault
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.engine.evaluate import (
     move_prescribed,
@@ -42,6 +43,8 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     place_dependent(system.links, state.q, state.v, state.a, state.R)
     multipliers = np.flatnonzero(system.is_multiplier)
     masses = _masses(system, state)
+    if did := fault(model, 0.0):
+        raise InputError(f"{WHAT} cannot be evaluated: {did}")
     residuals = state.residual[multipliers]
     _check(residuals, np.abs(state.q).max(), "position", multipliers, numbering,
            "start from a state the joints allow")
@@ -131,6 +134,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
     place_dependent(system.links, state.q, state.v, state.a, state.R)
+    size = max(size, np.abs(state.v).max())     # everything may have been at rest before
     for triplet in given:
         change = np.abs(answer[coordinates(numbering, triplet)]).max()
         if change > 1e-6 * size:

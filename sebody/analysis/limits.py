@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
+from sebody import inputs
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
@@ -127,8 +128,19 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
     Parameters
     ----------
     axis : (3,) or None
-        Unit vector; None for the smallest value that any axis could have.
+        Direction; None for the smallest value that any axis could have.
+
+    Raises
+    ------
+    InputError
+        No superelement, or no direction.
     """
+    inputs.instance(body, "body", Superelement, "give a superelement of a model")
+    if axis is not None:
+        axis = inputs.vector(axis, "axis", None if body.body.planar else 3)
+        if not np.any(axis):
+            raise inputs.refusal("axis", axis, "give its direction")
+        axis = axis / np.linalg.norm(axis)
     reduced = body.body
     planar, count = reduced.planar, len(reduced.position_nodes)
     d, size = (2, 1) if planar else (3, 3)

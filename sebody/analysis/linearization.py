@@ -9,9 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eig, eigh, null_space
+from scipy.linalg import LinAlgError, eig, eigh, null_space
 from scipy.sparse import csc_matrix
 
+from sebody import inputs
+from sebody.analysis import user_faults
 from sebody.analysis.evaluation import matrix
 from sebody.analysis.simulation import Simulation
 from sebody.assembly.numbering import coordinates
@@ -37,12 +39,10 @@ class Spin:
             The wrong shape or no numbers, or rigid links that rotate.
         """
         planar = run.model.planar
-        shape = () if planar else (3,)
-        given = np.zeros(shape) if velocity is None else np.asarray(velocity, dtype=float)
-        if given.shape != shape or not np.isfinite(given).all():
-            raise InputError(f"spin is {velocity}: give "
-                             + ("a number" if planar else "three numbers"))
-        spin = cls(given, planar)
+        if velocity is None:
+            velocity = 0.0 if planar else np.zeros(3)
+        spin = cls(np.array(inputs.number(velocity, "spin", remedy="give a number")) if planar else
+                   inputs.vector(velocity, "spin", 3, remedy="give three numbers"), planar)
         if spin.rotates and run.numbering.dependent:
             raise InputError(f"{run.numbering.dependent[0].name} hangs on a rigid link, which the "
                              "tangents of turning states leave out: give it a body of its own")
@@ -166,12 +166,18 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     InputError
         A state that cannot be evaluated, a wrong spin, or one with rigid links.
     """
+    inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
+                    "of an equilibrium")
     steady = Spin.of(run, spin)
+    user_faults.forget(run.model)
     stiffness, _ = rotating(run, steady)
     mass, damping = derivative(run, 1.0, 0.0, 0.0), derivative(run, 0.0, 1.0, 0.0)
     if steady.rotates:
         damping = damping + mass @ steady.operators(run)[2]
     K, C, M = (A.toarray() for A in (stiffness, damping, mass))
+    if not all(np.isfinite(A).all() for A in (K, C, M)):
+        did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
+        raise InputError(f"the state cannot be evaluated: {did}")
     n = len(K)
     multipliers = np.flatnonzero(run.system.is_multiplier[:n])
     moving = np.setdiff1d(np.arange(n), multipliers)
@@ -196,11 +202,18 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
     InputError
         The state moves, or is not stable: a square of a frequency is negative.
     """
+    if count is not None:
+        count = inputs.integer(count, "count", least=1)
+    inputs.instance(run, "run", Simulation | Result, "give a Simulation or a Result")
     if np.abs(run.state.v).max() > 0:
         raise InputError("the state moves: vibrations are about states at rest, modes about "
                          "moving ones")
     M, _, K, free = linearize(run)
-    squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
+    try:
+        squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
+    except LinAlgError as error:
+        raise InputError("the model has motions without mass, which have no frequency: give every "
+                         "rotation inertia, or use modes") from error
     if squares[0] < -100 * np.finfo(float).eps * squares[-1]:
         raise InputError(f"the state is not stable: the lowest square of a frequency is "
                          f"{squares[0]:.4g}")

@@ -7,12 +7,14 @@ from scipy.sparse import csc_matrix
 from sebody.analysis.sparse import Relaxed, Scaled
 from sebody.assembly.numbering import Numbering
 from sebody.engine.matrix import THIN
+from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
 
 WEAK = 1e-6             # pivot of a redundant constraint; of another one, its strength
 CONTRADICTION = 1e-7    # residual that contradicting constraints leave, relative to the largest
 MASSLESS = 1e-13        # inertia of a motion that has none, relative to that of its body
+SHARED = 0.1            # residual of a constraint that has part in a contradiction, of the largest
 PROBES = 8              # iterations after which the motion with the least inertia is left
 HALF = 0.5              # of such a motion, `Relaxed.unmoved` leaves all; of others little
 
@@ -106,6 +108,20 @@ class Solver:
             name = self.names[int(np.argmax(np.abs(probe)))]
             raise InputError(f"the mass is singular at {name}: nothing with mass moves with it; "
                              "give it a mass, fix it, or leave it out")
+
+
+def contradiction(system: System, state: State, numbering: Numbering) -> str:
+    """What a failed step cannot meet: constraints, or a force on something without mass."""
+    n = system.diagonal.size
+    left = np.abs(state.scale[:n] * (state.residual[:n] + state.constraint_residuals[:n]))
+    worst = int(np.argmax(left))
+    if not multiplying(system)[worst]:
+        return (f"a force acts on {numbering.names[worst]}, with which nothing that has mass "
+                "moves: give it a mass or fix it")
+    parties = np.flatnonzero((left > SHARED * left.max()) & multiplying(system))
+    joints = dict.fromkeys(numbering.names[k].partition(" of ")[2] for k in parties)
+    return (f"the constraints of {', '.join(joints)} contradict each other: no motion meets them "
+            "all; remove one, or give the drives motions that fit")
 
 
 def thin_parts(matrix: csc_matrix, system: System) -> NDArray:

@@ -2,21 +2,24 @@
 
 import json
 from dataclasses import fields
-from hashlib import sha256
 from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy as np
 
+from sebody import inputs
+from sebody.analysis.fingerprint import fingerprint
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
 from sebody.engine.state import PIVOTED, Scheme, State
 from sebody.errors import InputError
+from sebody.files import check_target, replacing
 from sebody.model.model import Model
-from sebody.results.files import check_target
 
 VERSION = 2
 TARGET = "restart file", (".npz",)      # see `files.check_target`
+SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
+FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old", "clock")
 
 
 def save_state(run: Simulation, path: str | Path) -> Path:
@@ -25,15 +28,18 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     Raises
     ------
     InputError
-        Another ending, or a folder that does not exist.
+        A target that cannot be written, see `check_target`.
+    WriteError
+        Writing fails; an older file is unchanged.
     """
     path = check_target(path, *TARGET)
     settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
                 "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
-                "model": _fingerprint(run)}
+                "model": fingerprint(run)}
     arrays = {field.name: getattr(run.state, field.name) for field in fields(State)}
-    np.savez(path, settings=json.dumps(settings), relaxed=run.system.relaxed,
-             rows=np.concatenate(run.rows), **arrays)
+    with replacing(path, TARGET[0]) as file:
+        np.savez(file, settings=json.dumps(settings), relaxed=run.system.relaxed,
+                 rows=np.concatenate(run.rows), **arrays)
     return path
 
 
@@ -45,20 +51,27 @@ def resume(model: Model, path: str | Path) -> Simulation:
     InputError
         No such file, another kind of file, or another model.
     """
-    settings, arrays = _read(Path(path))
+    path = inputs.path(path, *TARGET)
+    settings, arrays = _read(path)
     tolerance = settings["tolerance"] and Tolerance(*settings["tolerance"])
     run = Simulation(model, settings["h"], Scheme(*settings["scheme"]), settings["every"],
                      tolerance)
-    if settings["model"] != _fingerprint(run):
+    fits = {field.name: getattr(run.state, field.name) for field in fields(State)}
+    if settings["model"] != fingerprint(run) or any(
+            arrays[name].shape != array.shape for name, array in fits.items()):
         raise InputError(f"restart file {path} is of another model: build the one it was saved "
                          "from, with the same bodies, joints and loads")
-    for field in fields(State):
-        getattr(run.state, field.name)[...] = arrays[field.name]
+    for name in FINITE:
+        if not np.isfinite(arrays[name]).all():
+            raise InputError(f"restart file {path} holds numbers in {name} that are not finite: "
+                             "run the model again")
+    for name, array in fits.items():
+        array[...] = arrays[name]
     run.system.relaxed[:] = arrays["relaxed"]
     run.rows = [arrays["rows"]]
     run.seconds = settings["seconds"]
     if run.state.control[PIVOTED]:
-        run.factorize()
+        run.exchanges.factorize()
     return run
 
 
@@ -67,29 +80,21 @@ def _read(path: Path) -> tuple[dict, dict]:
         with np.load(path, allow_pickle=False) as file:
             arrays = dict(file)
         settings = json.loads(str(arrays["settings"]))
-        version = settings["version"]
+        version, missing = settings["version"], SETTINGS - set(settings)
     except FileNotFoundError as error:
         raise InputError(f"restart file {path} does not exist: give one that was saved") from error
     except (BadZipFile, ValueError, KeyError, TypeError, EOFError) as error:
         raise InputError(f"{path} is no restart file: give one written by "
                          "sebody.analysis.save_state") from error
+    except OSError as error:
+        raise InputError(f"restart file {path} cannot be read ({error.strerror or error}): give "
+                         "another one") from error
     if version != VERSION:
         raise InputError(f"restart file {path} is of version {version}, this program writes "
                          f"{VERSION}: run the model again")
-    differing = set(arrays) ^ {"settings", "relaxed", "rows", *(f.name for f in fields(State))}
+    wanted = {"settings", "relaxed", "rows", *(field.name for field in fields(State))}
+    differing = missing | set(arrays) ^ wanted
     if differing:
         raise InputError(f"restart file {path} was written by another version of sebody (it "
                          f"differs in {', '.join(sorted(differing))}): run the model again")
     return settings, arrays
-
-
-def _fingerprint(run: Simulation) -> str:
-    """Hash of what a model is, without addresses of compiled functions."""
-    system, model = run.system, run.model
-    kinds = [body.kernel for body in model.bodies.values()] + [
-        e.kind for e in (*model.rigid_bodies.values(), *model.constraints, *model.loads)]
-    parts = [repr((run.numbering.names, kinds)).encode()] + [
-        array.tobytes() for array in (
-            system.constants, system.g_unknown, system.table_times, system.table_cubics,
-            system.prescribed, system.prescribed_factor, model.gravity_field, run.state.q_start)]
-    return sha256(b"".join(parts)).hexdigest()

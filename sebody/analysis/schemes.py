@@ -1,7 +1,7 @@
 """Time integration schemes: generalized-alpha and HHT."""
 
+from sebody import inputs
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
 
 
 def generalized_alpha(rho: float = 0.9, tolerance: float = 1e-8, tangent: str = "consistent",
@@ -25,8 +25,8 @@ def generalized_alpha(rho: float = 0.9, tolerance: float = 1e-8, tangent: str = 
     InputError
         Values out of range.
     """
-    if not 0.0 <= rho <= 1.0:
-        raise InputError(f"rho is {rho}: use a spectral radius between 0 and 1")
+    rho = inputs.number(rho, "rho", least=0, most=1,
+                        remedy="use a spectral radius between 0 and 1")
     alpha_m, alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
     gamma = 0.5 + alpha_f - alpha_m
     return _scheme(alpha_m, alpha_f, 0.25 * (gamma + 0.5) ** 2, gamma, tolerance, tangent, index)
@@ -35,17 +35,15 @@ def generalized_alpha(rho: float = 0.9, tolerance: float = 1e-8, tangent: str = 
 def hht(alpha: float = -0.05, tolerance: float = 1e-8, tangent: str = "consistent",
         index: int = 3) -> Scheme:
     """Hilber, Hughes and Taylor's scheme, ``alpha`` in [-1/3, 0]; see `generalized_alpha`."""
-    if not -1.0 / 3.0 <= alpha <= 0.0:
-        raise InputError(f"alpha is {alpha}: HHT needs a value between -1/3 and 0")
+    alpha = inputs.number(alpha, "alpha", least=-1 / 3, most=0,
+                          remedy="HHT needs a value between -1/3 and 0")
     return _scheme(0.0, -alpha, 0.25 * (1 - alpha) ** 2, 0.5 - alpha, tolerance, tangent, index)
 
 
 def _scheme(alpha_m, alpha_f, beta, gamma, tolerance, tangent, index) -> Scheme:
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"tolerance is {tolerance}: use a number between 0 and 1, such as 1e-8")
-    if tangent not in ("consistent", "paper"):
-        raise InputError(f"tangent {tangent!r} is unknown: use 'consistent' or 'paper'")
-    if index not in (2, 3):
-        raise InputError(f"index is {index}: use 3, or 2 for the stabilised form")
+    tolerance = inputs.number(tolerance, "tolerance", above=0, below=1,
+                              remedy="use a number between 0 and 1, such as 1e-8")
+    tangent = inputs.choice(tangent, "tangent", ("consistent", "paper"))
+    index = inputs.choice(index, "index", (3, 2), "use 3, or 2 for the stabilised form")
     return Scheme(alpha_m, alpha_f, beta, gamma, tolerance, 1.0 if tangent == "consistent" else 0.0,
                   index == 2)

@@ -5,48 +5,55 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import splu
 
+from sebody import inputs
+from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
-from sebody.analysis.evaluation import assembled
 from sebody.analysis.first_run import prepare
 from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
+from sebody.analysis.pulses import unseen
+from sebody.analysis.redundancy import contradiction
+from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import generalized_alpha
-from sebody.analysis.sparse import SINGULAR
-from sebody.analysis.tolerance import Tolerance
+from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
-from sebody.engine.relaxation import RELAXATION, relax
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
     CHOSEN,
     CHUNK,
     DONE,
-    FACTOR,
+    FACTORED,
     FAILED,
     FINEST,
+    GAP,
     GRID,
     LARGEST_ERROR,
+    PHASE,
+    PROJECTED,
     REASON,
     REASONS,
     RECORDED,
-    RELAXED,
-    SOLVE,
+    SOLVED,
     TIME,
     Record,
     Scheme,
 )
 from sebody.engine.step import write_record
-from sebody.errors import InputError, SimulationError
+from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.model.model import Model
 from sebody.results.recording import Start
 from sebody.results.result import Result
 
 FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerated at the start
+LOOK = 0.2              # seconds in the loop until it returns to Python, which sees Ctrl-C then
+FIRST_CHUNK = 1         # steps before the first return
+GROWTH = 8.0            # largest factor from one chunk of steps to the next
+OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's
+MOST_STEPS = 1e12       # of a run: weeks, at a microsecond each
 
 
 class Simulation:
@@ -80,11 +87,13 @@ class Simulation:
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, tolerance: Tolerance | None = None):
-        if not (np.isfinite(h) and h > 0):
-            raise InputError(f"the time step is {h}: give a positive number")
-        if output_every != int(output_every) or output_every < 1:
-            raise InputError(f"output_every is {output_every}: give a whole number of steps >= 1")
-        self.model, self.h, self.every = model, float(h), int(output_every)
+        self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
+        self.h = inputs.number(h, "the time step", above=0)
+        self.every = inputs.integer(output_every, "output_every", least=1,
+                                    remedy="give a whole number of steps >= 1")
+        if scheme is not None:
+            inputs.instance(scheme, "scheme", Scheme, "give generalized_alpha() or hht()")
+        tolerance = given(tolerance)
         prepare([model])
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
@@ -95,11 +104,12 @@ class Simulation:
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
         self.seconds = 0.0
         self.failure = ""
-        self._factors = None
+        self.exchanges = RowExchanges(self.system, self.state)
+        user_faults.forget(model)
         self.start: Start = start(model, self.system, self.numbering, self.state)
         self.tolerance = tolerance
         if tolerance is not None:
-            self._choose_steps(tolerance.check())
+            self._choose_steps(tolerance)
         if self.scheme.stabilized:
             self._offset_accelerations()
         first = Record.of(self.state, 1, self.every)
@@ -114,43 +124,110 @@ class Simulation:
         """Time reached."""
         return float(self.state.clock[TIME])
 
-    def run_to(self, t_end: float, progress: Callable[[float], None] | None = None,
-               chunk: int = 2000) -> "Simulation":
+    def run_to(self, t_end: float,
+               progress: Callable[[float], None] | None = None) -> "Simulation":
         """Advance to the grid step nearest to `t_end`.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called several times a second with the part of the run that is done. What it raises
+            stops the run between two steps; a later call goes on from there.
 
         Raises
         ------
         SimulationError
             When a step does not converge however small; what was computed is kept, also in the
             error's `result`.
+        Interrupted
+            Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
-        last = int(round(t_end / self.h)) if np.isfinite(t_end) else -1
-        if last < self.state.control[GRID]:
-            raise InputError(f"cannot run to t = {t_end} from t = {self.time}: give a later time")
-        steps = last // self.every - self.state.control[GRID] // self.every
-        record = Record.of(self.state, int(steps), self.every)
+        last = self._last_step(t_end)
+        if progress is not None:
+            inputs.function(progress, "progress", "give a function of the part that is done")
+        if abs(t_end / self.h - last) > OFF_GRID:
+            self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
+                           f"run ends at t = {last * self.h:.9g}")
+        if self.state.control[ADAPTIVE] == 0:
+            for name, message in unseen(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"peak {name}", message)
+        record = self._room(last)
         self.state.control[RECORDED] = 0
         code = CHUNK
-        while code not in (DONE, FAILED):
-            began = time.perf_counter()
-            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
-            if code == FACTOR:
-                self.factorize()
-            elif code == SOLVE:
-                n = self.numbering.free
-                self.state.correction[:n] = self._solved(self.state.residual[:n])
-                if self.state.control[RELAXED]:
-                    self.state.correction[:n] -= self._solved(
-                        self.state.relaxation[:n] * self.state.correction[:n])
-            self.seconds += time.perf_counter() - began
-            if progress and code in (CHUNK, DONE):
-                progress(self.time / t_end if t_end else 1.0)
-        self.rows.append(record.rows[:self.state.control[RECORDED]])
+        try:
+            code = self._advance(record, last, t_end, progress)
+        except KeyboardInterrupt:
+            pass                        # the rows come first
+        finally:
+            self.rows.append(record.rows[:self.state.control[RECORDED]])
         self.watch.look(self.model, self.numbering, self.rows[-1])
         if code == FAILED:
             self.failure = self._explain()
             raise SimulationError(self.failure, self.result())
+        if code != DONE:
+            result = self.result()
+            result.failure = f"interrupted at t = {self.time:.6g}: results up to there are kept"
+            raise Interrupted(result.failure, result)
         return self
+
+    def _last_step(self, t_end: float) -> int:
+        """The grid step nearest to a time.
+
+        Raises
+        ------
+        InputError
+            A time that is past, less than half a step away, or too many steps away.
+        """
+        past = f"cannot run to t = {inputs.shown(t_end)} from t = {self.time}: give a later time"
+        t_end = inputs.number(t_end, "t_end", remedy=past)
+        steps = t_end / self.h
+        if steps > MOST_STEPS:
+            raise InputError(f"t_end is {t_end:g}: that is {steps:.3g} steps of {self.h:g}, give "
+                             "an earlier time or a longer step")
+        if round(steps) < self.state.control[GRID]:
+            raise InputError(past)
+        if round(steps) == self.state.control[GRID] and abs(steps - round(steps)) > OFF_GRID:
+            raise InputError(f"cannot run to t_end = {t_end:g} from t = {self.time:g}: the step is "
+                             f"{self.h:g}; give a later time or a smaller step (the step comes "
+                             "first)")
+        return round(steps)
+
+    def _room(self, last: int) -> Record:
+        """An empty record for the states up to a step of the grid."""
+        count = last // self.every - int(self.state.control[GRID]) // self.every
+        try:
+            return Record.of(self.state, count, self.every)
+        except (MemoryError, ValueError) as error:      # ValueError: more than any array can hold
+            raise InputError(f"{count} recorded states do not fit into memory: keep fewer with "
+                             "output_every, or give an earlier t_end") from error
+
+    def _advance(self, record: Record, last: int, t_end: float,
+                 progress: Callable[[float], None] | None) -> int:
+        """Call the loop until it is done or fails, in chunks of steps that take about `LOOK`."""
+        code, chunk, looked = CHUNK, FIRST_CHUNK, time.perf_counter()
+        while code not in (DONE, FAILED):
+            began = time.perf_counter()
+            self._serve()
+            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
+            now = time.perf_counter()
+            self.seconds += now - began
+            waited = max(now - looked, 1e-9)
+            if code in (CHUNK, DONE):
+                chunk = max(1, int(chunk * min(GROWTH, LOOK / waited)))
+                if progress:
+                    progress(1.0 if code == DONE else min(self.time / t_end, 1.0))
+                looked = time.perf_counter()
+            elif waited > LOOK:         # steps that Python helps with are not counted: stop at
+                chunk = 0               # the beginning of the next one
+        return code
+
+    def _serve(self) -> None:
+        """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
+        phase = self.state.control[PHASE]
+        if phase == FACTORED:
+            self.exchanges.factorize()
+        elif phase in (PROJECTED, SOLVED):
+            self.exchanges.solve()
 
     def result(self) -> Result:
         """The results computed so far."""
@@ -189,28 +266,13 @@ class Simulation:
         state.aux[:] += (scheme.alpha_m - scheme.alpha_f) * h * acceleration_rates(
             self.system, self.numbering, state, 1e-3 * h)
 
-    def factorize(self) -> None:
-        """Factorize with row exchanges, where elimination by blocks met a small pivot."""
-        if not self._factorized():
-            relax(self.system, self.state, RELAXATION)
-            self._factorized()
-
-    def _factorized(self) -> bool:
-        """Whether the factors are those of a regular matrix."""
-        scale = diags(self.state.scale[:self.numbering.free])
-        matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
-        try:
-            self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
-        except RuntimeError:        # a pivot is exactly zero
-            return False
-        pivots = np.abs(self._factors.U.diagonal())
-        return bool(pivots.min() >= SINGULAR * pivots.max())
-
-    def _solved(self, right: NDArray) -> NDArray:
-        scale = self.state.scale[:self.numbering.free]
-        return scale * self._factors.solve(scale * right)
-
     def _explain(self) -> str:
+        if fault := user_faults.fault(self.model, self.time):
+            return f"stopped at t = {self.time:.6g}: {fault}; results up to there are kept"
+        if self.state.control[REASON] == GAP:
+            return (f"stopped at t = {self.time:.6g}: "
+                    f"{contradiction(self.system, self.state, self.numbering)}; results up to "
+                    "there are kept")
         reason = REASONS[int(self.state.control[REASON])]
         shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
         remedy = "a larger tolerance" if self.tolerance else "a smaller step"

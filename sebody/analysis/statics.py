@@ -3,11 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
+from sebody.analysis import user_faults
 from sebody.analysis.linearization import Spin, rotating
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.sparse import Scaled
 from sebody.engine.evaluate import set_loads, to_body_axes, update_rotations
-from sebody.errors import InputError, SimulationError
+from sebody.errors import SimulationError
 from sebody.kernels.layout import FIELD, RECORD_T
 from sebody.model.model import Model
 from sebody.results.result import Result
@@ -46,8 +48,9 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     SimulationError
         No equilibrium is found; what was found before is in its `result`.
     """
-    if steps != int(steps) or steps < 1:
-        raise InputError(f"steps is {steps}: give a whole number >= 1")
+    steps = inputs.integer(steps, "steps", least=1)
+    t = inputs.number(t, "t")
+    tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     run = Simulation(model, 1.0)
     state, field = run.state, run.state.coefficients[FIELD:].copy()
     steady = Spin.of(run, spin)
@@ -71,6 +74,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         if step < SMALLEST:
             message = (f"no equilibrium was found above {share:.4g} of the load: the structure may "
                        "buckle there, or a mechanism is free to move; use more steps or supports")
+            if did := user_faults.fault(model, -np.inf):
+                message = f"no equilibrium was found above {share:.4g} of the load: {did}"
             raise SimulationError(message, run.result())
     return run.result()
 

@@ -5,7 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
+
+FINEST = 1e-9       # relative error of a run below which Newton's tolerance and rounding decide
 
 
 class Tolerance(NamedTuple):
@@ -27,15 +30,48 @@ class Tolerance(NamedTuple):
             Negative or infinite numbers, or nothing allowed.
         """
         for name, value in self._asdict().items():
-            if not (np.isfinite(value) and value >= 0.0):
-                raise InputError(f"tolerance {name} is {value}: give a number >= 0")
+            inputs.number(value, f"tolerance {name}", least=0, remedy="give a number >= 0")
         if self.relative == 0.0 and not (self.position > 0.0 and self.rotation > 0.0):
             raise InputError("the tolerance allows no error: give a relative one, or absolute ones "
                              "of positions and of rotations")
         return self
+
+    def check_reachable(self, extent: float) -> None:
+        """Refuse errors of a run that no step is short enough for.
+
+        Parameters
+        ----------
+        extent : float
+            Of the model [length].
+
+        Raises
+        ------
+        InputError
+            Positions or rotations are allowed less than `FINEST`.
+        """
+        sizes, rotational = np.array([extent, 1.0]), np.array([False, True])
+        found = (self.allowed(sizes, rotational) / np.maximum(sizes, 1e-300)).min()
+        if found < FINEST:
+            raise InputError(f"the tolerance allows errors of {found:.3g}, relative to the model's "
+                             f"extent or in radians: give at least {FINEST:g}, below which shorter "
+                             "steps do not help")
 
     def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
         """Allowed error of coordinates of a magnitude; infinite where that is zero."""
         absolute = np.where(rotational, self.rotation, self.position)
         size = np.asarray(magnitude)
         return np.where(size > 0.0, absolute + self.relative * size, np.inf)
+
+
+def given(tolerance: "Tolerance | None") -> "Tolerance | None":
+    """The tolerance a user gives, checked; None stays None.
+
+    Raises
+    ------
+    InputError
+        Something that is no tolerance, such as a number, or see `Tolerance.check`.
+    """
+    if tolerance is None:
+        return None
+    return inputs.instance(tolerance, "tolerance", Tolerance,
+                           "give a Tolerance, such as Tolerance(1e-3)").check()

@@ -45,13 +45,16 @@ def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
     return frame_of
 
 
-def summands(batches: Batches, rotated: NDArray, links: Links) -> NDArray:
-    """The member `summands` of `System`: where element matrices are, and their special rows."""
+def summands(batches: Batches, rotated: NDArray, links: Links,
+             kept: NDArray) -> tuple[NDArray, NDArray]:
+    """The members `J_place` and `summands` of `System`, from the `kept` entries of `State.J`."""
     width = [b.width for b in batches.all for _ in b.rows]
     start = starts(w * w for w in width)
-    found = np.full((len(width), 5), -1)
+    found = np.full((len(width), 7), -1)
     found[:, 0], found[:, 1] = start[:-1], width
     firsts = np.searchsorted(rotated[:, 0], start)
     found[:, 2], found[:, 3] = firsts[:-1], firsts[1:]
     found[np.searchsorted(start, links.elements[:, 0]), 4] = np.arange(len(links.elements))
-    return found
+    ends = np.searchsorted(kept, start)
+    found[:, 5], found[:, 6] = ends[:-1], ends[1:]
+    return (kept - np.repeat(start[:-1], np.diff(ends))).astype(np.int32), found

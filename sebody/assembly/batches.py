@@ -17,6 +17,7 @@ from sebody.assembly.contracts import (
     positions_of,
 )
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.mechanism import Mechanism
@@ -32,6 +33,7 @@ class Batch(NamedTuple):
     rows: list[list[int]]           # index rows
     unknowns: list[list[int]]       # unknowns of each element
     owners: list[int]               # id of the body, constraint or load of each element
+    full: list[int]                 # leading unknowns of each beyond which its matrix is diagonal
 
 
 class Batches(NamedTuple):
@@ -78,22 +80,23 @@ def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
 
 def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants) -> list[Batch]:
     batches: dict[tuple, Batch] = {}
-    row_of: dict[tuple, int] = {}
+    known: dict[tuple, tuple[int, int]] = {}
     for frame, body in enumerate(model.bodies.values()):
         kernel = load(body.kernel)
         check_superelement(body, kernel)
         key = id(body.body), body.kernel, tuple(body.alpha), tuple(body.alpha_r)
-        if key not in row_of:
-            row_of[key] = constants.add(constants_row(body.name, kernel, counts_of(body),
-                                                      superelement_constants(body)))
+        if key not in known:
+            row = constants_row(body.name, kernel, counts_of(body), superelement_constants(body))
+            known[key] = constants.add(row), _full(body, kernel)
+        at_constants, full = known[key]
         unknowns = [c for t in (*body.positions, *body.rotations)
                     for c in coordinates(numbering, t)]
         first = numbering.modes[body.name]
         unknowns += range(first, first + body.body.modes)
-        row = index_row(body.name, kernel, unknowns, constants=row_of[key], frame=frame,
+        row = index_row(body.name, kernel, unknowns, constants=at_constants, frame=frame,
                         port=numbering.ports.get(id(body), 0), positions=len(body.positions),
                         nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations])
-        _append(batches, kernel, frame, row, unknowns, id(body))
+        _append(batches, kernel, frame, row, unknowns, id(body), full)
     return list(batches.values())
 
 
@@ -110,18 +113,19 @@ def _element_batches(numbering: Numbering, constants: _Constants,
                         nodes=[numbering.rotations[id(t)] for t in element.triplets
                                if id(t) in numbering.rotations])
         function = [] if element.function is None else [element.function.address]
-        _append(batches, kernel, -1, row + function, unknowns, id(element))
+        _append(batches, kernel, -1, row + function, unknowns, id(element), len(unknowns))
     return list(batches.values())
 
 
 def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: list[int],
-            unknowns: list[int], owner: int) -> None:
+            unknowns: list[int], owner: int, full: int) -> None:
     key = kernel.__name__, row[AT_POSITIONS], row[AT_ROTATIONS], len(unknowns)
-    batch = batches.setdefault(key, Batch(kernel, len(unknowns), [], [], [], []))
+    batch = batches.setdefault(key, Batch(kernel, len(unknowns), [], [], [], [], []))
     batch.frames.append(frame)
     batch.rows.append(row)
     batch.unknowns.append(unknowns)
     batch.owners.append(owner)
+    batch.full.append(full)
 
 
 def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
@@ -142,25 +146,30 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     origin = body.alpha @ points
     of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
     damping = {} if reduced.damping is None else {"C": reduced.damping}
-    filled = _filled(len(reduced.mass) - reduced.modes,
-                     (reduced.stiffness, reduced.mass, *damping.values()))
     return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
             "alpha_rs": body.alpha_r, "X": points - origin, "S": reduced.stiffness,
             "M": reduced.mass, "mass_columns": of_translations, "mass_rows": of_translations.T,
             "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
-            "full": [filled], "masses": [reduced.total_mass], **damping}
+            "full": [_filled(body)], "masses": [reduced.total_mass], **damping}
 
 
-def _filled(boundary: int, matrices: Iterable[NDArray]) -> int:
-    """Leading rows and columns, in whole vectors, beyond which the matrices are diagonal.
+def _filled(body: Superelement) -> int:
+    """Leading rows and columns, in whole vectors, beyond which S, M and C are diagonal.
 
     All rows if there is a single entry off the diagonal between internal modes.
     """
-    matrices = list(matrices)
-    n, filled = len(matrices[0]), whole_vectors(boundary)
+    reduced = body.body
+    matrices = [A for A in (reduced.stiffness, reduced.mass, reduced.damping) if A is not None]
+    n, filled = len(reduced.mass), whole_vectors(len(reduced.mass) - reduced.modes)
     inner = [matrix[filled:, filled:] for matrix in matrices]
     diagonal = all(np.count_nonzero(A) == np.count_nonzero(np.diag(A)) for A in inner)
     return filled if filled < n and diagonal else n
+
+
+def _full(body: Superelement, kernel: ModuleType) -> int:
+    """Leading rows and columns beyond which the element matrix is diagonal."""
+    apart = INERTIA_OPTIONS[kernel.INERTIA].modes_apart
+    return _filled(body) if apart else len(body.body.mass)
 
 
 def starts(sizes: Iterable[int]) -> NDArray:

@@ -34,7 +34,7 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         raise InputError("every node of the model is fixed: nothing is left to move, free one")
     batches = make_batches(model, numbering)
     axes = body_axes(model, numbering, batches)
-    own_row, own_column = element_places(batches.all)
+    own_row, own_column = element_places(batches.all, numbering.total)
     links, linked_row, linked_column = link_arrays(model, numbering, batches.all, axes["rotated"])
     row = np.concatenate([own_row, linked_row])
     column = np.concatenate([own_column, linked_column])
@@ -43,11 +43,13 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
                        sparse_layout(row, column, numbering))
     is_multiplier = _multipliers(model, numbering)
     own_entries, linked_entries = entries[:len(own_row)], entries[len(own_row):]
+    kept = np.flatnonzero(own_entries < len(matrix["rows"]))
+    places, table = summands(batches, axes["rotated_blocks"], links, kept)
     system = System(
-        **_batch_arrays(batches), J_entry=own_entries.astype(np.int32), **matrix, **axes,
+        **_batch_arrays(batches), J_place=places, J_entry=own_entries[kept].astype(np.int32),
+        **matrix, **axes,
         is_multiplier=is_multiplier, pulls=_pulls(matrix, is_multiplier, numbering.free),
-        rotation_at=_rotation_starts(numbering),
-        summands=summands(batches, axes["rotated_blocks"], links),
+        rotation_at=_rotation_starts(numbering), summands=table,
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),

@@ -26,18 +26,20 @@ class _Ends(NamedTuple):
 def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
                 rotated: NDArray) -> tuple[Links, NDArray, NDArray]:
     """Links without their matrix entries, and rows and columns of these entries."""
-    ends = _ends(model, numbering, rotated)
+    ends, unused = _ends(model, numbering, rotated), numbering.total
     elements, maps, blocks, rows, columns = [], [], [], [], []
     start = 0
     for batch in batches:
-        for unknowns in batch.unknowns:
+        for unknowns, full in zip(batch.unknowns, batch.full, strict=True):
             if any(u in ends.number for u in unknowns):
                 wide, own_map, own_blocks = _expanded(unknowns, ends, len(maps))
                 elements.append((start, batch.width, len(wide), len(maps), len(rows),
                                  len(blocks), len(blocks) + len(own_blocks)))
                 maps += own_map
                 blocks += own_blocks
-                rows += [u for u in wide for _ in wide]
+                apart = set(unknowns[full:])        # internal modes: zeros between them
+                rows += [unused if u in apart and other in apart and u != other else u
+                         for u in wide for other in wide]
                 columns += wide * len(wide)
             start += batch.width ** 2
     d, rotation_size = ends.sizes

@@ -1,13 +1,13 @@
 """Numbers of coordinates, multipliers and power ports of a model."""
 
 from collections import defaultdict
-from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.ports import number_ports
+from sebody.assembly.sequence import parents, sequence
 from sebody.errors import InputError
 from sebody.model.histories import History
 from sebody.model.mechanism import Mechanism
@@ -57,29 +57,28 @@ def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
 def number(model: Mechanism) -> Numbering:
     """Number the unknowns body by body; a triplet that bodies share belongs to the last of them.
 
-    Of the triplets of a body, those that joints couple to later bodies come last. Multipliers
-    follow the unknowns they act on. An elimination in this order meets no zero pivot, and its fill
-    stays close to the diagonal.
+    The order of the bodies is that of `sequence`. Of the triplets of a body, those that joints and
+    springs couple to later bodies come last. Multipliers follow unknowns they act on. An
+    elimination in this order meets no zero pivot and fills in little.
 
     Raises
     ------
     InputError
         A triplet that belongs to no body and is not fixed.
     """
-    parts = _parts(model)
-    last = {id(p): k for k, (_, triplets, _) in enumerate(parts) for p in _parents(triplets)}
+    parts, awaited = sequence(model)
+    last = {id(p): k for k, part in enumerate(parts) for p in part.parents}
     coupled = _coupled(model, last)
-    order, modes, groups = _Order(model), {}, []
-    for k, (name, triplets, count) in enumerate(parts):
+    order, modes, groups = _Order(model, awaited), {}, []
+    for k, part in enumerate(parts):
         groups.append(len(order.names))
-        if name in model.bodies:
-            modes[name] = len(order.names)
-        order.names.extend(f"mode {mode} of {name}" for mode in range(count))
-        own = [p for p in _parents(triplets) if last[id(p)] == k]
+        if part.name in model.bodies:
+            modes[part.name] = len(order.names)
+        order.names.extend(f"mode {mode} of {part.name}" for mode in range(part.modes))
+        own = [p for p in part.parents if p.solved and last[id(p)] == k]
         for triplet in sorted(own, key=lambda p: coupled[id(p)]):
-            if triplet.solved and id(triplet) not in order.at:
-                order.place(triplet)
-                order.place_multipliers(triplet)
+            order.place(triplet)
+            order.place_multipliers(triplet)
     _refuse_loose(model, last)
     free, used = len(order.names), _used(model)
     for triplet in used:
@@ -97,16 +96,16 @@ def number(model: Mechanism) -> Numbering:
 class _Order:
     """Coordinates in the order of their numbers."""
 
-    def __init__(self, model: Mechanism) -> None:
+    def __init__(self, model: Mechanism, awaited: dict[int, set[int]]) -> None:
         self.names: list[str] = []
         self.at: dict[int, int] = {}                # id(triplet) -> first coordinate
         self.multipliers: dict[int, int] = {}       # id(constraint) -> first multiplier
+        self._awaited = awaited
         self._constraints: dict[int, list[Element]] = defaultdict(list)     # on each triplet
         for constraint in model.constraints:
-            parents = {id(p): p for p in _parents(constraint.triplets)}
-            for key in parents:
+            for key in awaited[id(constraint)]:
                 self._constraints[key].append(constraint)
-            if not any(p.solved for p in parents.values()):
+            if not awaited[id(constraint)]:
                 self._place(constraint)
 
     def place(self, triplet: Triplet, remark: str = "") -> None:
@@ -115,9 +114,9 @@ class _Order:
         self.names.extend(f"{triplet.name}[{k}]{remark}" for k in range(triplet.start.size))
 
     def place_multipliers(self, triplet: Triplet) -> None:
-        """Number the multipliers of constraints whose triplets are all numbered with this one."""
+        """Number the multipliers of constraints for which this triplet was the last to wait for."""
         for constraint in self._constraints[id(triplet)]:
-            if all(id(p) in self.at or not p.solved for p in _parents(constraint.triplets)):
+            if self._awaited[id(constraint)] <= self.at.keys():
                 self._place(constraint)
 
     def _place(self, constraint: Element) -> None:
@@ -127,24 +126,15 @@ class _Order:
 
 
 def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:
-    """Of every triplet the last body it belongs to or is coupled to by a joint."""
+    """Of every triplet the last body it belongs to or is coupled to by a joint or spring."""
     found = dict(last)
-    for joint in model.constraints:
-        parents = [id(p) for p in _parents(joint.triplets) if id(p) in last]
-        for parent in parents:
-            found[parent] = max(found[parent], *(last[p] for p in parents))
+    for element in (*model.constraints, *model.loads):
+        keys = [id(p) for p in parents(element.triplets) if id(p) in last]
+        if len(keys) > 1:
+            latest = max(last[key] for key in keys)
+            for key in keys:
+                found[key] = max(found[key], latest)
     return found
-
-
-def _parents(triplets: Iterable[Triplet]) -> list[Triplet]:
-    """The triplets that positions and rotations of some triplets depend on."""
-    return [p for t in triplets for p in t.parents()]
-
-
-def _parts(model: Mechanism) -> list[tuple[str, list[Triplet], int]]:
-    """Of every body its name, its triplets with rotations first, its number of modes."""
-    parts = [(b.name, [*b.rotations, *b.positions], b.body.modes) for b in model.bodies.values()]
-    return parts + [(e.name, list(e.triplets[::-1]), 0) for e in model.rigid_bodies.values()]
 
 
 def _refuse_loose(model: Mechanism, held: dict) -> None:
@@ -155,8 +145,8 @@ def _refuse_loose(model: Mechanism, held: dict) -> None:
                     raise InputError(f"{parent.name} belongs to no body, so nothing holds it: "
                                      "attach a body or fix it")
     for load in model.loads:
-        parents = _parents(load.triplets)
-        if parents and load.history is not None and not any(id(p) in held for p in parents):
+        borne = parents(load.triplets)
+        if borne and load.history is not None and not any(id(p) in held for p in borne):
             raise InputError(f"{load.name}: no body is there to bear it: attach one")
 
 
@@ -165,5 +155,5 @@ def _used(model: Mechanism) -> list[Triplet]:
     elements = (*model.rigid_bodies.values(), *model.constraints, *model.loads)
     found = [t for n in model.nodes.values() for t in (n.position, n.rotation) if t is not None]
     found += [t for e in elements for t in e.triplets]
-    found += _parents(found)
+    found += parents(found)
     return list({id(t): t for t in found}.values())

@@ -9,16 +9,28 @@ from sebody.assembly.numbering import Numbering
 from sebody.kernels.layout import LANES
 
 
-def element_places(batches: list[Batch]) -> tuple[NDArray, NDArray]:
-    """Row and column of every entry of the element matrices."""
+def element_places(batches: list[Batch], unused: int) -> tuple[NDArray, NDArray]:
+    """Row and column of every entry of the element matrices.
+
+    The row is `unused` where the entry is zero in all states: between the internal modes of a
+    superelement whose matrix is diagonal beyond its first rows.
+    """
     rows, columns = [], []
     for batch in batches:
         unknowns = np.array(batch.unknowns, dtype=np.int64)
         row, column = np.empty((2, len(unknowns), batch.width, batch.width), dtype=np.int64)
         row[:], column[:] = unknowns[:, :, None], unknowns[:, None, :]
+        if min(batch.full) < batch.width:
+            row[_zeros(batch)] = unused
         rows.append(row.ravel())
         columns.append(column.ravel())
     return np.concatenate(rows), np.concatenate(columns)
+
+
+def _zeros(batch: Batch) -> NDArray:
+    """Which entries of the matrices of a batch are zero in all states, (elements, width, width)."""
+    inner = np.arange(batch.width) >= np.array(batch.full)[:, None]
+    return inner[:, :, None] & inner[:, None, :] & ~np.eye(batch.width, dtype=bool)
 
 
 def dense_layout(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, dict[str, NDArray]]:

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from sebody.cli.inputs import check_picture
-from sebody.results.files import check_target
+from sebody.cli.inputs import check_distinct, check_picture
+from sebody.files import check_target
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -24,6 +24,7 @@ def run(options: argparse.Namespace) -> int:
     check_picture(options.output)
     if options.csv:
         check_target(options.csv, "table")
+    check_distinct({"--output": options.output, "--csv": options.csv})
     points, exact = chart.measure(options.scene)
     print(chart.report(options.scene, points, exact))
     if options.csv:

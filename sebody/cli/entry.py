@@ -1,11 +1,13 @@
 """Entry point of the command line."""
 
 import argparse
+import os
+import signal
 import sys
 from collections.abc import Sequence
 
-from sebody.cli import atlas, bench, chart, check, listing, run, warm
-from sebody.errors import InputError
+from sebody.cli import atlas, bench, chart, check, interrupts, listing, run, warm
+from sebody.errors import InputError, SebodyError
 
 COMMANDS = (run, listing, check, bench, chart, atlas, warm)     # in the order of the help
 
@@ -21,14 +23,43 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0, 1 when a run or a check fails, 2 when the input cannot be used.
+        0, 1 when a run or a check fails or a file cannot be written, 2 when the input cannot be
+        used; 130, 143 and 141 as of a command that Ctrl-C, SIGTERM or a closed pipe has ended.
     """
+    try:
+        try:
+            with interrupts.watched():
+                return _run(arguments)
+        finally:
+            sys.stdout.flush()          # a closed pipe or full disk may show only here
+    except BrokenPipeError:             # of `| head`: there is nobody to tell
+        return _mute(interrupts.ENDED_BY + signal.SIGPIPE)
+    except OSError as error:
+        what = error.filename or "the output cannot be written"
+        print(f"error: {what}: {error.strerror}", file=sys.stderr)
+        return _mute(1)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
     options = _parser().parse_args(arguments)
     try:
         return options.command(options)
-    except InputError as error:
+    except SebodyError as error:
         print(f"error: {error}", file=sys.stderr)
-        return 2
+        return 2 if isinstance(error, InputError) else 1
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return interrupts.exit_code() or interrupts.ENDED_BY + signal.SIGINT
+
+
+def _mute(code: int) -> int:
+    """Let go of what could not be printed; otherwise Python tries again at its end."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    return code
 
 
 def _parser() -> argparse.ArgumentParser:

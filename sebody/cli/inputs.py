@@ -1,11 +1,15 @@
 """Reading and checking of arguments: scenes with their parameters, files to be written."""
 
 import ast
-import inspect
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from inspect import Parameter, getdoc, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from sebody import inputs
+from sebody.cli import scene_files
 from sebody.errors import InputError
 from sebody.studies.catalogue import builder
 
@@ -13,16 +17,68 @@ if TYPE_CHECKING:
     from sebody.scenes.scene import Scene
 
 
-def build_scene(name: str, changes: Sequence[str]) -> "Scene":
-    """A scene by name, with parameters given as ``NAME=VALUE``.
+class Source(NamedTuple):
+    """Where a scene comes from."""
+
+    build: Callable
+    summary: str        # first line of its file's description
+    file: str           # empty for a shipped scene
+
+
+def source(scene: str) -> Source:
+    """A shipped scene by its name, or one in a file.
 
     Raises
     ------
     InputError
-        An unknown scene or parameter, or a value that cannot be read.
+        An unknown scene, or a file without one.
     """
-    build = builder(name)
-    return build(**_parameters(name, build, changes))
+    if scene_files.is_file(scene):
+        module = scene_files.load(scene)
+        return Source(module.build, _first_line(module), module.__file__)
+    build = builder(scene)
+    return Source(build, _first_line(sys.modules[build.__module__]), "")
+
+
+def build_scene(name: str, changes: Sequence[str]) -> "Scene":
+    """A scene by name or from a file, with parameters given as ``NAME=VALUE``.
+
+    Raises
+    ------
+    InputError
+        An unknown scene or parameter, a value that cannot be read, or an error in a file.
+    """
+    build, _, file = source(name)
+    arguments = _arguments(name, build, changes)
+    if not file:
+        return build(**arguments)
+    return _checked(scene_files.call(file, lambda: build(**arguments)), name)
+
+
+def _checked(scene: object, name: str) -> "Scene":
+    """What the `build` of a file returned, if that is a scene that can be run."""
+    from sebody import Model
+    from sebody.scenes.scene import Scene
+
+    what = f"what build of {name} returned"
+    inputs.instance(scene, what, Scene, "return Scene(name, summary, model, h, t_end), from "
+                                        "sebody.scenes.scene")
+    inputs.instance(scene.model, f"the model of {name}", Model, "give Scene a sebody.Model")
+    inputs.number(scene.h, f"h of the scene of {name}", above=0.0)
+    inputs.number(scene.t_end, f"t_end of the scene of {name}", least=0.0)
+    return scene
+
+
+def parameters(build: Callable) -> dict[str, Parameter]:
+    """Parameters of a scene that can be given by name."""
+    return {name: one for name, one in signature(build).parameters.items()
+            if one.kind in (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)}
+
+
+def described(parameter: Parameter) -> str:
+    """A parameter and its default, as ``--set`` is given it."""
+    return parameter.name + ("" if parameter.default is Parameter.empty else
+                             f"={parameter.default}")
 
 
 def check_picture(path: Path | None) -> None:
@@ -33,10 +89,28 @@ def check_picture(path: Path | None) -> None:
         plots.check_picture(path)
 
 
-def _parameters(scene: str, build: Callable, changes: Sequence[str]) -> dict[str, Any]:
+def check_distinct(targets: Mapping[str, Path | None]) -> None:
+    """Refuse two options that name the same file, of which one would replace the other.
+
+    Raises
+    ------
+    InputError
+        They do.
+    """
+    found: dict[Path, str] = {}
+    for option, path in targets.items():
+        if path and (other := found.setdefault(path.resolve(), option)) != option:
+            raise InputError(f"{other} and {option} are the same file, {path}: give each its own")
+
+
+def _first_line(module: ModuleType) -> str:
+    return (getdoc(module) or "").partition("\n")[0]
+
+
+def _arguments(scene: str, build: Callable, changes: Sequence[str]) -> dict[str, Any]:
     """Keyword arguments of a scene, of the type of their defaults."""
-    known = inspect.signature(build).parameters
-    existing = ", ".join(f"{p.name}={p.default}" for p in known.values()) or "none"
+    known = parameters(build)
+    existing = ", ".join(map(described, known.values())) or "none"
     values = {}
     for change in changes:
         name, equals, text = change.partition("=")
@@ -45,6 +119,11 @@ def _parameters(scene: str, build: Callable, changes: Sequence[str]) -> dict[str
         if name not in known:
             raise InputError(f"scene {scene!r} has no parameter {name!r}: there are {existing}")
         values[name] = _value(name, text, known[name].default)
+    missing = [name for name, one in known.items()
+               if one.default is Parameter.empty and name not in values]
+    if missing:
+        raise InputError(f"scene {scene!r} needs {', '.join(missing)}: give --set "
+                         f"{missing[0]}=VALUE")
     return values
 
 
@@ -57,7 +136,9 @@ def _value(name: str, text: str, default: Any) -> Any:
         value = text
     if isinstance(default, float) and type(value) is int:
         value = float(value)
-    if default is None or type(value) is type(default):
+    if isinstance(default, list | tuple) and isinstance(value, list | tuple):
+        value = type(default)(value)
+    if default is None or default is Parameter.empty or type(value) is type(default):
         return value
     raise InputError(f"parameter {name} is {text!r}: give a value of type "
                      f"{type(default).__name__}, such as {default}")

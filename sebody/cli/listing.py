@@ -1,21 +1,60 @@
-"""``sebody list``: scenes and kernels there are."""
+"""``sebody list``: scenes and kernels there are, and the parameters of a scene."""
 
 import argparse
+import inspect
+import re
+from collections.abc import Callable
 
+from sebody.cli.inputs import described, parameters, source
 from sebody.kernels.names import ELEMENT
 from sebody.studies.catalogue import kernels, scenes
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
-    return commands.add_parser("list", help="list scenes and kernels")
+    parser = commands.add_parser("list", help="list scenes and kernels, or parameters of a scene")
+    parser.add_argument("scene", nargs="?", metavar="SCENE",
+                        help="name of a scene or FILE.py: list its parameters")
+    return parser
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the lists."""
+    if options.scene:
+        _list_parameters(options.scene)
+    else:
+        _list_all()
+    return 0
+
+
+def _list_parameters(scene: str) -> None:
+    build, summary, _ = source(scene)
+    known, meanings = parameters(build), meanings_of(build)
+    print(f"{scene}: {summary}" if summary else scene)
+    print("parameters, each with its default: change one by --set NAME=VALUE" if known else
+          "it has no parameters")
+    width = max((len(described(one)) for one in known.values()), default=0)
+    for name, one in known.items():
+        print(f"  {described(one):{width}}  {meanings.get(name, '')}".rstrip())
+
+
+def meanings_of(build: Callable) -> dict[str, str]:
+    """What the parameters of a function mean, by the section of its docstring (numpydoc)."""
+    text = inspect.getdoc(build) or ""
+    section = re.search(r"^Parameters\n-+\n(.*?)(?=^\S[^\n]*\n-+$|\Z)", text, re.M | re.S)
+    found = {}
+    for entry in re.findall(r"^(\w[^\n]*)\n((?:[ \n][^\n]*\n?)*)", section[1] if section else "",
+                            re.M):
+        names, meaning = entry[0].partition(":")[0], " ".join(entry[1].split())
+        found |= {name.strip(): meaning for name in names.split(",")}
+    return found
+
+
+def _list_all() -> None:
     print("scenes")
     for name, summary in scenes().items():
         print(f"  {name:24} {summary}")
+    print("  parameters of a scene: sebody list SCENE; scenes of your own: sebody run FILE.py")
     found = kernels()
     print("\nsuperelement kernels\n  layout         frame            inertia")
     for kernel in found:
@@ -26,4 +65,3 @@ def run(options: argparse.Namespace) -> int:
           "  layout any: every other one; faster or damped: python -m sebody.derive LAYOUT")
     print("\njoints and loads")
     print("  " + ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout))
-    return 0

@@ -3,15 +3,18 @@
 import argparse
 import sys
 import warnings
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from sebody.cli.inputs import build_scene, check_picture
+from sebody.cli import interrupts
+from sebody.cli.inputs import build_scene, check_distinct, check_picture
 from sebody.cli.progress import Progress
-from sebody.errors import InputError, LimitWarning, SimulationError
-from sebody.results.files import check_target
+from sebody.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
+from sebody.files import check_target
 
 if TYPE_CHECKING:
+    from sebody.analysis.simulation import Simulation
     from sebody.results.result import Result
     from sebody.scenes.scene import Scene
 
@@ -19,7 +22,8 @@ if TYPE_CHECKING:
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser("run", help="run a scene")
-    parser.add_argument("scene", metavar="SCENE", help="name of a scene, see 'sebody list'")
+    parser.add_argument("scene", metavar="SCENE",
+                        help="name of a scene, see 'sebody list', or a file of your own, FILE.py")
     parser.add_argument("--output", type=Path, metavar="FILE.npz", help="save the histories")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the standard picture")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
@@ -27,6 +31,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--accuracy", type=float, metavar="E",
                         help="allowed error of the run, of the model's extent and in radians: "
                              "steps are chosen, --step is the grid of the output")
+    parser.add_argument("--every", type=int, metavar="N", help="keep every N-th step only")
     parser.add_argument("--index", type=int, default=None, metavar="I",
                         help="2: constraints hold for velocities, too (default 3, with "
                              "--accuracy 2)")
@@ -44,67 +49,136 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 def run(options: argparse.Namespace) -> int:
     """Run the scene; 1 if the run fails, with the results computed until then."""
     scene = build_scene(options.scene, options.changes)
-    _check(options)
+    _check(options, scene)
     print(f"{scene.name}: {scene.summary}")
-    try:
-        result, failure = _simulated(scene, options), ""
-    except SimulationError as error:
-        result, failure = error.result, str(error)
-    print(result.summary())
-    if options.output:
-        print(f"histories            {result.save(options.output)}")
-    if options.plot:
-        from sebody.results.plots import save_picture
-        print(f"picture              {save_picture(result, options.plot, scene.base, scene.tip)}")
-    if failure:
-        print(f"error: {failure}", file=sys.stderr)
-    return 1 if failure else 0
+    outcome = _simulated(scene, options)
+    print(outcome.result.summary())
+    for line in outcome.written:
+        print(line)
+    sys.stdout.flush()
+    for message in outcome.errors:
+        print(f"error: {message}", file=sys.stderr)
+    return interrupts.exit_code() or int(bool(outcome.errors))
 
 
-def _simulated(scene: "Scene", options: argparse.Namespace) -> "Result":
-    from sebody.analysis.accuracy import simulate_within
-    from sebody.analysis.restart import resume, save_state
+class Outcome(NamedTuple):
+    """What there is after a run, also of one that failed or was interrupted."""
+
+    result: "Result"
+    written: list[str]      # lines that name the files
+    errors: list[str]
+
+
+def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
+    """Run the scene and write the files asked for.
+
+    They are written before anything is printed: whoever reads may stop reading.
+    """
+    warnings.simplefilter("ignore", LimitWarning)   # the summary prints them
+    t_end = _t_end(scene, options)
+    simulation = None if options.accuracy is not None else _simulation(scene, options)
+    bar, errors = Progress(), []
+
+    def progress(fraction: float) -> None:
+        bar(fraction)
+        interrupts.look()
+
+    with interrupts.held():
+        try:
+            result = (simulation.run_to(t_end, progress).result() if simulation else
+                      _within(scene, options, t_end, progress))
+        except (SimulationError, Interrupted) as stop:
+            result = stop.result
+            errors.append(str(stop))
+        finally:
+            bar.close()
+        return Outcome(result, *_written(options, scene, simulation, result, errors))
+
+
+def _simulation(scene: "Scene", options: argparse.Namespace) -> "Simulation":
+    from sebody.analysis.restart import resume
     from sebody.analysis.schemes import generalized_alpha
     from sebody.analysis.simulation import Simulation
+
+    if options.resume:
+        return resume(scene.model, options.resume)
+    index = 3 if options.index is None else options.index
+    return Simulation(scene.model, _step(scene, options),
+                      generalized_alpha(_rho(options), index=index),
+                      1 if options.every is None else options.every)
+
+
+def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
+            progress: Callable[[float], None]) -> "Result":
+    from sebody.analysis.accuracy import simulate_within
+    from sebody.analysis.schemes import generalized_alpha
     from sebody.analysis.tolerance import Tolerance
 
-    h = scene.h if options.step is None else options.step
+    index = 2 if options.index is None else options.index
+    return simulate_within(scene.model, _step(scene, options), t_end, Tolerance(options.accuracy),
+                           generalized_alpha(_rho(options), index=index), progress)
+
+
+def _step(scene: "Scene", options: argparse.Namespace) -> float:
+    return scene.h if options.step is None else options.step
+
+
+def _rho(options: argparse.Namespace) -> float:
+    return 0.9 if options.rho is None else options.rho
+
+
+def _t_end(scene: "Scene", options: argparse.Namespace) -> float:
     t_end = scene.t_end if options.t_end is None else options.t_end
     if not 0.0 <= t_end < float("inf"):
         raise InputError(f"the end time is {t_end}: give a number >= 0")
-    rho = 0.9 if options.rho is None else options.rho
-    progress = Progress()
-    warnings.simplefilter("ignore", LimitWarning)   # the summary prints them
-    try:
-        if options.accuracy is not None:
-            scheme = generalized_alpha(rho, index=2 if options.index is None else options.index)
-            return simulate_within(scene.model, h, t_end, Tolerance(options.accuracy), scheme,
-                                   progress)
-        simulation = (resume(scene.model, options.resume) if options.resume else
-                      Simulation(scene.model, h, generalized_alpha(
-                          rho, index=3 if options.index is None else options.index)))
-        simulation.run_to(t_end, progress)
-    finally:
-        progress.close()
-    if options.save:
-        print(f"state                {save_state(simulation, options.save)}")
-    return simulation.result()
+    return t_end
 
 
-def _check(options: argparse.Namespace) -> None:
-    """Refuse files that cannot be written before the run, and options that contradict others."""
+def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulation | None",
+             result: "Result", errors: list[str]) -> tuple[list[str], list[str]]:
+    """Write every file that is asked for, even if another one cannot be written."""
+    from sebody.analysis.restart import save_state
+    from sebody.results.plots import save_picture
+
+    files = (("state", options.save, lambda path: save_state(simulation, path)),
+             ("histories", options.output, result.save),
+             ("picture", options.plot,
+              lambda path: save_picture(result, path, scene.base, scene.tip)))
+    written = []
+    for what, path, write in files:
+        try:
+            if path:
+                written.append(f"{what:20} {write(path)}")
+        except SebodyError as error:
+            errors.append(str(error))
+    return written, errors
+
+
+def _check(options: argparse.Namespace, scene: "Scene") -> None:
+    """Refuse before the run what cannot be written, and options that contradict others."""
     from sebody.analysis.restart import TARGET
     from sebody.results.result import OUTPUT
 
     for path, kind in ((options.output, OUTPUT), (options.save, TARGET)):
         if path:
             check_target(path, *kind)
+    check_distinct({"--output": options.output, "--save": options.save})
+    check_distinct({"--output": options.output, "--resume": options.resume})
     check_picture(options.plot)
-    if options.accuracy is not None and (options.save or options.resume):
-        raise InputError("--accuracy repeats the run with finer steps: leave out --save and "
-                         "--resume")
+    for name in (scene.base, scene.tip) if options.plot else ():
+        if name not in scene.model.nodes:
+            raise InputError(f"the picture shows node {name!r}, which scene {scene.name!r} does "
+                             f"not have: give its Scene base= and tip=, of "
+                             f"{', '.join(scene.model.nodes)}")
+    if options.accuracy is not None:
+        if options.save or options.resume:
+            raise InputError("--accuracy repeats the run with finer steps: leave out --save and "
+                             "--resume")
+        if options.every is not None:
+            raise InputError("with --accuracy --step is the grid of the output: give a longer "
+                             "one in place of --every")
     if options.resume:
-        for name in ("step", "rho", "index"):
+        for name in ("step", "rho", "index", "every"):
             if getattr(options, name) is not None:
                 raise InputError(f"--resume goes on with the {name} that was saved: leave out "
                                  f"--{name}")

@@ -19,7 +19,7 @@ from sebody.kernels.dense import columns_times
 from sebody.kernels.layout import C_MASS, C_STIFFNESS
 from sebody.kernels.pipeline import compiled
 
-SUMMAND = 5             # numbers of an element in System.summands
+SUMMAND = 7             # numbers of an element in System.summands
 ROUNDING = 8.0 * 2.2e-16        # left of a position by rounding, relative to its magnitude
 THIN = 1e-6             # smallest moment of inertia that scales its axis, relative to the largest
 
@@ -42,8 +42,8 @@ def sum_matrices(system, state, forces):
 def _sum_element(system, state, element):
     """Add an element matrix, its positions rotated to the axes they are solved for in."""
     summand = at(pointer_to(system.summands), SUMMAND * element)
-    start, width, first_rotated, end_rotated, linked = (summand[0], summand[1], summand[2],
-                                                      summand[3], summand[4])
+    start, width, first_rotated, end_rotated, linked, first, end = (
+        summand[0], summand[1], summand[2], summand[3], summand[4], summand[5], summand[6])
     own, J = at(pointer_to(state.J), start), pointer_to(state.rotated_matrix)
     if first_rotated < end_rotated or linked >= 0:
         for k in range(width * width):
@@ -55,9 +55,10 @@ def _sum_element(system, state, element):
         add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
                      state.matrix, state.expansion)
         return
-    matrix, entries = pointer_to(state.matrix), at(pointer_to(system.J_entry), start)
-    for k in range(width * width):
-        matrix[entries[k]] += own[k]
+    matrix, places, entries = (pointer_to(state.matrix), pointer_to(system.J_place),
+                               pointer_to(system.J_entry))
+    for k in range(first, end):
+        matrix[entries[k]] += own[places[k]]
 
 
 @compiled(forceinline=True)

@@ -30,7 +30,9 @@ class System(Arrays):
     index               index rows of all elements, see `layout.INDEX`
     constants           constants of all elements
     g_unknown           coordinate of every entry of `State.g`
-    J_entry             entry of the matrix for every entry of `State.J`
+    J_place             entries of element matrices that are summed, from the start of each matrix:
+                        not those of fixed coordinates, nor zeros between internal modes
+    J_entry             entry of the matrix for each of them
     ------------------  ----------------------------------------------------------------------------
     iteration matrix: by columns, or in the blocks of a sparse elimination
     ------------------------------------------------------------------------------------------------
@@ -48,8 +50,8 @@ class System(Arrays):
     is_multiplier       (N, padded) 1.0 for multipliers
     rotation_at         (r,) first coordinate of each rotation
     dimension           (1,) coordinates of a position
-    part                (N,) first coordinate of the position, rotation or equation that a coordinate
-                        or multiplier belongs to
+    part                (N,) first coordinate of the position or rotation, or first multiplier of
+                        the equation, that each belongs to
     inertias            (N,) largest mass or moment of inertia of that position or rotation at the
                         start, which sets it
     thin                (N,) the same where about some axis there is nearly none, zero elsewhere
@@ -58,8 +60,9 @@ class System(Arrays):
     rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
                         solved for in: start and width of the matrix, row, axes of the unknown, of
                         the matrix
-    summands            (elements, 5) start and width of the element matrix, first and last + 1 row
-                        of `rotated_blocks`, row of `Links.elements` or -1
+    summands            (elements, 7) start and width of the element matrix, first and last + 1 row
+                        of `rotated_blocks`, row of `Links.elements` or -1, first and last + 1 of
+                        `J_place`
     linked              (1,) 1 where bodies that rotate against each other are coupled
     ------------------  ----------------------------------------------------------------------------
     power ports
@@ -92,6 +95,7 @@ class System(Arrays):
     index: NDArray
     constants: NDArray
     g_unknown: NDArray
+    J_place: NDArray
     J_entry: NDArray
     rows: NDArray
     columns: NDArray

@@ -1,7 +1,10 @@
 """Small finite element models: a stand-in for an FE program in examples and tests."""
 
-from sebody.fem.beam import Section, frame, planar_beam, straight_beam
+from sebody.fem.beam import frame, planar_beam, straight_beam
 from sebody.fem.hexahedron import hexahedral_block
 from sebody.fem.model import FEModel
+from sebody.fem.section import Section, StiffnessSection
+from sebody.fem.shapes import circle, i_profile, rectangle, tube
 
-__all__ = ["FEModel", "Section", "frame", "hexahedral_block", "planar_beam", "straight_beam"]
+__all__ = ["FEModel", "Section", "StiffnessSection", "circle", "frame", "hexahedral_block",
+           "i_profile", "planar_beam", "rectangle", "straight_beam", "tube"]

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody.errors import InputError
+from sebody import inputs
 from sebody.fem.model import SOLID, FEModel, assemble
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
@@ -41,18 +41,16 @@ def hexahedral_block(
         A size, division, modulus or density that is not positive; a Poisson's ratio outside
         (-1, 0.5).
     """
-    corner, size = np.asarray(corner, dtype=float), np.asarray(size, dtype=float)
-    counts = np.asarray(divisions, dtype=int)
-    for name, value in (
-        ("size", size),
-        ("divisions", counts),
-        ("youngs_modulus", youngs_modulus),
-        ("density", density),
-    ):
-        if not np.all(np.asarray(value) > 0):
-            raise InputError(f"block {name} is {value}; give positive values")
-    if not -1 < poisson_ratio < 0.5:
-        raise InputError(f"block poisson_ratio is {poisson_ratio}; give a value in (-1, 0.5)")
+    corner = inputs.vector(corner, "block corner", 3)
+    size = inputs.vector(size, "block size", 3)
+    for edge in size:
+        inputs.number(edge, "block size: an edge", above=0)
+    remedy = "give three whole numbers >= 1"
+    counts = np.array([inputs.integer(count, "block divisions: one", least=1) for count in
+                       inputs.vector(divisions, "block divisions", 3, remedy=remedy)])
+    inputs.number(youngs_modulus, "block youngs_modulus", above=0)
+    inputs.number(density, "block density", above=0)
+    inputs.number(poisson_ratio, "block poisson_ratio", above=-1, below=0.5)
 
     nx, ny, nz = counts + 1
     z, y, x = (grid.ravel() for grid in np.meshgrid(*map(np.arange, (nz, ny, nx)), indexing="ij"))

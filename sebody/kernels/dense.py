@@ -10,6 +10,7 @@ from sebody.kernels.layout import LANES
 from sebody.kernels.pipeline import compiled
 
 _UNROLLED = 2       # sums over alternate columns: hides the latency of additions
+_VECTORS = 4, 2, 1      # vectors of rows at a time: every factor serves for all of them
 
 
 @intrinsic
@@ -40,12 +41,13 @@ def _add_columns_times(typingctx, A, x, out, rows, columns, height):
     return types.void(floats, floats, floats, *[types.int64] * 3), codegen
 
 
-@compiled(forceinline=True)
+@compiled
 def arrow_times(A, x, out, n, filled):
     """``out = A x`` of a square matrix that is diagonal beyond its first `filled` rows and columns.
 
     Reduced matrices are such arrows if the internal modes are normal modes: with many modes most
-    entries are zeros. Columns are padded; `filled` is n or a multiple of whole vectors.
+    entries are zeros. Columns are padded; `filled` is n or a multiple of whole vectors. Not
+    inlined: half a dozen copies would take a quarter of a kernel's compilation.
     """
     columns_times(A, x, out, n, filled)
     if filled < n:
@@ -58,31 +60,46 @@ def arrow_times(A, x, out, n, filled):
 def _multiply(builder, A, x, out, rows, columns, height, add):
     """Vector operations for ``out = A x``, or ``out += A x``."""
     word = ir.IntType(64)
+    first, last = word(0), _whole_vectors(builder, rows)
+    for vectors in _VECTORS:
+        whole = builder.and_(last, word(-LANES * vectors))
+        with cgutils.for_range_slice(builder, first, whole, word(LANES * vectors)) as (row, _):
+            _multiply_rows(builder, A, x, out, row, vectors, columns, height, add)
+        first = whole
+
+
+def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
+    """The same for a few vectors of rows, whose sums stay in registers."""
+    word = ir.IntType(64)
     vector = ir.VectorType(ir.DoubleType(), LANES)
-    sums = [cgutils.alloca_once(builder, vector) for _ in range(_UNROLLED)]
+    places = [builder.add(row, word(LANES * k)) for k in range(vectors)]
+    sums = [[cgutils.alloca_once(builder, vector) for _ in places] for _ in range(_UNROLLED)]
     paired = builder.sub(columns, builder.srem(columns, word(_UNROLLED)))
 
-    def add_column(total, row, column):
-        entries = _load(builder, A, builder.add(row, builder.mul(column, height)), vector)
+    def add_column(totals, column):
         factor = _broadcast(builder, builder.load(builder.gep(x, [column])), vector)
-        product = builder.fmul(entries, factor, flags=("contract",))
-        builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
+        start = builder.gep(A, [builder.mul(column, height)])
+        for total, place in zip(totals, places, strict=True):
+            product = builder.fmul(_load(builder, start, place, vector), factor,
+                                   flags=("contract",))
+            builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
 
-    last = _whole_vectors(builder, rows)
-    with cgutils.for_range_slice(builder, word(0), last, word(LANES)) as (row, _):
-        for total in sums:
+    for totals in sums:
+        for total in totals:
             builder.store(ir.Constant(vector, [0.0] * LANES), total)
-        if add:
-            builder.store(_load(builder, out, row, vector), sums[0])
-        with cgutils.for_range_slice(builder, word(0), paired, word(_UNROLLED)) as (column, _):
-            for k, total in enumerate(sums):
-                add_column(total, row, builder.add(column, word(k)))
-        with cgutils.for_range_slice(builder, paired, columns, word(1)) as (column, _):
-            add_column(sums[0], row, column)
-        result = builder.load(sums[0])
-        for total in sums[1:]:
+    if add:
+        for total, place in zip(sums[0], places, strict=True):
+            builder.store(_load(builder, out, place, vector), total)
+    with cgutils.for_range_slice(builder, word(0), paired, word(_UNROLLED)) as (column, _):
+        for k, totals in enumerate(sums):
+            add_column(totals, builder.add(column, word(k)))
+    with cgutils.for_range_slice(builder, paired, columns, word(1)) as (column, _):
+        add_column(sums[0], column)
+    for place, parts in zip(places, zip(*sums, strict=True), strict=True):
+        result = builder.load(parts[0])
+        for total in parts[1:]:
             result = builder.fadd(result, builder.load(total))
-        _store(builder, result, out, row)
+        _store(builder, result, out, place)
 
 
 def _whole_vectors(builder, rows):

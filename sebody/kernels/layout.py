@@ -288,6 +288,7 @@ class InertiaTraits(NamedTuple):
 
     summary: str
     material: bool                  # T in material angular velocities; else in those of the frame
+    modes_apart: bool = False       # internal modes meet in S, M and C alone, nowhere else
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 
 

@@ -1,19 +1,100 @@
-"""Functions of users, compiled for the time loop: histories of loads and drives, and forces."""
+"""Functions of users, compiled for the time loop: histories of loads and drives, and forces.
 
+They are compiled with bounds checks. Where one raises, or gives what is not finite, its result is
+NaN: no state that contains it is accepted, and the run stops. The arguments are kept to say why.
+"""
+
+import math
 from collections.abc import Callable
 
+import numpy as np
 from numba import carray, cfunc, njit, types
-from numba.core.ccallback import CFunc
-from numba.core.errors import NumbaError
+from numba.core import cgutils
+from numba.extending import intrinsic
 
 from sebody.errors import InputError
+from sebody.inputs import shown
 
 HISTORY = types.float64(types.float64)
-_floats = types.CPointer(types.float64)
+_floats, _given = types.CPointer(types.float64), types.Array(types.float64, 1, "C", readonly=True)
 FORCE = types.void(types.int64, types.float64, _floats, _floats, _floats)
+_ARRAYS = types.void(types.float64, _given, _given, types.Array(types.float64, 1, "C"))
+FAULT, TIME, OTHERS = range(3)      # of a record: whether there was a fault, its arguments
 
 
-def compile_history(function: Callable[[float], float], what: str) -> CFunc:
+class UserFunction:
+    """A compiled function, and the arguments of its last fault.
+
+    Parameters
+    ----------
+    function : callable
+        As the user wrote it.
+    arguments : int
+        Numbers it gets, the time included.
+    """
+
+    def __init__(self, function: Callable, arguments: int):
+        self.function = function
+        self.record = np.zeros(1 + arguments)
+        self.compiled = None            # by `compile_history` or `compile_force`
+
+    @property
+    def address(self) -> int:
+        """Of the machine code."""
+        return self.compiled.address
+
+    @property
+    def ctypes(self) -> Callable:
+        """The compiled function, to be called from Python."""
+        return self.compiled.ctypes
+
+    def forget(self) -> None:
+        """Forget the last fault."""
+        self.record[FAULT] = 0.0
+
+    def fault(self, since: float) -> str:
+        """What the function did at its last fault, and when; empty if it was before a time."""
+        if not (self.record[FAULT] and self.record[TIME] >= since):
+            return ""
+        t, others = float(self.record[TIME]), self.record[OTHERS:].copy()
+        others.flags.writeable = False
+        force = np.zeros(others.size // 2)
+        try:
+            with np.errstate(all="ignore"):
+                value = (self.function(t, *np.split(others, 2), force) if others.size else
+                         self.function(t))
+            did = f"gave {shown(force if others.size else value)}"
+        except Exception as error:      # whatever the user's function raises
+            did = f"raised {type(error).__name__}: {error}"
+        return f"{did} at t = {t:.6g}"
+
+
+@intrinsic
+def _returned(typingctx, function, arguments):
+    """Whether a compiled function raises, and what it returns otherwise."""
+    overload = next(iter(function.dispatcher.overloads.values()))
+    returns = overload.signature.return_type
+    results = types.Tuple((types.boolean, types.float64))
+
+    def codegen(context, builder, sig, args):
+        context.active_code_library.add_linking_library(overload.library)
+        status, value = context.call_internal_no_propagate(
+            builder, overload.fndesc, overload.signature, cgutils.unpack_tuple(builder, args[1]))
+        if returns == types.none:
+            value = context.get_constant(types.float64, 0.0)
+        return context.make_tuple(builder, results, [status.is_error, value])
+    return results(function, arguments), codegen
+
+
+@intrinsic
+def _floats_at(typingctx, address):
+    """Pointer to the numbers at an address."""
+    def codegen(context, builder, sig, args):
+        return builder.inttoptr(args[0], context.get_value_type(_floats))
+    return _floats(address), codegen
+
+
+def compile_history(function: Callable[[float], float], what: str) -> UserFunction:
     """A function of time as a C function.
 
     Raises
@@ -21,28 +102,64 @@ def compile_history(function: Callable[[float], float], what: str) -> CFunc:
     InputError
         Numba cannot compile it; the message begins with `what` it is.
     """
+    made = UserFunction(function, 1)
+    kept = made.record.ctypes.data
     try:
-        return cfunc(HISTORY)(function)
-    except (NumbaError, TypeError, AttributeError) as error:
+        inner = _inner(HISTORY, function)
+
+        def call(t):
+            raised, value = _returned(inner, (t,))
+            if raised or not math.isfinite(value):
+                record = carray(_floats_at(kept), 2)
+                record[FAULT], record[TIME] = 1.0, t
+                return math.nan
+            return value
+        made.compiled = cfunc(HISTORY)(call)
+    except Exception as error:      # Numba does not raise its own exceptions alone
         raise InputError(f"{what} {getattr(function, '__name__', function)!r} cannot be compiled: "
                          f"use only arithmetic, math and numpy in it, and one argument, the time "
                          f"({error})") from error
+    return made
 
 
-def compile_force(name: str, function: Callable[..., None]) -> CFunc:
+def compile_force(name: str, function: Callable[..., None], coordinates: int) -> UserFunction:
     """A user's ``function(t, x, v, force)`` as a C function of pointers.
+
+    Parameters
+    ----------
+    coordinates : int
+        Length of `x`, `v` and `force`.
 
     Raises
     ------
     InputError
         Numba cannot compile it.
     """
+    made = UserFunction(function, 1 + 2 * coordinates)
+    kept = made.record.ctypes.data
     try:
-        inner = njit(function)
+        inner = _inner(_ARRAYS, function)
 
         def call(n, t, x, v, force):
-            inner(t, carray(x, n), carray(v, n), carray(force, n))
-        return cfunc(FORCE)(call)
-    except (NumbaError, TypeError) as error:
+            given = carray(x, n), carray(v, n)
+            forces = carray(force, n)
+            raised, _ = _returned(inner, (t, given[0], given[1], forces))
+            for i in range(n):
+                raised |= not math.isfinite(forces[i])
+            if raised:
+                record = carray(_floats_at(kept), OTHERS + 2 * n)
+                record[FAULT], record[TIME] = 1.0, t
+                for i in range(n):
+                    record[OTHERS + i], record[OTHERS + n + i] = given[0][i], given[1][i]
+                    forces[i] = math.nan
+        made.compiled = cfunc(FORCE)(call)
+    except Exception as error:
         raise InputError(f"user force {name!r} cannot be compiled: write function(t, x, v, force) "
-                         f"with arithmetic, math and numpy only ({error})") from error
+                         "with arithmetic, math and numpy only, which sets entries of force and "
+                         f"changes nothing else ({error})") from error
+    return made
+
+
+def _inner(signature, function: Callable) -> Callable:
+    return njit(signature, boundscheck=True, no_cpython_wrapper=True)(function)
+

@@ -1,20 +1,24 @@
 """Straight beams as superelements."""
 
+from collections.abc import Sequence
+from itertools import pairwise
+
 from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
-from sebody.fem import Section, planar_beam, straight_beam
+from sebody.fem import planar_beam, straight_beam
+from sebody.fem.section import AnySection, part_of
 from sebody.model.bodies import superelement
 from sebody.model.inputs import known
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import node
 from sebody.model.parts import Node
-from sebody.reduction import craig_bampton
+from sebody.reduction import ReducedBody, craig_bampton
 
 
-def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str], section: Section,
-         elements: int, bodies: int | None = None, modes: int = 0,
-         up: ArrayLike | None = None, **placing) -> list[Node]:
+def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
+         section: AnySection, elements: int, bodies: int | None = None, modes: int = 0,
+         up: ArrayLike | None = None, damping: float = 0.0, **placing) -> list[Node]:
     """A straight beam of equal superelements; with one element each, a nonlinear beam.
 
     A superelement of one finite element, with the mean of its two rotations as frame, has the
@@ -29,7 +33,8 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str], secti
     ----------
     ends : two Nodes or str
         Full nodes at the ends of the axis.
-    section : Section
+    section : Section, StiffnessSection or function
+        One, or a function of the place along the beam, from 0 to 1, see `sebody.fem.straight_beam`.
     elements : int
         Finite elements from end to end.
     bodies : int, optional
@@ -38,6 +43,9 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str], secti
         Internal modes of each.
     up : (3,), optional
         Direction of the section's y axis, see `sebody.fem.straight_beam`.
+    damping : float
+        Part of critical damping of every vibration mode of each superelement while free, see
+        `ReducedBody.damped`.
     **placing
         Arguments of `superelement`, such as ``frame``.
 
@@ -62,9 +70,20 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str], secti
     step, each = (last.point - first.point) / bodies, elements // bodies
     nodes = [first, *(node(model, f"{name} {k}", first.point + k * step)
                       for k in range(1, bodies)), last]
-    fe_model = (planar_beam(first.point, first.point + step, section, each) if model.planar else
-                straight_beam(first.point, first.point + step, section, each, up))
-    body = craig_bampton(fe_model, [(0, "full"), (each, "full")], modes)
-    for k, pair in enumerate(zip(nodes, nodes[1:], strict=False), 1):
-        superelement(model, name if bodies == 1 else f"{name} {k}", body, pair, **placing)
+    body = None
+    for k, pair in enumerate(pairwise(nodes)):
+        if body is None or callable(section):
+            part = part_of(section, k / bodies, (k + 1) / bodies)
+            body = _part(model, pair, part, each, modes, up, damping)
+        superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, pair, **placing)
     return nodes
+
+
+def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements: int, modes: int,
+          up: ArrayLike | None, damping: float) -> ReducedBody:
+    """One superelement of a beam."""
+    first, last = (node.point for node in ends)
+    fe_model = (planar_beam(first, last, section, elements) if model.planar else
+                straight_beam(first, last, section, elements, up))
+    body = craig_bampton(fe_model, [(0, "full"), (elements, "full")], modes)
+    return body.damped(damping) if damping else body

@@ -11,7 +11,7 @@ from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.frames import FRAMES, check_frame, check_options, frame_weights
 from sebody.model.inputs import known, refuse_taken, triplet, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Node, Superelement
+from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.reduction import ReducedBody
 
 
@@ -77,6 +77,8 @@ def rigid_body(model: Mechanism, name: str, node: Node | str, mass: float, inert
         A mass or inertia no body has, or a name that is taken.
     """
     node = known(model, node)
+    for kind in ("position", "rotation"):
+        triplet(node, kind)
     _check_rigid(model, name, mass)
     centre = node.point if centre is None else vector(model, centre, f"centre of {name!r}")
     arm = centre - node.point
@@ -87,8 +89,7 @@ def rigid_body(model: Mechanism, name: str, node: Node | str, mass: float, inert
         J = J + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
         moments = {f"J_{'xyz'[i]}{'xyz'[j]}": J[i, j]
                    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
-    triplets = triplet(node, "position"), triplet(node, "rotation")
-    return _add(model, Element(name, model.kind_of("rigid_body"), triplets,
+    return _add(model, Element(name, model.kind_of("rigid_body"), positions(node) + rotations(node),
                                {"mass": mass, "mc": mass * arm, **moments}))
 
 
@@ -101,8 +102,10 @@ def point_mass(model: Mechanism, name: str, node: Node | str, mass: float) -> El
         A mass that is not positive, or a name that is taken.
     """
     _check_rigid(model, name, mass)
-    return _add(model, Element(name, model.kind_of("point_mass"),
-                               (triplet(known(model, node), "position"),), {"mass": mass}))
+    node = known(model, node)
+    triplet(node, "position")
+    return _add(model, Element(name, model.kind_of("point_mass"), positions(node),
+                               {"mass": mass}))
 
 
 def _add(model: Mechanism, body: Element) -> Element:

@@ -7,9 +7,9 @@ from sebody.errors import InputError
 from sebody.model import histories
 from sebody.model.histories import History
 from sebody.model.inputs import (
+    along,
     axes,
     chosen_name,
-    direction,
     known,
     rotation_vector,
     triplet,
@@ -17,7 +17,16 @@ from sebody.model.inputs import (
 )
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
-from sebody.model.parts import Element, Joint, Motion, Node
+from sebody.model.parts import (
+    Axes,
+    Element,
+    Joint,
+    Motion,
+    Node,
+    Place,
+    positions,
+    rotations,
+)
 from sebody.model.sharing import hold
 
 
@@ -36,11 +45,11 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
     """
     a, b = pair(model, node, to, "drive", ("rotation",))
     history = _starting_at_zero(histories.motion(motion), a)
-    constants = {} if model.planar else dict(
-        zip(("n", "m"), axes(model, axis, "drive", a)[1:], strict=True))
+    vectors = None if model.planar else axes(model, axis, "drive", a)
+    constants = dict(zip(("n", "m"), vectors[1:], strict=True)) if vectors else {}
     name = chosen_name(model, name, f"angle at {a.name}")
-    return _drive(model, Element(name, model.kind_of("turn_drive"), (a.rotation, b.rotation),
-                                 constants, 1, history))
+    equation = Element(name, model.kind_of("turn_drive"), rotations(a, b), constants, 1, history)
+    return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors)))
 
 
 def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayLike,
@@ -53,12 +62,13 @@ def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayL
         The displacement, zero at the start [length]; see `sebody.model.histories.motion`.
     """
     a, b = pair(model, node, to, "drive")
-    e = direction(model, axis, "drive", a)
+    vectors = along(model, axis, "drive", a)
+    constants = {"e": vectors[0], "start": vectors[0] @ (b.point - a.point)}
     history = _starting_at_zero(histories.motion(motion), a)
     name = chosen_name(model, name, f"slide at {a.name}")
-    return _drive(model, Element(name, model.kind_of("slide_drive"),
-                                 (a.position, b.position, a.rotation),
-                                 {"e": e, "start": e @ (b.point - a.point)}, 1, history))
+    equation = Element(name, model.kind_of("slide_drive"), positions(a, b) + rotations(a),
+                       constants, 1, history)
+    return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors)))
 
 
 def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: object,
@@ -84,27 +94,26 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
         raise InputError(f"cannot move {what!r}: use position or rotation")
     moved = triplet(node, what)
     if what == "position":
-        along = vector(model, direction, f"motion of {moved.name}")
+        way = vector(model, direction, f"motion of {moved.name}")
     else:
-        along = rotation_vector(model, direction, f"motion of {moved.name}")
+        way = rotation_vector(model, direction, f"motion of {moved.name}")
         if moved.motions:
             raise InputError(f"{moved.name} is moved about an axis already: rotations about "
                              "two axes do not add up, put a joint between them")
-    if not np.linalg.norm(along) > 0:
+    if not np.linalg.norm(way) > 0:
         raise InputError(f"motion of {moved.name} has the direction {direction}: give one "
                          "that is not zero")
     history = _starting_at_zero(histories.motion(motion), node)
     count = len(moved.motions) + 1
     name = chosen_name(model, name, f"motion{f' {count}' * (count > 1)} of {moved.name}")
-    hold(moved)
-    moved.motions.append(Motion(name, along, history))
+    hold(model, node, what)
+    moved.motions.append(Motion(name, way, history, Place(node, what)))
     return moved.motions[-1]
 
 
-def _drive(model: Mechanism, equation: Element) -> Joint:
-    joint = Joint(equation.name, (equation,))
-    model.joints.append(joint)
-    return joint
+def _drive(model: Mechanism, drive: Joint) -> Joint:
+    model.joints.append(drive)
+    return drive
 
 
 def _starting_at_zero(history: History, node: Node) -> History:

@@ -62,12 +62,28 @@ def axes(model: Mechanism, axis: ArrayLike, what: str,
     return e, first, np.cross(e, first)
 
 
+def along(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> tuple[NDArray, ...]:
+    """Unit vector along an axis and those normal to it: two in space, one in a plane."""
+    if not model.planar:
+        return axes(model, axis, what, node)
+    e = direction(model, axis, what, node)
+    return e, np.array([-e[1], e[0]])
+
+
 def chosen_name(model: Mechanism, name: str | None, default: str) -> str:
-    """The name of a joint, load or drive: the given one, or the default, not always unique."""
+    """The name of a joint, load or drive: the given one, or the default, with a number behind it.
+
+    The number is left out where it is one: ``spring at a``, then ``spring at a (2)``.
+    """
     if name is None:
         if default in model.own_names:
             refuse_taken(model, default, default)
-        return default
+        while True:
+            model.default_names[default] += 1
+            count = model.default_names[default]
+            numbered = default if count == 1 else f"{default} ({count})"
+            if numbered not in model.own_names:
+                return numbered
     if not (isinstance(name, str) and name):
         raise InputError(f"name of the {default} is {name!r}: give a text that is not empty")
     refuse_taken(model, name, default)

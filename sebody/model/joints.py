@@ -1,8 +1,9 @@
 """Joints of a model, built from a small family of generated constraints.
 
 A joint takes no equation where its nodes can share a triplet instead. With ``explicit=True`` it is
-built from equations alone. Every joint takes a name, by default its kind and its node:
-``result["<name>.multipliers"]`` are the multipliers of its equations.
+built from equations alone. Every joint takes a name, by default its kind and its node. Its force
+and its moment are those on `node`, the first of its arguments, from `to` or the ground, see
+`sebody.Result`; a joint with an axis has axes whose first direction is this axis.
 """
 
 from collections.abc import Mapping
@@ -12,18 +13,27 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.errors import InputError
-from sebody.model.inputs import axes, chosen_name, direction, known, triplet
+from sebody.model.inputs import along, axes, chosen_name, known, triplet
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import NEAR, check_together, pair
-from sebody.model.parts import Element, Joint, Node, Triplet
-from sebody.model.sharing import hold, share
+from sebody.model.parts import (
+    Axes,
+    Connection,
+    Element,
+    Joint,
+    Node,
+    Place,
+    positions,
+    rotations,
+)
+from sebody.model.sharing import can_share, hold, share
 
 
 class Equations(NamedTuple):
     """A constraint of a joint that has no name yet."""
 
     kind: str
-    triplets: tuple[Triplet, ...]
+    places: tuple[Place, ...]
     constants: Mapping[str, ArrayLike]
     multipliers: int
 
@@ -41,7 +51,7 @@ def fix(model: Mechanism, node: Node | str, what: str = "both") -> None:
         raise InputError(f"cannot fix {what!r}: use position, rotation or both")
     for kind in ("position", "rotation"):
         if what in (kind, "both"):
-            hold(triplet(node, kind))
+            hold(model, node, kind)
 
 
 def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.0),
@@ -53,14 +63,14 @@ def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.
     """
     what = "revolute joint"
     a, b = pair(model, node, to, what)
-    if model.planar:
-        name = _named(model, name, what, a)
-        return _joint(model, name, _together(model, a, b, to, what, explicit))
-    normals = axes(model, axis, what, a)
+    vectors = None if model.planar else axes(model, axis, what, a)
     name = _named(model, name, what, a)
     equations = _together(model, a, b, to, what, explicit)
-    grounded = to is None and not explicit
-    return _joint(model, name, [*equations, _parallel(a, None if grounded else b, normals)])
+    shared = () if equations else ("position",)
+    if vectors:
+        grounded = to is None and not explicit
+        equations.append(_parallel(a, None if grounded else b, vectors))
+    return _joint(model, name, a, b, equations, Axes.of(a, vectors), shared)
 
 
 def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayLike,
@@ -77,7 +87,9 @@ def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayL
                          "give two that are normal to each other")
     name = _named(model, name, what, a)
     equations = _together(model, a, b, to, what, explicit)
-    return _joint(model, name, [*equations, _perpendicular(a, b, e, n)])
+    shared = () if equations else ("position",)
+    return _joint(model, name, a, b, [*equations, _perpendicular(a, b, e, n)],
+                  Axes.of(a, (n, e, np.cross(n, e))), shared)
 
 
 def cylindrical(model: Mechanism, node: Node | str, axis: ArrayLike,
@@ -88,7 +100,7 @@ def cylindrical(model: Mechanism, node: Node | str, axis: ArrayLike,
     a, b = pair(model, node, to, what)
     vectors = axes(model, axis, what, a)
     equations = [_on_line(model, "cylindrical", a, b, vectors[1:]), _parallel(a, b, vectors)]
-    return _joint(model, _named(model, name, what, a), equations)
+    return _joint(model, _named(model, name, what, a), a, b, equations, Axes.of(a, vectors))
 
 
 def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
@@ -96,9 +108,9 @@ def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
     """Prismatic joint: `to` slides along an axis fixed in `node` and turns with it."""
     what = "prismatic joint"
     a, b = pair(model, node, to, what)
-    normals = _normals(model, axis, what, a)
-    equations = [_on_line(model, "prismatic", a, b, normals), *_turn_together(model, a, b)]
-    return _joint(model, _named(model, name, what, a), equations)
+    vectors = along(model, axis, what, a)
+    equations = [_on_line(model, "prismatic", a, b, vectors[1:]), *_turn_together(model, a, b)]
+    return _joint(model, _named(model, name, what, a), a, b, equations, Axes.of(a, vectors))
 
 
 def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
@@ -106,10 +118,10 @@ def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
     """Point on a line: `node` slides along an axis through its place, fixed in `to`."""
     what = "slider"
     b, a = pair(model, node, to, what, ("position",))
-    normals = _normals(model, axis, what, b)
+    vectors = along(model, axis, what, b)
     triplet(a, "rotation")
-    equations = [_on_line(model, what, a, b, normals)]
-    return _joint(model, _named(model, name, what, a), equations)
+    equations = [_on_line(model, what, a, b, vectors[1:])]
+    return _joint(model, _named(model, name, what, a), b, a, equations, Axes.of(a, vectors))
 
 
 def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
@@ -119,9 +131,9 @@ def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
     _spatial(model, what)
     a, b = pair(model, node, to, what)
     vectors = axes(model, normal, what, a)
-    on_plane = Equations("on_plane", (a.position, b.position, a.rotation), {"n1": vectors[0]}, 1)
+    on_plane = Equations("on_plane", positions(a, b) + rotations(a), {"n1": vectors[0]}, 1)
     name = chosen_name(model, name, f"{what} at {a.name}")
-    return _joint(model, name, [on_plane, _parallel(a, b, vectors)])
+    return _joint(model, name, a, b, [on_plane, _parallel(a, b, vectors)], Axes.of(a, vectors))
 
 
 def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
@@ -134,7 +146,8 @@ def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
     what = "spherical joint"
     a, b = pair(model, node, to, what, ("position",))
     name = _named(model, name, what, a)
-    return _joint(model, name, _together(model, a, b, to, what, explicit))
+    equations = _together(model, a, b, to, what, explicit)
+    return _joint(model, name, a, b, equations, Axes.of(a), () if equations else ("position",))
 
 
 def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
@@ -143,13 +156,16 @@ def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
     a, b = pair(model, node, to, "weld")
     name = _named(model, name, "weld", a)
     equations = _together(model, a, b, to, "weld", explicit)
-    if explicit:
+    shared = () if equations else ("position",)
+    if explicit or not (to is None or can_share(a.rotation, b.rotation)):
         equations += _turn_together(model, a, b)
-    elif to is None:
-        hold(a.rotation)
     else:
-        share(model, b.rotation, a.rotation, "rotation")
-    return _joint(model, name, equations)
+        shared += ("rotation",)
+        if to is None:
+            a.rotation.fixed = True
+        else:
+            share(model, b.rotation, a.rotation, "rotation")
+    return _joint(model, name, a, b, equations, Axes.of(a), shared)
 
 
 def distance(model: Mechanism, node: Node | str, to: Node | str,
@@ -160,36 +176,39 @@ def distance(model: Mechanism, node: Node | str, to: Node | str,
     if not length > NEAR * model.size():
         raise InputError(f"distance between {a.name!r} and {b.name!r} is zero: use a spherical "
                          "joint for nodes that start together")
-    rod = Equations(model.kind_of("distance"), (a.position, b.position), {"length": length}, 1)
-    return _joint(model, _named(model, name, "distance", a), [rod])
+    rod = Equations(model.kind_of("distance"), positions(a, b), {"length": length}, 1)
+    return _joint(model, _named(model, name, "distance", a), a, b, [rod], None)
 
 
 def _named(model: Mechanism, name: str | None, what: str, a: Node) -> str:
     return chosen_name(model, name, f"{what.removesuffix(' joint')} at {a.name}")
 
 
-def _joint(model: Mechanism, name: str, equations: list[Equations]) -> Joint:
-    joint = Joint(name, tuple(Element(name, *one) for one in equations))
+def _joint(model: Mechanism, name: str, node: Node, to: Node, equations: list[Equations],
+           axes: Axes | None, shared: tuple[str, ...] = ()) -> Joint:
+    """Add a joint between two nodes, some of whose triplets are shared or fixed."""
+    joint = Joint(name, tuple(Element(name, *one) for one in equations), node, to, axes)
     model.joints.append(joint)
+    other = to if model.nodes.get(to.name) is to else None
+    model.connections += [Connection(kind, node, other, joint) for kind in shared]
     return joint
 
 
 def _together(model: Mechanism, a: Node, b: Node, to: Node | str | None, what: str,
               explicit: bool) -> list[Equations]:
-    """Make two positions one: shared or fixed, or by the equations that are returned."""
+    """Make two positions one: shared or fixed, else by the equations that are returned."""
     check_together(model, a, b, what)
-    if explicit:
-        if a.position is b.position:
-            raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} share their position "
-                             "already: leave the joint out")
-        if to is None:
-            return [Equations(model.kind_of("coincident_ground"), (a.position,), {"c": a.point},
+    if explicit and a.position is b.position:
+        raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} share their position "
+                         "already: leave the joint out")
+    if to is None:
+        if explicit or a.position.root is not None:
+            return [Equations(model.kind_of("coincident_ground"), positions(a), {"c": a.point},
                               model.dimension)]
-        return [Equations(model.kind_of("coincident"), (a.position, b.position), {},
-                          model.dimension)]
-    if to is None and a.position.root is None:
         a.position.fixed = True
-    elif a.position is not b.position:
+    elif explicit or not can_share(a.position, b.position):
+        return [Equations(model.kind_of("coincident"), positions(a, b), {}, model.dimension)]
+    else:
         share(model, b.position, a.position, "position")
     return []
 
@@ -198,18 +217,18 @@ def _parallel(a: Node, b: Node | None, vectors: tuple[NDArray, NDArray, NDArray]
     """An axis of b, or of the ground, stays normal to two directions of a."""
     constants = dict(zip(("e", "n1", "n2"), vectors, strict=True))
     if b is None:
-        return Equations("parallel_ground", (a.rotation,), constants, 2)
-    return Equations("parallel", (a.rotation, b.rotation), constants, 2)
+        return Equations("parallel_ground", rotations(a), constants, 2)
+    return Equations("parallel", rotations(a, b), constants, 2)
 
 
 def _perpendicular(a: Node, b: Node, e: NDArray, n: NDArray) -> Equations:
     """A direction e of b stays normal to a direction n of a."""
-    return Equations("perpendicular", (a.rotation, b.rotation), {"e": e, "n": n}, 1)
+    return Equations("perpendicular", rotations(a, b), {"e": e, "n": n}, 1)
 
 
 def _turn_together(model: Mechanism, a: Node, b: Node) -> list[Equations]:
     if model.planar:
-        return [Equations("planar_aligned", (a.rotation, b.rotation), {}, 1)]
+        return [Equations("planar_aligned", rotations(a, b), {}, 1)]
     e, n, m = np.eye(3)
     return [_parallel(a, b, (e, n, m)), _perpendicular(a, b, m, n)]
 
@@ -220,16 +239,8 @@ def _on_line(model: Mechanism, what: str, a: Node, b: Node,
         if abs(normal @ (b.point - a.point)) > NEAR * model.size():
             raise InputError(f"{what}: node {b.name!r} is off the axis through "
                              f"{a.name!r}: place it there or turn the axis")
-    return Equations(model.kind_of("on_line"), (a.position, b.position, a.rotation),
+    return Equations(model.kind_of("on_line"), positions(a, b) + rotations(a),
                      {f"n{k}": normal for k, normal in enumerate(normals, 1)}, len(normals))
-
-
-def _normals(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> tuple[NDArray, ...]:
-    """The directions normal to an axis: two in space, one in a plane."""
-    if not model.planar:
-        return axes(model, axis, what, node)[1:]
-    e = direction(model, axis, what, node)
-    return (np.array([-e[1], e[0]]),)
 
 
 def _spatial(model: Mechanism, what: str) -> None:

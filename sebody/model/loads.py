@@ -10,7 +10,7 @@ from sebody.kernels.user_functions import compile_force
 from sebody.model.histories import History, clock, history
 from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Node
+from sebody.model.parts import Element, Node, positions, rotations
 
 
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,
@@ -23,11 +23,14 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
     node = known(model, node)
     on = triplet(node, "position")
     constants = {"d": vector(model, direction, f"force on {on.name}")}
-    triplets = (on, triplet(node, "rotation")) if follower else (on,)
+    places = positions(node)
+    if follower:
+        triplet(node, "rotation")
+        places += rotations(node)
     kind = model.kind_of("follower_" * follower + "force")
     course = history(amplitude)
     name = chosen_name(model, name, f"force on {on.name}")
-    return _add(model, Element(name, kind, triplets, constants, history=course))
+    return _add(model, Element(name, kind, places, constants, history=course))
 
 
 def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
@@ -37,12 +40,13 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
 
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
-    on = triplet(known(model, node), "rotation")
+    node = known(model, node)
+    on = triplet(node, "rotation")
     constants = {"d": rotation_vector(model, direction, f"torque on {on.name}")}
     kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
     course = history(amplitude)
     name = chosen_name(model, name, f"torque on {on.name}")
-    return _add(model, Element(name, kind, (on,), constants, history=course))
+    return _add(model, Element(name, kind, rotations(node), constants, history=course))
 
 
 def mode_force(model: Mechanism, body: str, mode: int, factor: float,
@@ -83,13 +87,15 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
     InputError
         A function that cannot be compiled, or no nodes.
     """
-    triplets = tuple(triplet(known(model, n), "position") for n in nodes)
-    if not triplets:
+    places = positions(*(known(model, n) for n in nodes))
+    for place in places:
+        triplet(place.node, "position")
+    if not places:
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")
-    address = compile_force(name, function)
+    compiled = compile_force(name, function, model.dimension * len(places))
     name = chosen_name(model, name, "user force")
-    return _add(model, Element(name, "user_force", triplets, {}, history=clock(),
-                               function=address))
+    return _add(model, Element(name, "user_force", places, {}, history=clock(),
+                               function=compiled))
 
 
 def gravity(model: Mechanism, field: ArrayLike) -> None:

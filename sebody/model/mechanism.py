@@ -1,5 +1,6 @@
 """The data of a model, and how its parts are found by name."""
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -8,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
+from sebody.model.parts import (
+    Connection,
+    Element,
+    Joint,
+    Motion,
+    Node,
+    Superelement,
+    Triplet,
+)
 
 
 @dataclass(eq=False)
@@ -28,7 +37,9 @@ class Mechanism:
     joints: list[Joint] = field(default_factory=list, init=False)
     loads: list[Element] = field(default_factory=list, init=False)  # springs and dampers, too
     grounds: list[Node] = field(default_factory=list, init=False)   # fixed ends of joints
+    connections: list[Connection] = field(default_factory=list, init=False)     # no equations
     own_names: set[str] = field(default_factory=set, init=False)    # names given by the user
+    default_names: Counter[str] = field(default_factory=Counter, init=False)    # how often wanted
     gravity_field: NDArray = field(init=False)
 
     def __post_init__(self) -> None:

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 from sebody.errors import InputError
 from sebody.model.inputs import known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Node, Triplet
+from sebody.model.parts import Connection, Node, Triplet
 
 
 def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
@@ -40,8 +40,10 @@ def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
         at.position if at is not None else
         Triplet(f"{name}.position", point, np.zeros(model.dimension)))
     rotation = None if keeps == "translation" else _rotation(model, f"{name}.rotation")
-    model.nodes[name] = Node(name, point, position, rotation)
-    return model.nodes[name]
+    added = model.nodes[name] = Node(name, point, position, rotation)
+    if at is not None:
+        model.connections.append(Connection("position", added, at, spare=True))
+    return added
 
 
 def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Node:
@@ -62,8 +64,9 @@ def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Nod
     root = position if position.root is None else position.root
     arms = (*position.arms, (rotation, point - master.point))
     dependent = Triplet(f"{name}.position", point, np.zeros(model.dimension), root=root, arms=arms)
-    model.nodes[name] = Node(name, point, dependent, rotation)
-    return model.nodes[name]
+    added = model.nodes[name] = Node(name, point, dependent, rotation)
+    model.connections += [Connection(kind, added, master) for kind in ("position", "rotation")]
+    return added
 
 
 def ground(model: Mechanism, node: Node) -> Node:

@@ -1,9 +1,10 @@
 """What a mechanism is made of: triplets and nodes, bodies, the elements and joints between them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.model.histories import History
@@ -16,6 +17,7 @@ class Motion(NamedTuple):
     name: str
     direction: NDArray
     history: History
+    place: "Place"
 
 
 @dataclass(eq=False)
@@ -56,6 +58,23 @@ class Node:
     rotation: Triplet | None
 
 
+class Place(NamedTuple):
+    """Where an element acts: one of the two triplets of a node, which other nodes may share."""
+
+    node: Node
+    kind: str       # position or rotation
+
+
+def positions(*nodes: Node) -> tuple[Place, ...]:
+    """The positions of some nodes, as an element takes them."""
+    return tuple(Place(node, "position") for node in nodes)
+
+
+def rotations(*nodes: Node) -> tuple[Place, ...]:
+    """The rotations of some nodes, as an element takes them: behind the positions."""
+    return tuple(Place(node, "rotation") for node in nodes)
+
+
 @dataclass(eq=False)
 class Superelement:
     """A reduced body placed on nodes, with its matrices in global axes."""
@@ -81,6 +100,12 @@ class Superelement:
         """Rotation triplets in the order of the reduced coordinates."""
         return [self.nodes[i].rotation for i in self.body.rotation_nodes]
 
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """Where its reduced coordinates are, without internal modes."""
+        return (positions(*(self.nodes[i] for i in self.body.position_nodes))
+                + rotations(*(self.nodes[i] for i in self.body.rotation_nodes)))
+
 
 @dataclass(eq=False)
 class Element:
@@ -88,17 +113,34 @@ class Element:
 
     name: str
     kind: str                       # name of its kernel without the prefix
-    triplets: tuple[Triplet, ...]   # positions first, then rotations
+    places: tuple[Place, ...]       # positions first, then rotations
     constants: Mapping[str, ArrayLike]      # by the names that the kernel has for them
     multipliers: int = 0
     history: History | None = None
     mode: tuple[str, int] | None = None     # superelement and internal mode of a mode force
     function: object = None                 # compiled function of a user force, kept alive
+    triplets: tuple[Triplet, ...] = field(init=False)       # those of the places
+
+    def __post_init__(self) -> None:
+        self.triplets = tuple(getattr(node, kind) for node, kind in self.places)
 
     @property
     def direction(self) -> NDArray:
         """Direction of a force or torque."""
         return self.constants["d"]
+
+
+class Axes(NamedTuple):
+    """Axes of a joint: the columns of a matrix at the start, which turn with a node."""
+
+    carrier: Node
+    columns: NDArray
+
+    @classmethod
+    def of(cls, carrier: Node, vectors: Sequence[NDArray] | None = None) -> "Axes":
+        """Axes along some vectors, by default those of space at the start."""
+        return cls(carrier, np.eye(len(carrier.point)) if vectors is None else
+                   np.column_stack(vectors))
 
 
 @dataclass(eq=False)
@@ -107,8 +149,29 @@ class Joint:
 
     name: str
     constraints: tuple[Element, ...]
+    node: Node          # its force and moment are those on this node
+    to: Node            # from this one, which is fixed if the joint is to the ground
+    axes: Axes | None   # none of a distance, whose axis is the line between the nodes
 
     @property
     def multipliers(self) -> int:
         """Number of its equations."""
         return sum(c.multipliers for c in self.constraints)
+
+    @property
+    def history(self) -> History | None:
+        """The motion of a drive."""
+        return next((c.history for c in self.constraints), None)
+
+
+class Connection(NamedTuple):
+    """Two nodes with a triplet in common, or at the ends of a rigid link.
+
+    What one passes to the other takes no equation: it is found from the balance of the nodes.
+    """
+
+    kind: str               # position or rotation: whether a force or a moment is passed
+    node: Node
+    to: Node | None         # none: the ground
+    joint: Joint | None = None      # that made it; none of a support, a link, a node made with at=
+    spare: bool = False     # of a support or a node made with at=: none where joints do the same

@@ -1,25 +1,37 @@
 """Fixed and shared triplets: joints without equations."""
 
 from sebody.errors import InputError
+from sebody.model.inputs import triplet
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Triplet
+from sebody.model.parts import Connection, Node, Triplet
 
 
-def hold(triplet: Triplet) -> None:
-    """Fix a triplet, which must not be a dependent position."""
-    if triplet.root is not None:
-        raise InputError(f"{triplet.name} hangs on another node by a rigid link: fix or move "
-                         f"{triplet.root.name} and its rotation instead")
-    triplet.fixed = True
+def hold(model: Mechanism, node: Node, kind: str) -> Triplet:
+    """Fix a triplet of a node, which must not be a dependent position."""
+    held = triplet(node, kind)
+    if held.root is not None:
+        raise InputError(f"{held.name} hangs on another node by a rigid link: fix or move "
+                         f"{held.root.name} and its rotation instead")
+    held.fixed = True
+    model.connections.append(Connection(kind, node, None, spare=True))
+    return held
+
+
+def can_share(one: Triplet, other: Triplet) -> bool:
+    """Whether two triplets can be one: at most one of them is fixed or hangs on another node.
+
+    Two that are fixed at one place and not moved are one already.
+    """
+    still = [t.fixed and not t.motions for t in (one, other)]
+    return one is other or all(still) or any(t.solved for t in (one, other))
 
 
 def share(model: Mechanism, gone: Triplet, kept: Triplet, kind: str) -> None:
     """Replace one triplet by another at every node, joint and load."""
-    if gone.fixed or gone.root is not None:
+    if gone is kept:
+        return
+    if not gone.solved:
         gone, kept = kept, gone
-    if gone.fixed or gone.root is not None:
-        raise InputError(f"{gone.name} and {kept.name} cannot be one: each of them is fixed or "
-                         "hangs on another node; use explicit=True")
     if gone.given and not kept.given:
         kept.rate, kept.given = gone.rate, True
     for node in (*model.nodes.values(), *model.grounds):
@@ -27,7 +39,7 @@ def share(model: Mechanism, gone: Triplet, kept: Triplet, kind: str) -> None:
             setattr(node, kind, kept)
     for element in (*model.constraints, *model.loads, *model.rigid_bodies.values()):
         element.triplets = tuple(kept if t is gone else t for t in element.triplets)
-    for triplet in model.triplets():
-        if triplet.root is gone:
-            triplet.root = kept
-        triplet.arms = tuple((kept if r is gone else r, arm) for r, arm in triplet.arms)
+    for one in model.triplets():
+        if one.root is gone:
+            one.root = kept
+        one.arms = tuple((kept if r is gone else r, arm) for r, arm in one.arms)

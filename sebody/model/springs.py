@@ -7,7 +7,7 @@ from sebody.errors import InputError
 from sebody.model.inputs import axes, chosen_name
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
-from sebody.model.parts import Element, Node, Triplet
+from sebody.model.parts import Element, Node, Place, positions, rotations
 
 
 def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float = 0.0,
@@ -34,7 +34,7 @@ def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float 
                          "no direction: use a bushing")
     length = start if length is None else length
     _check("spring", stiffness=stiffness, cubic=cubic, damping=damping, length=length)
-    return _add(model, name, "spring", a, (a.position, b.position),
+    return _add(model, name, "spring", a, positions(a, b),
                 {"k": stiffness, "k3": cubic, "c": damping, "length": length})
 
 
@@ -55,7 +55,7 @@ def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
     constants = {"k": stiffness, "k3": cubic, "c": damping, "rest": rest}
     if not model.planar:
         constants |= zip(("n", "m"), axes(model, axis, what, a)[1:], strict=True)
-    return _add(model, name, what, a, (a.rotation, b.rotation), constants)
+    return _add(model, name, what, a, rotations(a, b), constants)
 
 
 def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
@@ -75,15 +75,14 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     if not all(np.isfinite(v).all() and (v >= 0).all() for v in constants.values()):
         raise InputError(f"bushing at {a.name!r} has a coefficient that is negative or no "
                          "number: give finite numbers >= 0")
-    return _add(model, name, "bushing", a, (a.position, b.position, a.rotation, b.rotation),
-                constants)
+    return _add(model, name, "bushing", a, positions(a, b) + rotations(a, b), constants)
 
 
-def _add(model: Mechanism, name: str | None, what: str, a: Node, triplets: tuple[Triplet, ...],
+def _add(model: Mechanism, name: str | None, what: str, a: Node, places: tuple[Place, ...],
          constants: dict[str, ArrayLike]) -> Element:
     name = chosen_name(model, name, f"{what} at {a.name}")
     kind = model.kind_of(what.replace(" ", "_"))
-    model.loads.append(Element(name, kind, triplets, constants))
+    model.loads.append(Element(name, kind, places, constants))
     return model.loads[-1]
 
 

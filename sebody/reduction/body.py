@@ -5,10 +5,12 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import block_diag, eigh
+from scipy.linalg import LinAlgError, block_diag, eigh
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.reduction import checks
+from sebody.reduction.invariants import InertiaInvariants
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -37,6 +39,8 @@ class ReducedBody:
         Number of internal modes.
     damping : (n, n), optional
         Reduced damping matrix, acting on the rates of deformation; see `damped`.
+    invariants : InertiaInvariants, optional
+        What inertia option C needs beyond the reduced matrices.
 
     Raises
     ------
@@ -51,23 +55,26 @@ class ReducedBody:
     keeps: tuple[str, ...]
     modes: int = 0
     damping: NDArray | None = None
+    invariants: InertiaInvariants | None = None
 
     def __post_init__(self) -> None:
-        coordinates = np.array(self.coordinates, dtype=float)
-        keeps = tuple(self.keeps)
-        checks.check_layout(coordinates, keeps, self.modes)
+        coordinates = inputs.reals(self.coordinates, "coordinates",
+                                   "give one row of numbers per boundary node")
+        keeps = tuple(inputs.items(self.keeps, "keeps", "give a text per boundary node"))
+        object.__setattr__(self, "modes", inputs.integer(self.modes, "modes", least=0))
+        checks.check_layout(coordinates, keeps)
         names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
         self._store("coordinates", coordinates)
         object.__setattr__(self, "keeps", keeps)
         for name in ("stiffness", "mass"):
-            matrix = np.array(getattr(self, name), dtype=float)
+            matrix = inputs.reals(getattr(self, name), name, "give a matrix of real numbers")
             checks.check_matrix(name, matrix, names)
             self._store(name, (matrix + matrix.T) / 2)
         rigid = self.rigid_modes_about(coordinates.mean(axis=0))
         checks.check_stiffness(self.stiffness, rigid, names)
         checks.check_mass(self.mass, rigid, names)
         if self.damping is not None:
-            damping = np.array(self.damping, dtype=float)
+            damping = inputs.reals(self.damping, "damping", "give a matrix of real numbers")
             checks.check_matrix("damping", damping, names)
             self._store("damping", (damping + damping.T) / 2)
             checks.check_damping(self.damping, rigid, names)
@@ -97,7 +104,8 @@ class ReducedBody:
 
     def rigid_modes_about(self, point: ArrayLike) -> NDArray:
         """Rigid modes with rotations about `point`: rows e, e x (X_i - point); e; zero."""
-        arms = self.coordinates[list(self.position_nodes)] - np.asarray(point, dtype=float)
+        point = inputs.vector(point, "point", self.coordinates.shape[1])
+        arms = self.coordinates[list(self.position_nodes)] - point
         count, dimension = arms.shape
         if self.planar:
             velocities = np.column_stack([-arms[:, 1], arms[:, 0]]).reshape(-1, 1)
@@ -150,12 +158,16 @@ class ReducedBody:
         Raises
         ------
         InputError
-            A number that is negative or not finite.
+            A number that is negative or not finite, or a body with massless coordinates.
         """
-        for name, value in (("ratio", ratio), ("mass", mass), ("stiffness", stiffness)):
-            if not (np.isfinite(value) and value >= 0):
-                raise InputError(f"damping: {name} is {value}; give a finite number >= 0")
-        squares, shapes = eigh(self.stiffness, self.mass)
+        ratio, mass, stiffness = (inputs.number(value, f"damping: {name}", least=0) for name, value
+                                  in (("ratio", ratio), ("mass", mass), ("stiffness", stiffness)))
+        try:
+            squares, shapes = eigh(self.stiffness, self.mass)
+        except LinAlgError as error:
+            raise InputError("damping: the mass is singular, so the body has motions without a "
+                             "frequency; give every coordinate inertia, or damping=, a matrix"
+                             ) from error
         rigid = self.rigid_modes.shape[1]
         omega, momenta = np.sqrt(squares[rigid:]), self.mass @ shapes[:, rigid:]
         damping = (momenta * (2 * ratio * omega + mass + stiffness * omega**2)) @ momenta.T
@@ -174,17 +186,7 @@ class ReducedBody:
         InputError
             `rotation` is not a rotation of the body's dimension.
         """
-        rotation = np.asarray(rotation, dtype=float)
-        dimension = self.coordinates.shape[1]
-        if (
-            rotation.shape != (dimension, dimension)
-            or not np.allclose(rotation.T @ rotation, np.eye(dimension), atol=1e-12)
-            or np.linalg.det(rotation) < 0
-        ):
-            raise InputError(
-                f"rotation must be a proper rotation matrix of shape ({dimension}, {dimension}); "
-                "orthonormalise it"
-            )
+        rotation = inputs.rotation(rotation, "rotation", self.coordinates.shape[1])
         angles = len(self.rotation_nodes)
         by = block_diag(
             np.kron(np.eye(len(self.position_nodes)), rotation),
@@ -197,4 +199,5 @@ class ReducedBody:
             mass=by @ self.mass @ by.T,
             damping=None if self.damping is None else by @ self.damping @ by.T,
             coordinates=self.coordinates @ rotation.T,
+            invariants=self.invariants and self.invariants.rotated(rotation, by),
         )

@@ -12,8 +12,9 @@ from scipy import sparse
 from scipy.linalg import block_diag, eigh
 from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
+from sebody import inputs
 from sebody.errors import InputError
-from sebody.fem.model import FEModel
+from sebody.fem.model import FEModel, fe_matrix
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import KEEPS
 
@@ -88,8 +89,8 @@ def craig_bampton(
         Unknown or repeated boundary node, a triplet the nodes do not have, more modes than there
         are, or boundary nodes that leave a mechanism inside.
     """
-    pairs = list(boundary.items() if isinstance(boundary, Mapping) else boundary)
-    _check_boundary(fe_model, pairs)
+    inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
+    pairs = _boundary_pairs(fe_model, boundary)
     dofs = np.concatenate(
         [fe_model.dofs(node, "translation") for node, keep in pairs if keep != "rotation"]
         + [fe_model.dofs(node, "rotation") for node, keep in pairs if keep != "translation"]
@@ -126,15 +127,21 @@ def component_modes(
     InputError
         More modes than there are, a wrong selection, or a mechanism inside.
     """
-    stiffness, mass = sparse.csc_array(stiffness), sparse.csc_array(mass)
-    boundary_dofs = np.asarray(boundary_dofs)
+    stiffness, mass = fe_matrix(stiffness, "stiffness"), fe_matrix(mass, "mass")
+    if not stiffness.shape == mass.shape == (stiffness.shape[0],) * 2:
+        raise InputError(f"stiffness has shape {stiffness.shape} and mass {mass.shape}: give "
+                         "square matrices of one size")
+    boundary_dofs = _boundary_rows(boundary_dofs, stiffness.shape[0])
     internal = np.setdiff1d(np.arange(stiffness.shape[0]), boundary_dofs)
+    modes = inputs.integer(modes, "modes")
     if not 0 <= modes <= len(internal):
         raise InputError(
             f"modes is {modes}, but the clamped body has {len(internal)} internal DOFs; ask for "
             f"0 to {len(internal)} or refine the FE model"
         )
-    chosen = list(range(modes)) if select is None else list(select)
+    chosen = list(range(modes)) if select is None else [
+        inputs.integer(mode, "select: one mode") for mode in inputs.items(
+            select, "select", "give a list of modes, counted from 0")]
     if len(set(chosen)) != len(chosen) or not set(chosen) <= set(range(modes)):
         raise InputError(
             f"select = {chosen} must name different modes among the {modes} computed, counted "
@@ -155,8 +162,27 @@ def component_modes(
     return ComponentModes(constraint, fixed_interface, omega_squared[chosen])
 
 
-def _check_boundary(fe_model: FEModel, pairs: list[tuple[int, str]]) -> None:
-    count = len(fe_model.coordinates)
+def _boundary_rows(rows: Sequence[int], size: int) -> NDArray:
+    remedy = f"give different rows of the matrices, from 0 to {size - 1}"
+    found = [inputs.integer(row, "boundary_dofs: one", least=0, most=size - 1, remedy=remedy)
+             for row in inputs.items(rows, "boundary_dofs", remedy)]
+    if len(set(found)) != len(found):
+        raise inputs.refusal("boundary_dofs", found, remedy)
+    return np.array(found, dtype=int)
+
+
+def _boundary_pairs(fe_model: FEModel,
+                    boundary: Mapping[int, str] | Iterable[tuple[int, str]]
+                    ) -> list[tuple[int, str]]:
+    """Boundary nodes and what they keep."""
+    remedy = "give pairs (node, 'full', 'translation' or 'rotation'), or a dict of them"
+    count, pairs = len(fe_model.coordinates), []
+    for one in inputs.items(boundary.items() if isinstance(boundary, Mapping) else boundary,
+                            "boundary", remedy):
+        pair = inputs.items(one, "a boundary node", remedy)
+        if len(pair) != 2:
+            raise inputs.refusal("a boundary node", one, remedy)
+        pairs.append((inputs.integer(pair[0], "boundary node"), pair[1]))
     if not pairs:
         raise InputError("boundary is empty; name one boundary node at least")
     nodes = [node for node, _ in pairs]
@@ -165,7 +191,7 @@ def _check_boundary(fe_model: FEModel, pairs: list[tuple[int, str]]) -> None:
             raise InputError(f"boundary node {node} unknown; the model has nodes 0 to {count - 1}")
         if nodes.count(node) > 1:
             raise InputError(f"boundary node {node} appears more than once; name it once")
-        if keep not in KEEPS:
+        if not isinstance(keep, str) or keep not in KEEPS:
             raise InputError(
                 f"boundary node {node} keeps {keep!r}; choose one of {', '.join(KEEPS)}"
             )
@@ -174,6 +200,7 @@ def _check_boundary(fe_model: FEModel, pairs: list[tuple[int, str]]) -> None:
                 f"boundary node {node} keeps {keep!r}, but the model's nodes have no rotations; "
                 "use 'translation'"
             )
+    return pairs
 
 
 def _factorise(stiffness: sparse.csc_array) -> SuperLU:

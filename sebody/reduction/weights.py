@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.reduction.body import ReducedBody
 
@@ -34,12 +35,13 @@ def frame_weights(coordinates: ArrayLike, centre_of_mass: ArrayLike) -> NDArray:
     InputError
         Shapes that do not fit or values that are not finite.
     """
-    coordinates = np.asarray(coordinates, dtype=float)
-    centre = np.asarray(centre_of_mass, dtype=float)
+    remedy = "give (n_nodes, 3) and (3,) numbers, or planar (n_nodes, 2) and (2,)"
+    coordinates = inputs.reals(coordinates, "coordinates", remedy)
+    centre = inputs.reals(centre_of_mass, "centre_of_mass", remedy)
     if coordinates.ndim != 2 or not len(coordinates) or centre.shape != coordinates.shape[1:]:
         raise InputError(
-            f"coordinates have shape {coordinates.shape} and centre_of_mass {centre.shape}; give "
-            "(n_nodes, 3) and (3,), or planar (n_nodes, 2) and (2,)"
+            f"coordinates have shape {coordinates.shape} and centre_of_mass {centre.shape}: "
+            f"{remedy}"
         )
     if not (np.all(np.isfinite(coordinates)) and np.all(np.isfinite(centre))):
         raise InputError("coordinates or centre_of_mass are not finite; correct them")
@@ -59,7 +61,13 @@ def body_weights(body: ReducedBody) -> tuple[NDArray, NDArray]:
         Weights in the order of `body.position_nodes`.
     rotations : (n_rotation_nodes,)
         Weights in the order of `body.rotation_nodes`; empty if no rotation is kept.
+
+    Raises
+    ------
+    InputError
+        No body.
     """
+    inputs.instance(body, "body", ReducedBody, "give a ReducedBody")
     positions = frame_weights(body.coordinates[list(body.position_nodes)], body.centre_of_mass)
     if not body.rotation_nodes:
         return positions, np.zeros(0)

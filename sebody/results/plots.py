@@ -2,13 +2,17 @@
 
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.results.files import check_target
+from sebody.files import check_target, replacing
 from sebody.results.result import Result
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SUFFIXES = (".png", ".pdf", ".svg")
 INSTANTS = 9            # at which the body is drawn
@@ -73,8 +77,20 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
         FigureCanvasAgg(figure)
         _draw_rates(figure.add_subplot(1, 2, 1), result.t, rates, title)
         _draw_path(figure, start, end, base, tip)
-        figure.savefig(path, dpi=150, bbox_inches="tight", pad_inches=0.1)
+        write_picture(figure, path, 150, bbox_inches="tight", pad_inches=0.1)
     return Path(path)
+
+
+def write_picture(figure: "Figure", path: str | Path, dpi: int, **options: object) -> None:
+    """Write a figure of matplotlib in the format of the file's ending.
+
+    Raises
+    ------
+    WriteError
+        Writing fails; an older file is unchanged.
+    """
+    with replacing(path, "picture") as file:
+        figure.savefig(file, dpi=dpi, format=Path(path).suffix[1:], **options)
 
 
 def _rates(result: Result, base: str, tip: str) -> tuple[str, NDArray]:

@@ -51,6 +51,32 @@ def forces(system: System, state: State, rows: NDArray) -> Forces:
     return found
 
 
+def prescribed_powers(system: System, t: NDArray, sums: NDArray, powers: NDArray) -> NDArray:
+    """Powers of the power ports, (n, ports), with those of prescribed motions filled in.
+
+    A prescribed motion gives the sum of the forces on its coordinates times its rate.
+
+    Parameters
+    ----------
+    t : (n,)
+        Times of the recorded states.
+    sums : (n, coordinates)
+        See `Forces`.
+    powers : (n, ports)
+        Those of elements.
+    """
+    found = powers.copy()
+    ports = np.unique(system.prescribed[:, 1])
+    found[:, ports] = 0.0
+    loads = np.zeros((len(t), 3 * powers.shape[1]))
+    for k in range(len(t) if ports.size else 0):
+        set_loads(system, loads[k], t[k])
+    for (coordinate, port, _), factor in zip(system.prescribed, system.prescribed_factor,
+                                             strict=True):
+        found[:, port] += sums[:, coordinate] * factor * loads[:, 3 * port + 1]
+    return found
+
+
 def constraint_residuals(system: System, state: State, rows: NDArray) -> NDArray:
     """Largest residual of the constraints and of their rates in every recorded state, (n, 2).
 
@@ -79,6 +105,7 @@ def _over_records(what: str, evaluate, system: System, state: State, rows: NDArr
 def _evaluate_energies(system, state, rows, out):
     for k in range(len(rows)):
         copy(rows[k], state.now)
+        set_loads(system, state.loads, state.now[RECORD_T])
         for i in range(state.energy.size):
             state.energy[i] = 0.0
         status = run_kernels(ENERGY, 0, system.address.size, system, state)

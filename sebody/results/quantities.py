@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
+from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording, record_counts
 
 
@@ -52,9 +53,14 @@ def look_up(recording: Recording, name: str) -> NDArray:
         raise InputError(f"{quantity!r} is unknown: " + "; ".join(
             f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
     offers = [one.offer.format(names=", ".join(one.names(recording)) or f"any {one.kind}",
-                               quantities=" and ".join(one.quantities)) for one in OWNERS]
+                               quantities=_enumerated(one.quantities)) for one in OWNERS]
     raise InputError(f"{name!r} is unknown: {'; '.join(offers)}; of the model "
                      f"{', '.join(OF_MODEL)}")
+
+
+def _enumerated(names: Iterable[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def saved(recording: Recording) -> list[str]:
@@ -106,18 +112,19 @@ def _rotation(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
     return recording.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
 
 
-def _angular_velocity(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
-    v = recording.recorded("v")
+def _angular(part: str, recording: Recording, triplet: Triplet, at: slice) -> NDArray:
+    """Angular velocity or acceleration in global axes; both are recorded in material ones."""
+    values = recording.recorded(part)
     if recording.model.planar:
-        return v[:, at.start]
-    return np.einsum("nij,nj->ni", _rotation(recording, triplet, at), v[:, at])
+        return values[:, at.start]
+    return np.einsum("nij,nj->ni", _rotation(recording, triplet, at), values[:, at])
 
 
 def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
     """Force or moment of the support of a fixed or prescribed triplet, in global axes."""
     if not triplet.fixed:
         raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
-                         "reaction; a joint's force is in its multipliers")
+                         "reaction; the force of a joint is <joint>.force")
     values = recording.forces.sums[:, at]
     if id(triplet) not in recording.numbering.rotations:
         return values
@@ -138,18 +145,15 @@ OF_NODE = {
     "position": NodeQuantity(False, partial(_coordinates, "q")),
     "rotation": NodeQuantity(True, _rotation),
     "velocity": NodeQuantity(False, partial(_coordinates, "v")),
-    "angular_velocity": NodeQuantity(True, _angular_velocity),
+    "angular_velocity": NodeQuantity(True, partial(_angular, "v")),
     "acceleration": NodeQuantity(False, partial(_coordinates, "a"), saved=False),
+    "angular_acceleration": NodeQuantity(True, partial(_angular, "a"), saved=False),
     "reaction": NodeQuantity(False, _reaction, saved=False),
     "reaction_moment": NodeQuantity(True, _reaction, saved=False),
 }
 
 
 # bodies, joints, power ports
-
-
-def _bodies(recording: Recording) -> dict:
-    return recording.model.bodies | recording.model.rigid_bodies
 
 
 def _modes(recording: Recording, name: str) -> NDArray:
@@ -159,36 +163,27 @@ def _modes(recording: Recording, name: str) -> NDArray:
     return recording.recorded("q")[:, first:first + recording.model.bodies[name].body.modes]
 
 
-def _body_forces(recording: Recording, name: str) -> NDArray:
-    """Forces of neighbours and supports on a body's nodes, in balance with its inertia."""
-    part = _bodies(recording)[name]
-    first = recording.numbering.forces_at[id(part)]
-    width = (part.body.stiffness.shape[0] if name in recording.model.bodies else
-             sum(t.start.size for t in part.triplets))
-    return recording.forces.elements[:, first:first + width]
-
-
-def _multipliers(recording: Recording, name: str) -> NDArray:
-    equations = [c for c in recording.model.constraints if c.name == name]
-    if not equations:
-        raise InputError(f"joint {name!r} takes no equation, so it has no multipliers: what it "
-                         "joins is shared or fixed; the force on a fixed node is its reaction")
-    firsts = [(recording.numbering.multipliers[id(c)], c.multipliers) for c in equations]
-    return recording.recorded("q")[:, [first + k for first, count in firsts for k in range(count)]]
-
-
-def _work(recording: Recording, name: str) -> NDArray:
-    return recording.recorded("works")[:, recording.numbering.port_names.index(name)]
-
-
 OWNERS = (
     Owner("node", "nodes are {names}", lambda recording: recording.model.nodes,
           {name: partial(_of_node, name) for name in OF_NODE}),
-    Owner("body", "of bodies ({names}) there are {quantities}", _bodies,
-          {"modes": _modes, "forces": _body_forces}),
-    Owner("joint", "of joints {quantities}",
-          lambda recording: [joint.name for joint in recording.model.joints],
-          {"multipliers": _multipliers}),
-    Owner("load", "of {names} {quantities}", lambda recording: recording.numbering.port_names,
-          {"work": _work}),
+    Owner("body", "of bodies ({names}) there are {quantities}", forces.bodies,
+          {"modes": _modes, "forces": forces.of_body}),
+    Owner("node of a body", "of <body>.<node> {quantities}", forces.nodes_of_bodies,
+          {"force": partial(forces.at_node, "position"),
+           "moment": partial(forces.at_node, "rotation")}),
+    Owner("joint", "of joints {quantities}", forces.joints,
+          {"multipliers": forces.multipliers,
+           "force": partial(forces.of_joint, "position"),
+           "moment": partial(forces.of_joint, "rotation"),
+           "local_force": partial(forces.in_joint_axes, "position"),
+           "local_moment": partial(forces.in_joint_axes, "rotation")}),
+    Owner("drive", "of drives {quantities}", forces.drives,
+          {"torque": partial(forces.effort, "torque"),
+           "thrust": partial(forces.effort, "thrust")}),
+    Owner("spring or load", "of springs and loads {quantities}", forces.loads,
+          {"force": partial(forces.of_load, "position"),
+           "moment": partial(forces.of_load, "rotation")}),
+    Owner("source of work", "of {names} {quantities}",
+          lambda recording: recording.numbering.port_names,
+          {"work": forces.work, "power": forces.power}),
 )

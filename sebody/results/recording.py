@@ -9,9 +9,16 @@ from numpy.typing import NDArray
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import State
 from sebody.engine.system import System
-from sebody.kernels.layout import RECORD
+from sebody.kernels.layout import ENERGIES, RECORD
 from sebody.model.mechanism import Mechanism
-from sebody.results.postprocessing import Forces, constraint_residuals, energies, forces
+from sebody.results.balance import Balance
+from sebody.results.postprocessing import (
+    Forces,
+    constraint_residuals,
+    energies,
+    forces,
+    prescribed_powers,
+)
 
 
 class Start(NamedTuple):
@@ -50,6 +57,19 @@ class Recording:
     def forces(self) -> Forces:
         """Forces in every recorded state."""
         return forces(self.system, self.state, self.rows)
+
+    @cached_property
+    def balance(self) -> Balance:
+        """Forces on the nodes in every recorded state."""
+        return Balance(self.model, self.numbering, self.forces.elements, self.recorded("q"),
+                       self.recorded("R"))
+
+    @cached_property
+    def powers(self) -> NDArray:
+        """Powers of the power ports in every recorded state, (n, ports)."""
+        at = ENERGIES.slices(record_counts(self.numbering))["powers"]
+        return prescribed_powers(self.system, self.recorded("t")[:, 0], self.forces.sums,
+                                 self.energies[:, at])
 
     @cached_property
     def constraint_residuals(self) -> NDArray:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
+from sebody.files import check_target, replacing
 from sebody.results.advice import kernels_that_pay
-from sebody.results.files import check_target
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 
@@ -18,15 +18,36 @@ class Result(Recording):
     """Histories on the output grid; ``result["tip.position"]`` by the rule ``<node>.<quantity>``.
 
     Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
-    angular_velocity (n, 3), all in global axes; in a plane (n, 2) and (n,); where it is fixed or
-    prescribed reaction and reaction_moment. Of the model: energy.kinetic, energy.strain (springs
-    included), energy.potential, energy.external_work (n,), momentum and angular_momentum about the
-    origin (n, 3), constraints.position and constraints.velocity, the largest residuals (n,).
+    angular_velocity and angular_acceleration (n, 3), all in global axes; in a plane (n, 2) and
+    (n,); where it is fixed or prescribed reaction and reaction_moment.
+    Of the model: energy.kinetic, energy.strain (springs included), energy.potential,
+    energy.external_work (n,), momentum and angular_momentum about the origin (n, 3),
+    constraints.position and constraints.velocity, the largest residuals (n,).
 
-    Of a superelement ``<body>.modes`` (n, m); of any body ``<body>.forces``, the forces of
-    neighbours and supports on its nodes, in balance with its inertia: forces in global axes,
-    moments in the axes of the node; of a joint ``<joint>.multipliers``; of a load, damper or drive
-    ``<name>.work``.
+    Forces and moments are in global axes and in balance with the motion of the bodies. Moments on
+    a node are about this node; in a plane they are numbers (n,).
+
+    ============================  ==================================================================
+    ``<joint>.force, .moment``    (n, 3) what the joint gives `node`, the first of its arguments,
+                                  from `to` or the ground; the other gets the opposite. Joints
+                                  that take no equation have theirs from the balance of the nodes
+    ``<joint>.local_force``       (n, 3) the same in the axes of the joint: the first along its axis
+    ``<joint>.local_moment``      (of a universal joint `axis`, then `other`; of a distance the line
+                                  to the other node, tension is positive), turning with `node`, of a
+                                  slider with `to`; global axes at the start if it has no axis
+    ``<joint>.multipliers``       (n, m) of its equations
+    ``<drive>.torque, .thrust``   (n,) of a drive of an angle or a displacement: positive where it
+                                  drives the motion onwards. Times the rate of the motion it is the
+                                  power
+    ``<load>.force, .moment``     (n, 3) of a load, spring or bushing on its node, the first if it
+                                  has two
+    ``<name>.power, .work``       (n,) given to the model by a load, damper or drive
+    ``<body>.<node>.force``       (n, 3) of everything else on a body at one of its nodes, and
+    ``<body>.<node>.moment``      likewise the moment
+    ``<body>.forces``             (n, coordinates) the same of all its places: positions, then
+                                  rotations, then modes
+    ``<body>.modes``              (n, m) of a superelement
+    ============================  ==================================================================
     """
 
     @property
@@ -80,10 +101,14 @@ class Result(Recording):
         Raises
         ------
         InputError
-            Another ending, or a folder that does not exist.
+            A target that cannot be written, see `check_target`.
+        WriteError
+            Writing fails; an older file is unchanged.
         """
         path = check_target(path, *OUTPUT)
-        np.savez_compressed(path, **self.arrays())
+        arrays = self.arrays()
+        with replacing(path, OUTPUT[0]) as file:
+            np.savez_compressed(file, **arrays)
         return path
 
     def summary(self) -> str:

@@ -53,3 +53,12 @@ def test_variable_steps_are_compared_with_the_best_fixed_step():
     (error, steps, spent, best), = imported("bench_accuracy").compare(
         planar_hinged_beam.build, 0.5, 0.05, 16, (1e-2,), 1)
     assert error < 2.0 and steps > 0 and spent > 0.0 and best > 0.0
+
+
+def test_orders_of_creation_are_compared(monkeypatch, capsys):
+    bench = imported("bench_order")
+    monkeypatch.setattr(bench, "GRAPHS", {"tree": (bench.tree, 30)})
+    bench.main(["--json"])
+    (graph, rows), = json.loads(capsys.readouterr().out).items()
+    assert graph == "tree" and len(rows) == 2 + bench.RANDOM
+    assert all(row["microseconds"] > 0.0 and row["entries"] > 0 for row in rows.values())

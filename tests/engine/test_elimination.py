@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers import multipliers_first
 from numba import njit
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
@@ -128,22 +129,6 @@ def test_every_entry_has_its_place():
     rows, columns = elimination_pattern.places(pattern)
     place = elimination_pattern.entries(pattern, row, column)
     assert np.array_equal(rows[place], row) and np.array_equal(columns[place], column)
-
-
-def multipliers_first(number):
-    """The same numbering, but multipliers before what they act on: their pivots are zero."""
-    def changed(model):
-        old = number(model)
-        order = sorted(range(old.total),
-                       key=lambda i: (i >= old.free, not old.names[i].startswith("multiplier")))
-        place = {i: k for k, i in enumerate(order)}
-
-        def moved(firsts):
-            return {key: place.get(first, first) for key, first in firsts.items()}
-        return old._replace(triplets=moved(old.triplets), modes=moved(old.modes),
-                            multipliers=moved(old.multipliers),
-                            names=[old.names[i] for i in order])
-    return changed
 
 
 @pytest.mark.parametrize("index", [3, 2])

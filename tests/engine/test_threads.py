@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sebody import Simulation
+from sebody.analysis import simulation
 from sebody.analysis.tolerance import Tolerance
 from sebody.scenes import chain, four_bar, hinged_beam, planar_hinged_beam, spherical_beam_strong
 
@@ -20,20 +21,20 @@ RUNS = {
 }
 
 
-def in_chunks(run, t_end, chunk):
-    run.run_to(t_end, chunk=chunk)
-    return run.result().rows
+def rows_of(run, t_end):
+    return run.run_to(t_end).result().rows
 
 
 @pytest.mark.parametrize("one, other", [("hinged", "planar"), ("chain", "loops"),
                                         ("strong", "chain")])
-def test_two_runs_in_two_threads_are_those_of_one_thread(one, other):
-    alone = [in_chunks(*RUNS[name](), 10**6) for name in (one, other)]
+def test_two_runs_in_two_threads_are_those_of_one_thread(one, other, monkeypatch):
+    alone = [rows_of(*RUNS[name]()) for name in (one, other)]
+    monkeypatch.setattr(simulation, "LOOK", 0.0)        # comes back to Python after every step
     pairs, rows, together = [RUNS[name]() for name in (one, other)], [None, None], Barrier(2)
 
     def work(k):
         together.wait()
-        rows[k] = in_chunks(*pairs[k], 5)       # comes back to Python hundreds of times
+        rows[k] = rows_of(*pairs[k])
     threads = [Thread(target=work, args=(k,)) for k in range(2)]
     for thread in threads:
         thread.start()
@@ -43,10 +44,11 @@ def test_two_runs_in_two_threads_are_those_of_one_thread(one, other):
         assert len(expected) > 100 and np.array_equal(found, expected)
 
 
-def test_other_threads_run_while_the_loop_does():
+def test_other_threads_run_while_the_loop_does(monkeypatch):
     """All steps in one call of the loop; only without Python's lock is its time seen to change."""
     run, t_end = Simulation(hinged_beam.build().model, 0.0002), 10.0
-    thread = Thread(target=run.run_to, args=(t_end,), kwargs={"chunk": 10**9})
+    monkeypatch.setattr(simulation, "FIRST_CHUNK", 10**9)
+    thread = Thread(target=run.run_to, args=(t_end,))
     thread.start()
     seen = set()
     while thread.is_alive():

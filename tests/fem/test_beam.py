@@ -202,7 +202,7 @@ def test_one_layer_of_bricks_bends_exactly():
 @pytest.mark.parametrize(
     ("build", "text"),
     [
-        (lambda: Section(-1, IY, IZ, J, E, NU, RHO), r"Section\.area is -1; give a positive"),
+        (lambda: Section(-1, IY, IZ, J, E, NU, RHO), r"Section\.area is -1: give a positive"),
         (lambda: Section(AREA, IY, IZ, J, E, 0.7, RHO), r"poisson_ratio is 0\.7"),
         (lambda: Section(AREA, IY, IZ, J, E, NU, RHO, 0.0), r"Section\.shear_factor is 0\.0"),
         (lambda: straight_beam(START, START, STIFF, 2), "both ends at the same point"),

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from helpers import order
+from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
@@ -160,6 +161,42 @@ def test_slider_crank_against_quadratic_elements():
     normal = np.column_stack([-along[:, 1], along[:, 0]])
     bent = ((result["rod 12.position"] - pin) * normal).sum(axis=1) / slider_crank.LENGTH
     assert (bent.max(), bent.min()) == pytest.approx((0.015422, -0.015543), rel=0.01)
+
+
+def tapered(place):
+    return replace(TIMOSHENKO, inertia_z=6.75 * (2 - place), inertia_y=6.75 * (1 + place))
+
+
+def test_a_tapered_beam_of_two_bodies_has_the_flexibility_of_one():
+    """Each body has the sections of its part: tip deflections of the clamped chain add up."""
+    flexibilities = []
+    for bodies in (1, 2):
+        model = Model()
+        model.beam("beam", (model.node("a", (0, 0, 0)), model.node("b", (30, 40, 0))), tapered, 6,
+                   bodies)
+        K = np.zeros((6 * (bodies + 1),) * 2)
+        for k, body in enumerate(model.bodies.values()):
+            # reduced order: both positions, both rotations; here node after node
+            rows = 6 * k + np.array([0, 1, 2, 6, 7, 8, 3, 4, 5, 9, 10, 11])
+            K[np.ix_(rows, rows)] += body.body.stiffness
+        flexibilities.append(np.linalg.inv(K[6:, 6:])[-6:, -6:])
+    # inverses at a condition of 1e6
+    assert np.abs(flexibilities[1] - flexibilities[0]).max() < 1e-9 * np.abs(flexibilities[0]).max()
+
+
+def test_a_damped_beam():
+    """A fiftieth of critical damping of every free mode of each body, as `damped` gives it."""
+    model = Model(planar=True)
+    model.beam("beam", (model.node("a", (0, 0)), model.node("b", (30, 40))), TIMOSHENKO, 4, 2, 1,
+               damping=0.02)
+    for part in model.bodies.values():
+        squares, shapes = eigh(part.body.stiffness, part.body.mass)
+        damping = shapes.T @ part.body.damping @ shapes
+        ratios = np.diag(damping)[3:] / (2 * np.sqrt(squares[3:]))
+        assert ratios == pytest.approx(0.02, rel=1e-9)      # of eigenvalues that differ by 1e5
+    with pytest.raises(InputError, match="damping: ratio is -0.1; give a finite number >= 0"):
+        model.beam("c", (model.node("c", (0, 9)), model.node("d", (9, 9))), TIMOSHENKO, 1,
+                   damping=-0.1)
 
 
 @pytest.mark.parametrize("elements", [0, 1.5, -2])

@@ -67,7 +67,7 @@ def test_rigid_motion_is_not_damped():
 
 
 @pytest.mark.parametrize("make, message", [
-    (lambda b: b.damped(-0.1), "damping: ratio is -0.1; give a finite number >= 0"),
+    (lambda b: b.damped(-0.1), "damping: ratio is -0.1: give a finite number >= 0"),
     (lambda b: b.damped(stiffness=np.nan), "damping: stiffness is nan"),
     (lambda b: with_damping(b, -b.stiffness), "damping is negative .*: it would put|put energy in"),
     (lambda b: with_damping(b, b.mass), "damping resists rigid motion .*; use damped"),

@@ -150,7 +150,7 @@ def test_node_without_a_triplet(keeps, action, missing):
 
 
 def test_massless_body():
-    with pytest.raises(InputError, match="density is 0.0; give a positive number"):
+    with pytest.raises(InputError, match="density is 0.0: give a positive number"):
         Section(9.0, 6.75, 6.75, 11.387, 2.1e6, 0.3, 0.0)
     heavy = beam()
     with pytest.raises(InputError, match="mass"):

@@ -90,14 +90,15 @@ def test_a_default_name_may_be_given_to_nothing_else():
     assert model.force("b", X, name="push") is model.element("push")
 
 
-def test_default_names_may_repeat():
-    """Two springs between the same nodes; asking for one of them by name would be a guess."""
+def test_default_names_are_numbered():
+    """Two springs between the same nodes, two hinges on one: each is found, none is a guess."""
     model = two_bodies()
     first, second = model.spring("a", "b", 3.0), model.spring("a", "b", 4.0)
-    assert first.name == second.name
-    with pytest.raises(InputError, match="2 elements are called 'spring at a': build them with "
-                                         "name= to tell them apart"):
-        model.element("spring at a")
+    assert (first.name, second.name) == ("spring at a", "spring at a (2)")
+    assert model.element("spring at a (2)") is second
+    model.distance("a", "b", name="revolute at a (2)")
+    names = [model.revolute("a", Z, to=n).name for n in ("c", "c", "c")]
+    assert names == ["revolute at a", "revolute at a (3)", "revolute at a (4)"]
 
 
 @pytest.mark.parametrize("name, message", [

@@ -40,6 +40,11 @@ def test_reaction_balances_momentum_weight_and_load(planar):
     support, tip = np.zeros((2, len(result.t), 3))
     support[:, :d], tip[:, :d] = result["base.reaction"], result["tip.position"]
     moment = result["base.reaction_moment"].reshape(len(tip), -1)
+    # nothing else is at the base; at the tip there is the load, and on the body its damping
+    assert np.abs(result["beam.base.force"] - result["base.reaction"]).max() < 1e-9
+    assert np.abs(result["beam.base.moment"].reshape(moment.shape) - moment).max() < 1e-9
+    assert np.abs(result["beam.tip.force"] - load[:d]).max() < 1e-3
+    assert result["beam.forces"][:, :d] == pytest.approx(result["beam.base.force"])
     moment = np.column_stack([0 * tip[:, :2], moment]) if planar else moment
     moment = moment + np.cross(tip, load) + np.cross([30.0, 0.0, 0.0], weight)
     for rate, momentum in ((support + load + weight, result["momentum"]),

@@ -41,6 +41,24 @@ def test_operations_grow_with_bodies_and_iterations():
     assert own.flops_per_step(result) > result.iterations_per_step * 2 * 2 * n * n
 
 
+def test_modes_are_the_hinged_beam_by_their_number(monkeypatch, alone, capsys):
+    monkeypatch.setattr(own, "MODES", (4, 16))
+    assert main(["bench", "modes", "--json"]) == 0
+    few, many = json.loads(capsys.readouterr().out)["measurements"]
+    assert (few["variant"], many["variant"]) == ("12 + 4 coordinates", "12 + 16 coordinates")
+    assert many["unknowns"] - few["unknowns"] == 12
+    assert max(few["tip_error"], many["tip_error"]) < 9.5e-4
+    assert many["flops_per_step"] > few["flops_per_step"]
+
+
+def test_modes_are_compared_with_the_peers_body_of_the_same_size():
+    mine = replace(MINE, scene="modes", variant="12 + 4 coordinates")
+    theirs = [replace(THEIRS, scene="modes", variant=f"Exudyn reduced, 12 + {n} coordinates",
+                      us_per_step=10.0 * n) for n in (4, 16)]
+    found, = bench.ratios([mine, *theirs])
+    assert found.endswith("12 + 4 coordinates takes 20.0 times as long a step")
+
+
 def test_report_names_ratios_and_fractions():
     text = bench.report([MINE, THEIRS], 1e10)
     assert "Exudyn beams takes 40.0 times as long a step" in text

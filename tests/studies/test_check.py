@@ -73,6 +73,20 @@ def test_check_notices_a_wrong_superelement(criterion, name, monkeypatch):
     assert criterion(case) > states.LIMIT
 
 
+@pytest.mark.parametrize("motion", ["q", "v", "a"])
+def test_check_notices_modes_that_meet(motion, monkeypatch):
+    case = superelements.superelement_case(load("superelement_f2_converged_mean_b"), 0)
+    assert states.mode_coupling(case) < 1e-14
+    right = states.evaluate
+
+    def wrong(case, task, coefficients=(0, 0, 0, 1, 1)):
+        g, J, energy = right(case, task, coefficients)
+        g[-1] += 1e-5 * getattr(case, motion)[-2]
+        return g, J, energy
+    monkeypatch.setattr(states, "evaluate", wrong)
+    assert states.mode_coupling(case) > states.LIMIT
+
+
 @pytest.mark.parametrize("name, criterion", [
     ("parallel_ground", elements.joint_force), ("parallel", elements.joint_acceleration),
     ("turn_drive", elements.joint_velocity), ("turn_drive", elements.joint_acceleration),

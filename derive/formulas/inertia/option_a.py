@@ -61,4 +61,5 @@ def relative_rotating(Q: sp.Matrix, dth: sp.Matrix, dth0: sp.Matrix) -> Rules:
 
 
 INERTIA = InertiaOption(
-    InertiaTraits("angular velocities in frame axes (option A)", material=False), option_a)
+    InertiaTraits("angular velocities in frame axes (option A)", material=False, modes_apart=True),
+    option_a)

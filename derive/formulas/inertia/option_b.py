@@ -33,4 +33,5 @@ def option_b(q: Quantities) -> Inertia:
 
 
 INERTIA = InertiaOption(
-    InertiaTraits("material angular velocities (option B)", material=True), option_b)
+    InertiaTraits("material angular velocities (option B)", material=True, modes_apart=True),
+    option_b)

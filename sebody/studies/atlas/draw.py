@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from sebody.results.plots import write_picture
 from sebody.studies.atlas.finding import Finding
 
 COLORS = ("#c8452d", "#3c6fb6", "#2a7f62", "#b58a1b", "#8a4fa3", "#1f2a44", "#9aa5b8")
@@ -36,4 +37,4 @@ def draw(findings: list[Finding], path: str | Path) -> None:
         axes.grid(color="#e6e9ef", linewidth=0.5)
         if len(finding.curves) > 1:
             axes.legend(frameon=False, fontsize=7)
-    figure.savefig(path, dpi=110)
+    write_picture(figure, path, 110)

@@ -4,6 +4,7 @@ import statistics
 from typing import TYPE_CHECKING, NamedTuple
 
 from sebody.analysis.simulation import Simulation
+from sebody.assembly.batches import superelement_constants
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.parts import Superelement
@@ -17,12 +18,13 @@ if TYPE_CHECKING:
 
 CHAINS = (1, 4, 16, 64, 256, 1024)
 LOOPS = (2, 20)
+MODES = (4, 16, 32, 64)
 
 
 class Case(NamedTuple):
     """One line of the table."""
 
-    scene: str              # name of a scene
+    scene: str              # name of a scene, or what is varied in one
     variant: str
     parameters: dict        # of its build
     t_end: float
@@ -31,14 +33,17 @@ class Case(NamedTuple):
 
     def build(self) -> "Scene":
         """The scene itself."""
-        return builder(self.scene)(**self.parameters)
+        return builder("hinged-beam" if self.scene == "modes" else self.scene)(**self.parameters)
 
 
 def cases(scene: str) -> list[Case]:
     """Cases of a scene: chains of several lengths, one of every other scene.
 
-    The first two have the kernels of all.
+    Of "modes" the hinged beam with several numbers of them. The first two have the kernels of all.
     """
+    if scene == "modes":
+        return [Case(scene, f"12 + {n} coordinates", {"modes": n}, 0.0, "hinged_beam", 5)
+                for n in MODES]
     if scene == "chain":
         return [Case(scene, f"{n} links", {"links": n}, 1.0, "", 9 if n < 256 else 3)
                 for n in CHAINS]
@@ -83,9 +88,12 @@ def flops_per_step(result: Result) -> float:
 
 
 def _kernel_flops(body: Superelement) -> float:
-    alone, position, rotation, products = load(body.kernel).OPERATIONS["residual"]
+    kernel = load(body.kernel)
+    alone, position, rotation, products = kernel.OPERATIONS["residual"]
+    n = len(body.body.stiffness)
+    full = superelement_constants(body)["full"][0] if kernel.N_MODES is None else n
     return (alone + position * len(body.positions) + rotation * len(body.rotations)
-            + 2.0 * products * body.body.stiffness.size)
+            + 2.0 * products * (full * (2 * n - full) + n - full))
 
 
 def _solve_flops(system: System) -> float:

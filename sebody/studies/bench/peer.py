@@ -15,7 +15,7 @@ from importlib.util import find_spec
 
 from sebody.errors import InputError
 from sebody.studies.bench.measurement import Measurement
-from sebody.studies.bench.own import LOOPS
+from sebody.studies.bench.own import LOOPS, MODES
 from sebody.studies.references import tip_error
 
 NAME = "Exudyn"
@@ -54,6 +54,9 @@ def measure(scene: str) -> list[Measurement]:
         return runs + [_beam(scene, f"{NAME} beams in space, {n} elements",
                              lambda h, n=n: models.spatial_beams(h, n), h)
                        for n in (2, 4) for h in (0.02, 0.01, 0.005)]
+    if scene == "modes":
+        return [_timed(scene, f"{NAME} reduced, 12 + {n} coordinates",
+                       lambda h, n=n: models.reduced_beam(h, n, 3.0), 0.01) for n in MODES]
     if scene == "planar-hinged-beam":
         return [_beam(scene, f"{NAME} beams in a plane, {n} elements",
                       lambda h, n=n: models.planar_beams(h, n), h)

@@ -48,14 +48,14 @@ class Run(NamedTuple):
     tip: np.ndarray         # (n, 4) time and position
 
 
-def reduced_beam(h: float) -> Run:
-    """The hinged beam as one reduced body: block of hexahedra, rigid ends, four inner modes."""
+def reduced_beam(h: float, modes: int = 4, t_end: float = T_END) -> Run:
+    """The hinged beam as one reduced body: block of hexahedra, rigid ends, inner modes."""
     system, mbs = new_system()
-    base, tip = _reduced_body(mbs, np.sqrt(2.0) * 100.0, SECTION, 4, (0.0, 0.0, 0.0))
+    base, tip = _reduced_body(mbs, np.sqrt(2.0) * 100.0, SECTION, modes, (0.0, 0.0, 0.0))
     ground = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.AddObject(ObjectGround())))
     mbs.AddObject(GenericJoint(markerNumbers=[ground, base], constrainedAxes=[1, 1, 1, 1, 1, 0]))
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _rotated(solve(system, mbs, tip, h, T_END), np.pi / 4)
+    return _rotated(solve(system, mbs, tip, h, t_end), np.pi / 4)
 
 
 def spherical_beam(h: float, elements: int) -> Run:

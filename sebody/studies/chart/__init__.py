@@ -3,6 +3,7 @@
 import csv
 import statistics
 from dataclasses import astuple, fields
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from sebody.analysis.first_run import prepare
 from sebody.analysis.simulation import simulate
 from sebody.errors import SimulationError
-from sebody.results.files import check_target
+from sebody.files import check_target, replacing
 from sebody.studies.bench import peer
 from sebody.studies.chart.cases import COARSEST, SCENES, Point, Variant, builder, variants
 from sebody.studies.chart.draw import draw
@@ -107,12 +108,16 @@ def write_csv(points: list[Point], path: Path) -> None:
     Raises
     ------
     InputError
-        The folder does not exist.
+        A target that cannot be written, see `check_target`.
+    WriteError
+        Writing fails; an older file is unchanged.
     """
-    with check_target(path, "table").open("w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow([f.name for f in fields(Point)])
-        writer.writerows(astuple(p) for p in points)
+    table = StringIO(newline="")
+    writer = csv.writer(table)
+    writer.writerow([f.name for f in fields(Point)])
+    writer.writerows(astuple(p) for p in points)
+    with replacing(check_target(path, "table"), "table") as file:
+        file.write(table.getvalue().encode())
 
 
 __all__ = ["Point", "draw", "front", "measure", "own", "report", "write_csv"]

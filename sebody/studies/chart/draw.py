@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from sebody.results.plots import write_picture
 from sebody.studies.chart.cases import Point
 
 COLORS = {"frames": "#c8452d", "modes": "#2a7f62", "bodies": "#3c6fb6", "steps": "#b58a1b",
@@ -42,4 +43,4 @@ def draw(scene: str, points: list[Point], line: list[Point], limit: float,
     axes.set_axisbelow(True)
     axes.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0.0, 0.08))
     axes.margins(x=0.1)
-    figure.savefig(path, dpi=130)
+    write_picture(figure, path, 130)

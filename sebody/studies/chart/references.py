@@ -1,14 +1,18 @@
 """References of a chart: nonlinear beams, extrapolated in the element length and in the step."""
 
 import hashlib
+import warnings
+import zlib
 from pathlib import Path
 from typing import NamedTuple
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.simulation import simulate
+from sebody.files import replacing
 from sebody.kernels.loader import user_directory
 from sebody.studies.chart.cases import COARSEST, SCENES, builder
 
@@ -31,18 +35,31 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
     """
     folder = folder or user_directory().parent / "references"
     path = folder / f"{scene}-{_key(scene)}.npz"
-    if path.exists():
-        with np.load(path) as data:
-            return Reference(data["values"], float(data["error"]))
+    if (kept := _read(path)) is not None:
+        return kept
     coarse = history(scene, ELEMENTS, FINER)
     finer_beams = history(scene, 2 * ELEMENTS, FINER)
     finer_steps = history(scene, ELEMENTS, 2 * FINER)
     correction = (finer_beams - coarse) / 3 + (finer_steps - coarse) * 4 / 3
     values = finer_beams + correction
     found = Reference(values, float(np.linalg.norm(correction) / np.linalg.norm(values)))
-    folder.mkdir(parents=True, exist_ok=True)
-    np.savez_compressed(path, values=found.values, error=found.error)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with replacing(path, "reference") as file:
+            np.savez_compressed(file, values=found.values, error=found.error)
+    except OSError as error:
+        warnings.warn(f"the reference is computed again next time: {error}", RuntimeWarning,
+                      stacklevel=2)
     return found
+
+
+def _read(path: Path) -> Reference | None:
+    """A reference that was kept; None where there is none, or a damaged file."""
+    try:
+        with np.load(path) as data:
+            return Reference(data["values"], float(data["error"]))
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error):
+        return None
 
 
 def history(scene: str, elements: int, finer: int) -> NDArray:

@@ -215,6 +215,28 @@ def tangent_mass(case: Case) -> float:
     return difference(evaluate(case, TANGENT, (1, 0, 0, 1, 1))[1], np.array(columns).T)
 
 
+def mode_coupling(case: Case) -> float:
+    """Largest force on a mode by the motion of another one, relative to all it causes.
+
+    From differences of the force, with S, M and C without entries between modes. Assembly leaves
+    these entries of the matrix out where the inertia option declares `modes_apart`.
+    """
+    inner = np.arange(case.n) >= case.first_mode
+    between = inner[:, None] & inner & ~np.eye(case.n, dtype=bool)
+    constants = constants_of(case)
+    case = changed(case, **{name: np.where(between, 0.0, constants[name])
+                            for name in ("S", "M", "C") if name in constants})
+    motions = (lambda d: moved(case, d, 1.0), lambda d: case._replace(v=case.v + d),
+               lambda d: case._replace(a=case.a + d))
+    sizes = [0.0]
+    for motion in motions:
+        for d, others in zip(np.eye(case.n)[inner], between[inner], strict=True):
+            changes = derivative(lambda s, d=d, motion=motion: evaluate(motion(s * d),
+                                                                        RESIDUAL)[0], 0.1)
+            sizes.append(np.abs(changes[others]).max() / np.abs(changes).max())
+    return float(max(sizes))
+
+
 def momenta(case: Case) -> NDArray:
     """``dT/dv`` by central differences, exact since T is quadratic."""
     def kinetic(v):

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import (
     ENERGY,
     KINETIC,
@@ -38,6 +39,7 @@ from sebody.studies.check.states import (
     evaluate,
     gradient,
     index_row,
+    mode_coupling,
     momenta,
     tangent_mass,
     tangent_rate,
@@ -243,10 +245,12 @@ def geometric_term(case: Case) -> float:
 
 EXACT_FORCE = {"force = dV/dq (30)": elastic_force, "Hamilton's force (45), (57)": inertia_force,
                "K - K^T = skew(G)": asymmetry, "tangent (31)": paper_tangent}
+MODES_APART = {"modes apart": mode_coupling}
 DAMPING = {"power of damping": damping_power, "damping of rigid motion": damping_of_rigid_motion}
 ENERGY_SUMS = {"energies (24), (34)": energies, "momentum = rigid dT/dv": total_momentum}
 TANGENTS = {"tangent, configuration": tangent_place, "tangent, velocity (61)": tangent_rate,
             "tangent, mass (60)": tangent_mass}
+DAMPED = (*DAMPING.values(), *TANGENTS.values(), *MODES_APART.values(), energies)
 
 
 def small_increment_slope(module: ModuleType, seed: int, nodes: Nodes) -> tuple[float, float]:
@@ -280,11 +284,12 @@ def _check(name: str, module: ModuleType, nodes: Nodes) -> list[CheckRow]:
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
         if module.DAMPED and not small:
             criteria |= DAMPING
+        if INERTIA_OPTIONS[module.INERTIA].modes_apart and nodes.modes > 1:
+            criteria |= MODES_APART
         if traits.incremental:      # a mean of increments does not follow a rigid motion
             criteria.pop("damping of rigid motion", None)
         for criterion, measure in criteria.items():
-            error = measure(damped if measure in (*DAMPING.values(), *TANGENTS.values(), energies)
-                            else case)
+            error = measure(damped if measure in DAMPED else case)
             rows.append(CheckRow(name, criterion, seed, error, None,
                                  LIMITS.get(criterion, LIMIT)))
         if small:

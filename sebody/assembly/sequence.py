@@ -1,0 +1,107 @@
+"""The sequence in which bodies are numbered, and what multipliers wait for.
+
+Multipliers follow unknowns they act on, so that no pivot is zero: as a rule all of them. In a
+branch of a mechanism those of the body towards its end are enough. Take a body that only one joint
+holds, or only one is left when the joints of its own branches are counted out: the equations of
+this joint are independent on the body alone, and no other equation that is eliminated earlier acts
+on its unknowns there. So the multipliers go with the body, and those of many joints on one hub do
+not wait for the hub, which would couple every one with every other.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from sebody.assembly.fill_order import Coupling, elimination_order
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Joint, Triplet
+
+
+class Part(NamedTuple):
+    """A body as the numbering sees it."""
+
+    name: str
+    parents: list[Triplet]      # that it depends on, each once, those of rotations first
+    modes: int
+
+
+Owners = Mapping[int, list[int]]        # id(triplet) -> parts it belongs to
+
+
+def parents(triplets: Iterable[Triplet]) -> list[Triplet]:
+    """The triplets that positions and rotations of some triplets depend on."""
+    return [p for t in triplets for p in t.parents()]
+
+
+def sequence(model: Mechanism) -> tuple[list[Part], dict[int, set[int]]]:
+    """Bodies in the order of the elimination, and the triplets that multipliers follow.
+
+    Returns
+    -------
+    parts : list of Part
+    awaited : dict
+        id of a constraint -> ids of its triplets that are numbered before its multipliers.
+    """
+    parts = [_part(b.name, [*b.rotations, *b.positions], b.body.modes)
+             for b in model.bodies.values()]
+    parts += [_part(e.name, e.triplets[::-1], 0) for e in model.rigid_bodies.values()]
+    owners: dict[int, list[int]] = {}
+    for k, part in enumerate(parts):
+        for triplet in part.parents:
+            owners.setdefault(id(triplet), []).append(k)
+    awaited = _awaited(model, parts, owners)
+    if len(parts) < 3:
+        return parts, awaited
+    bodies = [{id(p): p.start.size for p in part.parents if p.solved} for part in parts]
+    order = elimination_order(bodies, _couplings(model, owners, awaited))
+    return [parts[k] for k in order], awaited
+
+
+def _part(name: str, triplets: Iterable[Triplet], modes: int) -> Part:
+    return Part(name, list({id(p): p for p in parents(triplets)}.values()), modes)
+
+
+def _couplings(model: Mechanism, owners: Owners, awaited: dict[int, set[int]]) -> list[Coupling]:
+    """What couples several bodies beside the triplets they share."""
+    found = []
+    for element in (*model.constraints, *model.loads):
+        keys = {id(p): None for p in parents(element.triplets) if p.solved and id(p) in owners}
+        if len({k for key in keys for k in owners[key]}) > 1:
+            found.append(Coupling(keys, element.multipliers, awaited.get(id(element), ())))
+    return found
+
+
+def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[int, set[int]]:
+    """Of every constraint the triplets that its multipliers follow."""
+    awaited = {id(c): {id(p) for p in parents(c.triplets) if p.solved} for c in model.constraints}
+    joints = [joint for joint in model.joints if joint.constraints]
+    of_joint = [{k for c in joint.constraints for key in awaited[id(c)]
+                 for k in owners.get(key, ())} for joint in joints]
+    of_part: list[set[int]] = [set() for _ in parts]
+    for number, bodies in enumerate(of_joint):
+        for k in bodies:
+            of_part[k].add(number)
+    ends = [k for k, held in enumerate(of_part) if len(held) == 1]
+    while ends:
+        end = ends.pop()
+        number = next(iter(of_part[end]), None)     # none where the other end came first
+        if number is None or len(of_joint[number]) != 2:
+            continue
+        side = _side(joints[number], end, owners)
+        if side is not None:
+            awaited |= side
+            for k in of_joint[number]:
+                of_part[k].discard(number)
+                if len(of_part[k]) == 1:
+                    ends.append(k)
+    return awaited
+
+
+def _side(joint: Joint, part: int, owners: Owners) -> dict[int, set[int]] | None:
+    """The triplets of every equation on one body; None unless all are free and of this one."""
+    found = {}
+    for constraint in joint.constraints:
+        own = [p for p in parents(constraint.triplets) if part in owners.get(id(p), ())]
+        if not own or not all(p.solved and len(owners[id(p)]) == 1 for p in own):
+            return None
+        found[id(constraint)] = {id(p) for p in own}
+    return found

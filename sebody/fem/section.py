@@ -1,0 +1,171 @@
+"""Cross-sections of beams: by geometry and material, or by stiffnesses and inertia a length."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+from sebody import inputs
+from sebody.errors import InputError
+
+
+@dataclass(frozen=True)
+class StiffnessSection:
+    """Cross-section of a beam by its stiffnesses and its mass and rotary inertia a length.
+
+    Axes are those of the section: x along the beam, y and z principal axes across it.
+
+    Parameters
+    ----------
+    axial : float
+        EA [force].
+    bending_y, bending_z : float
+        EI_y and EI_z, for bending moments about y and z [force length^2].
+    torsion : float
+        GJ [force length^2].
+    mass : float
+        Mass a length.
+    inertia_x, inertia_y, inertia_z : float
+        Rotary inertia a length about x, y and z [mass length]; may be zero.
+    shear_y, shear_z : float, optional
+        Shear stiffnesses for shear forces along y and z [force]; None: no shear deformation.
+
+    Raises
+    ------
+    InputError
+        A stiffness or mass that is not positive and finite, or a negative inertia.
+    """
+
+    axial: float
+    bending_y: float
+    bending_z: float
+    torsion: float
+    mass: float
+    inertia_x: float
+    inertia_y: float
+    inertia_z: float
+    shear_y: float | None = None
+    shear_z: float | None = None
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if value is not None:
+                _check_number(self, field.name, value, field.name.startswith("inertia"))
+
+    @property
+    def stiffnesses(self) -> "StiffnessSection":
+        """The section itself: what beams are made of."""
+        return self
+
+
+@dataclass(frozen=True)
+class Section:
+    """Cross-section of a beam by geometry and material.
+
+    Parameters
+    ----------
+    area : float
+        Cross-section area [length^2].
+    inertia_y, inertia_z : float
+        Second moments of area about the section's y and z axes [length^4].
+    torsion : float
+        Torsion constant [length^4].
+    youngs_modulus : float
+        Young's modulus [force/length^2].
+    poisson_ratio : float
+        Poisson's ratio.
+    density : float
+        Mass per volume.
+    shear_factor : float or (float, float), optional
+        Shear correction factor k of the shear stiffness k G A, two for shear forces along y and
+        z; None: no shear deformation (Euler-Bernoulli).
+
+    Raises
+    ------
+    InputError
+        A value that is not positive and finite, a Poisson's ratio outside (-1, 0.5], or other
+        than one or two shear factors.
+    """
+
+    area: float
+    inertia_y: float
+    inertia_z: float
+    torsion: float
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+    shear_factor: float | tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name not in ("poisson_ratio", "shear_factor"):
+                _check_number(self, field.name, value)
+        if isinstance(self.shear_factor, (tuple, list)) and len(self.shear_factor) != 2:
+            raise InputError(
+                f"Section.shear_factor is {self.shear_factor}; give one number, or two for shear "
+                "forces along y and z"
+            )
+        for factor in self._shear_factors():
+            if factor is not None:
+                _check_number(self, "shear_factor", factor)
+        inputs.number(self.poisson_ratio, "Section.poisson_ratio", above=-1, most=0.5)
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) [force/length^2]."""
+        return self.youngs_modulus / (2 * (1 + self.poisson_ratio))
+
+    @property
+    def stiffnesses(self) -> StiffnessSection:
+        """The same by stiffnesses and inertia a length."""
+        shear = [None if k is None else k * self.shear_modulus * self.area
+                 for k in self._shear_factors()]
+        return StiffnessSection(
+            axial=self.youngs_modulus * self.area,
+            bending_y=self.youngs_modulus * self.inertia_y,
+            bending_z=self.youngs_modulus * self.inertia_z,
+            torsion=self.shear_modulus * self.torsion,
+            mass=self.density * self.area,
+            inertia_x=self.density * (self.inertia_y + self.inertia_z),
+            inertia_y=self.density * self.inertia_y,
+            inertia_z=self.density * self.inertia_z,
+            shear_y=shear[0],
+            shear_z=shear[1],
+        )
+
+    def _shear_factors(self) -> tuple:
+        if isinstance(self.shear_factor, (tuple, list)):
+            return tuple(self.shear_factor)
+        return self.shear_factor, self.shear_factor
+
+
+AnySection = Section | StiffnessSection | Callable[[float], Section | StiffnessSection]
+
+
+def section_at(section: AnySection, place: float) -> StiffnessSection:
+    """The section at `place`, from 0 at the start of a beam to 1 at its end.
+
+    Raises
+    ------
+    InputError
+        Something that is no section.
+    """
+    found = section(place) if callable(section) else section
+    if not isinstance(found, (Section, StiffnessSection)):
+        raise InputError(
+            f"section {inputs.shown(found)} is none: give a Section, a StiffnessSection or a "
+            "function of the place along the beam, from 0 to 1, that returns one"
+        )
+    return found.stiffnesses
+
+
+def part_of(section: AnySection, first: float, last: float) -> AnySection:
+    """The section of the part of a beam from `first` to `last`, places from 0 to 1."""
+    if not callable(section):
+        return section
+    return lambda place: section(first + place * (last - first))
+
+
+def _check_number(section: object, name: str, value: float, may_be_zero: bool = False) -> None:
+    bound = {"least": 0} if may_be_zero else {"above": 0}
+    inputs.number(value, f"{type(section).__name__}.{name}", **bound)

@@ -1,0 +1,135 @@
+"""Constants of a flexible body's kinetic and strain energy beyond its reduced matrices.
+
+The velocity of the body in its floating frame is ``v0* + Omega_0 x (X + Phi y + Psi eta) + Phi ydot
++ Psi etadot``: what the kinetic energy needs of it are integrals of shapes over the mass, computed
+once from the FE mass matrix M. The slaved coordinates ``eta_b = y^T Q_b y / 2`` are displacements of
+second order, and the stress resultants ``s_e = lam_e E_e^T y + y^T Ghat_e y / 2`` make the strain
+energy of second order.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class InertiaInvariants:
+    """Integrals of the body in its FE axes, about the FE origin.
+
+    Coordinates are ``z = (y, eta)`` with ``y = (u_B, psi_B, y_I)`` as in `ReducedBody`; n of y,
+    N of z. ``A_k b = e_k x b`` of every nodal vector, ``E_rk`` is the rigid rotation about axis k,
+    ``E_t`` the rigid translations. D axes of translation and r of rotation: 3 and 3, in a plane 2
+    and 1.
+
+    Parameters
+    ----------
+    mass : float
+        Mass.
+    c0 : (D,)
+        First moment of mass of the undeformed body [mass length].
+    S1 : (D, N)
+        ``E_t^T M Phi``: first moment of mass of the deformation.
+    J0 : (r, r)
+        ``E_rk^T M E_rl``: moments of inertia of the undeformed body.
+    g : (r, N)
+        ``E_rk^T M Phi``.
+    h : (r, r, N)
+        ``E_rk^T M A_l Phi``.
+    K : (r, N, N)
+        ``Phi^T A_k^T M Phi``.
+    J2 : (r, r, N, N)
+        ``Phi^T A_k^T M A_l Phi``, symmetrised in k and l.
+    Mbar : (N, N)
+        ``Phi^T M Phi``; its first n rows and columns are the reduced mass.
+    Q : (N - n, n, n)
+        Symmetric; empty without slaved coordinates.
+    lam : (n_e,)
+        Elastic eigenvalues of the boundary stiffness whose resultants are of second order.
+    E : (n, n_e)
+        Their eigenvectors, with zeros for internal modes.
+    Ghat : (n_e, n, n)
+        Symmetric; empty without geometric stiffness.
+    """
+
+    mass: float
+    c0: NDArray
+    S1: NDArray
+    J0: NDArray
+    g: NDArray
+    h: NDArray
+    K: NDArray
+    J2: NDArray
+    Mbar: NDArray
+    Q: NDArray
+    lam: NDArray
+    E: NDArray
+    Ghat: NDArray
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            if field.name == "mass":
+                continue
+            array = np.array(getattr(self, field.name), dtype=float)
+            array.flags.writeable = False
+            object.__setattr__(self, field.name, array)
+
+    @property
+    def planar(self) -> bool:
+        """Whether the body lives in the xy plane."""
+        return len(self.c0) == 2
+
+    @property
+    def slaved(self) -> int:
+        """Number of slaved coordinates eta."""
+        return len(self.Q)
+
+    @property
+    def resultants(self) -> int:
+        """Number of stress resultants of second order."""
+        return len(self.lam)
+
+    def about(self, point: ArrayLike) -> "InertiaInvariants":
+        """The same body with `point` as the origin of its axes.
+
+        A rigid rotation about the point is ``E_rk - E_t a_k`` with ``a_k = e_k x point``; the rest
+        of the shapes stay.
+        """
+        point = np.asarray(point, dtype=float)
+        arms = self._cross(point[:, None])[..., 0]      # a_k, (r, D)
+        moments = self._cross(self.c0[:, None])[..., 0]     # E_t^T M E_rk
+        return replace(
+            self, c0=self.c0 - self.mass * point,
+            J0=self.J0 - arms @ moments.T - moments @ arms.T + self.mass * arms @ arms.T,
+            g=self.g - arms @ self.S1,
+            h=self.h - np.einsum("ki,lin->kln", arms, self._cross(self.S1)))
+
+    def rotated(self, rotation: ArrayLike, by: ArrayLike) -> "InertiaInvariants":
+        """The body rotated about the origin, in the old axes.
+
+        Parameters
+        ----------
+        rotation : (D, D)
+            A vector of the body a becomes ``rotation @ a``.
+        by : (n, n)
+            The same of the reduced coordinates: y becomes ``by @ y``.
+        """
+        rotation, by = np.asarray(rotation, dtype=float), np.asarray(by, dtype=float)
+        axes = np.eye(1) if self.planar else rotation
+        whole = np.eye(len(self.Mbar))
+        whole[:len(by), :len(by)] = by
+        return replace(
+            self, c0=rotation @ self.c0, S1=rotation @ self.S1 @ whole.T,
+            J0=axes @ self.J0 @ axes.T, g=axes @ self.g @ whole.T,
+            h=np.einsum("ka,lb,abm,nm->kln", axes, axes, self.h, whole, optimize=True),
+            K=np.einsum("ka,mi,aij,nj->kmn", axes, whole, self.K, whole, optimize=True),
+            J2=np.einsum("ka,lb,mi,abij,nj->klmn", axes, axes, whole, self.J2, whole,
+                         optimize=True),
+            Mbar=whole @ self.Mbar @ whole.T, Q=by @ self.Q @ by.T, E=by @ self.E,
+            Ghat=by @ self.Ghat @ by.T)
+
+    def _cross(self, vectors: NDArray) -> NDArray:
+        """``e_k x`` the columns of (D, m), for every axis of rotation: (r, D, m)."""
+        if self.planar:
+            return np.array([[-vectors[1], vectors[0]]])
+        return np.cross(np.eye(3)[:, :, None], vectors[None], axisa=1, axisb=1, axisc=1)

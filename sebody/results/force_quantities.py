@@ -1,0 +1,123 @@
+"""Forces, moments and powers of bodies, joints, drives and loads: how each is read by name."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.model.parts import Element, Joint, Motion, Node, Superelement
+from sebody.results.recording import Recording
+
+
+def bodies(recording: Recording) -> dict[str, Superelement | Element]:
+    """Superelements and rigid bodies by name."""
+    return recording.model.bodies | recording.model.rigid_bodies
+
+
+def nodes_of_bodies(recording: Recording) -> dict[str, tuple[str, Node]]:
+    """Body and node by ``<body>.<node>``."""
+    return {f"{name}.{place.node.name}": (name, place.node)
+            for name, body in bodies(recording).items() for place in body.places}
+
+
+def joints(recording: Recording) -> dict[str, Joint]:
+    """Joints, and drives by equations."""
+    return {joint.name: joint for joint in recording.model.joints}
+
+
+def drives(recording: Recording) -> dict[str, Joint | Motion]:
+    """Drives by equations, and prescribed motions."""
+    found: dict[str, Joint | Motion] = {name: joint for name, joint in joints(recording).items()
+                                        if joint.history is not None}
+    return found | {motion.name: motion for triplet in recording.model.triplets()
+                    for motion in triplet.motions}
+
+
+def loads(recording: Recording) -> dict[str, Element]:
+    """Loads, springs and dampers on nodes."""
+    return {load.name: load for load in recording.model.loads if load.places}
+
+
+def of_body(recording: Recording, name: str) -> NDArray:
+    """Forces of everything else on a body: of its places, then on its modes, (n, coordinates)."""
+    body = bodies(recording)[name]
+    first = recording.numbering.forces_at[id(body)]
+    modes = body.body.modes if isinstance(body, Superelement) else 0
+    size = sum(t.start.size for t in (getattr(*place) for place in body.places))
+    return np.hstack([
+        *(-recording.balance.on(body, *place) for place in body.places),
+        recording.forces.elements[:, first + size:first + size + modes]])
+
+
+def at_node(kind: str, recording: Recording, name: str) -> NDArray:
+    """Force or moment of everything else on a body at one of its nodes."""
+    body, node = nodes_of_bodies(recording)[name]
+    return _flat(recording, kind, -recording.balance.on(bodies(recording)[body], node, kind))
+
+
+def of_joint(kind: str, recording: Recording, name: str) -> NDArray:
+    """Force or moment of a joint on its node, in global axes."""
+    return _flat(recording, kind, recording.balance.of_joint(joints(recording)[name], kind))
+
+
+def in_joint_axes(kind: str, recording: Recording, name: str) -> NDArray:
+    """The same in the axes of the joint."""
+    joint, values = joints(recording)[name], of_joint(kind, recording, name)
+    if values.ndim == 1:
+        return values
+    return np.einsum("nji,nj->ni", recording.balance.axes(joint), values)
+
+
+def of_load(kind: str, recording: Recording, name: str) -> NDArray:
+    """Force or moment of a load or spring on its node, the first if it has several."""
+    load = loads(recording)[name]
+    return _flat(recording, kind, recording.balance.on(load, load.places[0].node, kind))
+
+
+def effort(what: str, recording: Recording, name: str) -> NDArray:
+    """Thrust or torque of a drive along or about its axis, (n,): times the rate it is the power."""
+    drive = drives(recording)[name]
+    own = "rotation" if what == "torque" else "position"
+    if own != _driven(drive):
+        other = "thrust" if what == "torque" else "torque"
+        raise InputError(f"drive {name!r} moves a {_driven(drive)}: ask for {name}.{other}")
+    if isinstance(drive, Joint):
+        values = recording.balance.of_joint(drive, own)
+        if own == "position":       # it pushes the other node along the axis
+            return -np.einsum("ni,ni->n", values, recording.balance.axes(drive)[:, :, 0])
+        return values[:, 0] if recording.model.planar else np.einsum(
+            "ni,ni->n", values, recording.balance.axes(drive)[:, :, 0])
+    triplet = getattr(*drive.place)
+    first = recording.numbering.triplets[id(triplet)]
+    return recording.forces.sums[:, first:first + triplet.start.size] @ drive.direction
+
+
+def multipliers(recording: Recording, name: str) -> NDArray:
+    """Multipliers of the equations of a joint, (n, m)."""
+    equations = joints(recording)[name].constraints
+    if not equations:
+        raise InputError(f"joint {name!r} takes no equation, so it has no multipliers: what it "
+                         "joins is shared or fixed; the force on a fixed node is its reaction, "
+                         f"that of the joint {name}.force")
+    firsts = [(recording.numbering.multipliers[id(c)], c.multipliers) for c in equations]
+    return recording.recorded("q")[:, [first + k for first, count in firsts for k in range(count)]]
+
+
+def work(recording: Recording, name: str) -> NDArray:
+    """Work of a power port, (n,)."""
+    return recording.recorded("works")[:, recording.numbering.port_names.index(name)]
+
+
+def power(recording: Recording, name: str) -> NDArray:
+    """Power of a power port, (n,)."""
+    return recording.powers[:, recording.numbering.port_names.index(name)]
+
+
+def _driven(drive: Joint | Motion) -> str:
+    if isinstance(drive, Motion):
+        return drive.place.kind
+    return drive.constraints[0].places[0].kind
+
+
+def _flat(recording: Recording, kind: str, values: NDArray) -> NDArray:
+    """Moments in a plane are numbers."""
+    return values[:, 0] if recording.model.planar and kind == "rotation" else values
