@@ -30,7 +30,8 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         raise InputError("the model has no body: add one with model.superelement(...) or "
                          "model.rigid_body(...)")
     numbering = number(model)
-    if numbering.free == 0:
+    is_multiplier = _multipliers(model, numbering)
+    if is_multiplier[:numbering.free].all():
         raise InputError("every node of the model is fixed: nothing is left to move, free one")
     batches = make_batches(model, numbering)
     axes = body_axes(model, numbering, batches)
@@ -41,7 +42,6 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     entries, matrix = (dense_layout(row, column, numbering.free)
                        if numbering.free <= DENSE_LIMIT else
                        sparse_layout(row, column, numbering))
-    is_multiplier = _multipliers(model, numbering)
     own_entries, linked_entries = entries[:len(own_row)], entries[len(own_row):]
     kept = np.flatnonzero(own_entries < len(matrix["rows"]))
     places, table = summands(batches, axes["rotated_blocks"], links, kept)

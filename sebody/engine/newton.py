@@ -7,7 +7,7 @@ import numpy as np
 
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.matrix import ROUNDING
-from sebody.engine.relaxation import force_norms
+from sebody.engine.relaxation import relaxed_norms
 from sebody.engine.state import (
     ACCELERATION_NORM,
     AGE,
@@ -60,11 +60,12 @@ def apply_correction(system, state, scheme, mixed):
     """Subtract the solved correction; returns the verdict on the step, CONVERGED to GIVE_UP."""
     n = system.diagonal.size
     relaxed = state.control[RELAXED] == 1
-    norm, size, accelerations = _norms(system, state, n, relaxed)
+    norm, size, accelerations = (relaxed_norms(system, state, n) if relaxed else
+                                 _norms(system, state, n))
     if not np.isfinite(norm):
         state.clock[LAST_NORM] = norm
         return GIVE_UP
-    left_norm = accelerate(state, n, norm) if mixed else norm
+    left_norm = accelerate(system, state, n, norm) if mixed else norm
     _subtract(system, state, scheme, n)
     accelerations = max(
         scheme.beta * state.clock[CURRENT_STEP] * state.clock[CURRENT_STEP] * accelerations,
@@ -96,16 +97,12 @@ def leaves_gap(system, state, norm, stabilized):
 
 
 @compiled(forceinline=True)
-def _norms(system, state, n, relaxed):
+def _norms(system, state, n):
     """Norms of the correction, of the increment with the multipliers, and of the accelerations."""
     norm = size = accelerations = 0.0
-    if relaxed:
-        norm, size = force_norms(system, state)
     for i in range(n):
         d = state.correction[i] * state.weight[i]
         x = state.dq[i] + system.is_multiplier[i] * state.q_old[i]      # a multiplier itself
-        if relaxed and system.is_multiplier[i] > 0.0:
-            d = x = 0.0
         z = state.a[i] * state.weight[i]
         s = state.shift[i] * state.weight[i]
         norm += d * d + s * s
@@ -161,18 +158,20 @@ def _verdict(system, state, norm, left_norm, target):
 
 
 @compiled
-def accelerate(state, n, norm):
+def accelerate(system, state, n, norm):
     """Anderson mixing with the last correction; returns the norm of the mixed correction.
 
     With matrices of the predicted state the error of a taut chain that rotates decays slowly in
-    one direction, which mixing with one correction removes. With a regularized matrix the
-    multipliers are too uncertain for it.
+    one direction, which mixing with one correction removes. The multipliers of a regularized
+    matrix are too uncertain to be asked.
     """
     correction, last, change = state.correction, state.last_correction, state.last_change
     along = square = mix = 0.0
-    if (state.control[SECANT] == 1 and norm > QUICK * state.clock[LAST_NORM]
-            and state.control[RELAXED] == 0):
+    relaxed = state.control[RELAXED] == 1
+    if state.control[SECANT] == 1 and norm > QUICK * state.clock[LAST_NORM]:
         for i in range(n):
+            if relaxed and system.is_multiplier[i] > 0.0:
+                continue
             w = state.weight[i]
             difference = (correction[i] - last[i]) * w
             along += difference * correction[i] * w

@@ -137,22 +137,28 @@ def _times_inverse(state, inverse, x, n):
 
 
 @compiled
-def force_norms(system, state):
-    """Squared norms of the forces of a correction of the multipliers, and of the multipliers.
+def relaxed_norms(system, state, n):
+    """Norms of a correction by a regularized matrix, of the increment and of the accelerations.
 
-    Forces are divided by the scales of the matrix, as corrections of coordinates are: a part of the
-    multipliers that exerts little force may be as uncertain as the force allows.
+    Of multipliers count their forces, divided by the scales of the matrix as corrections of
+    coordinates are: a part that exerts little force may be as uncertain as the force allows.
     """
-    n, change, force = system.diagonal.size, state.projected, state.pulled
+    change, force = state.projected, state.pulled
+    norm = size = accelerations = 0.0
     for i in range(n):
         change[i] = force[i] = 0.0
     for k in range(system.pulls.size):
         i, j = system.rows[system.pulls[k]], system.columns[system.pulls[k]]
         change[i] += state.pulls[k] * state.correction[j]
         force[i] += state.pulls[k] * state.q[j]
-    norm = size = 0.0
     for i in range(n):
-        x, y = change[i] * state.scale[i], force[i] * state.scale[i]
-        norm += x * x
-        size += y * y
-    return norm, size
+        if system.is_multiplier[i] > 0.0:
+            continue
+        f, g = change[i] * state.scale[i], force[i] * state.scale[i]
+        w = state.weight[i]
+        d, s, x, z = (state.correction[i] * w, state.shift[i] * w, state.dq[i] * w,
+                      state.a[i] * w)
+        norm += d * d + s * s + f * f
+        size += x * x + g * g
+        accelerations += z * z
+    return np.sqrt(norm), np.sqrt(size), np.sqrt(accelerations)
