@@ -60,10 +60,9 @@ def port_arrays(histories: list[History],
 
 def _pieces(histories: list[History]) -> NDArray:
     """Polynomials and harmonics of all pieces of all histories, (pieces, PIECE)."""
-    polynomials = [c for h in histories for c in h.pieces]
-    found = np.zeros((len(polynomials), PIECE))
-    for row, coefficients in zip(found[:, :POLYNOMIAL], polynomials, strict=True):
-        row[:len(coefficients)] = coefficients
+    found = np.zeros((sum(len(h.pieces) for h in histories), PIECE))
+    if histories:
+        found[:, :POLYNOMIAL] = np.concatenate([h.polynomials() for h in histories])
     if waves := same_waves(histories):
         found[:, AMPLITUDE:] = waves
     return found

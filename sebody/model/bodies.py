@@ -9,7 +9,13 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.layout import layout_name
 from sebody.kernels.loader import superelement_kernel_name
-from sebody.model.frames import FRAMES, check_frame, check_options, frame_weights
+from sebody.model.frames import (
+    FRAMES,
+    check_frame,
+    check_invariants,
+    check_options,
+    frame_weights,
+)
 from sebody.model.inputs import known, refuse_taken, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
@@ -28,7 +34,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable
     nodes : iterable of Node or str
         One node for each boundary node of the body, in its order.
     frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
-    inertia : {'a', 'b'}
+    inertia : {'a', 'b', 'c'}
     rotation : (3, 3), planar (2, 2), optional
         Rotates vectors from FE axes to global axes; identity by default.
     frame_node : int
@@ -53,6 +59,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable
     placed = body if rotation is None else body.rotated(rotation)
     _check_place(name, placed, nodes)
     check_frame(name, placed, frame)
+    check_invariants(name, placed, inertia)
     alpha, alpha_r = frame_weights(name, placed, frame, frame_node)
     layout = layout_name(placed.keeps, placed.planar)
     kernel = superelement_kernel_name(layout, FRAMES[frame].kernel, inertia, placed.modes,

@@ -31,6 +31,24 @@ def check_options(frame: str, inertia: str) -> None:
         raise InputError(f"frame {frame!r} is unknown: use one of {', '.join(sorted(FRAMES))}")
     if not isinstance(inertia, str) or inertia not in INERTIAS:
         raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
+    if options.INERTIA_OPTIONS[inertia].field and FRAMES[frame].traits.incremental:
+        others = ", ".join(sorted(n for n, f in FRAMES.items() if not f.traits.incremental))
+        raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "
+                         f"the state alone, which {frame!r} does not: use one of {others}")
+
+
+def check_invariants(name: str, body: ReducedBody, inertia: str) -> None:
+    """Refuse an option that needs more of a body than its reduced matrices, where it has no more.
+
+    Raises
+    ------
+    InputError
+        With the remedy.
+    """
+    if options.INERTIA_OPTIONS[inertia].field and body.invariants is None:
+        raise InputError(f"superelement {name!r}: inertia {inertia!r} needs the mass and modes of "
+                         "the FE model, and the body has reduced matrices alone: reduce it from a "
+                         "model, or use inertia='b'")
 
 
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:

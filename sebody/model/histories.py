@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.user_functions import UserFunction, compile_history
 from sebody.model.derivatives import rates_of
@@ -53,6 +54,26 @@ class History:
         k = int(np.searchsorted(self.times, t, side="right")) - 1
         return self.of_piece(max(k, 0), t) if k >= 0 else np.array(
             [self.of_piece(0, self.times[0])[0], 0.0, 0.0])
+
+    def values(self, times: NDArray) -> NDArray:
+        """Values at some times, (n,)."""
+        if self.functions:
+            return np.array([self.functions[0].ctypes(t) for t in times])
+        starts = np.array(self.times)
+        row = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
+        x = np.maximum(times - starts[row], 0.0)
+        found = (self.polynomials()[row] * x[:, None]**np.arange(COEFFICIENTS)).sum(axis=1)
+        if self.waves:
+            A, w, p = np.array(self.waves)[row].T
+            found += A * np.sin(w * x + p)
+        return found
+
+    def polynomials(self) -> NDArray:
+        """Coefficients of all pieces, (pieces, COEFFICIENTS)."""
+        found = np.zeros((len(self.pieces), COEFFICIENTS))
+        for row, coefficients in zip(found, self.pieces, strict=True):
+            row[:len(coefficients)] = coefficients
+        return found
 
     def of_piece(self, k: int, t: float) -> NDArray:
         """Value and two rates of a piece, also outside its interval."""
@@ -126,9 +147,9 @@ def with_corners(function: Callable[[float], float], corners: Sequence[float]) -
     InputError
         A function Numba cannot compile, or times that are no numbers.
     """
-    times = np.asarray(corners, dtype=float)
-    if times.ndim != 1 or not np.isfinite(times).all():
-        raise InputError(f"corners are {corners}: give a list of times")
+    remedy = f"corners are {inputs.shown(corners)}: give a list of times"
+    times = np.unique(inputs.vector(corners, "corners", remedy=remedy))
+    inputs.function(function, "function", "give a function of time")
     return History(functions=(compile_history(function, LOAD),), corners=tuple(times.tolist()))
 
 
@@ -195,11 +216,8 @@ def table(source: ArrayLike, what: str) -> tuple[NDArray, NDArray]:
     InputError
         Other shapes than rows (t, value), numbers that are not finite, times that do not increase.
     """
-    try:
-        rows = np.asarray(source, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{what} cannot be read as numbers: give rows (t, value), or a function "
-                         "of time") from error
+    rows = inputs.reals(source, f"{what} cannot be read as numbers: it",
+                        "give rows (t, value), or a function of time")
     if rows.ndim != 2 or rows.shape[1] != 2 or not len(rows):
         raise InputError(f"{what} has shape {rows.shape}: give rows (t, value)")
     if not np.isfinite(rows).all():

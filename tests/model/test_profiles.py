@@ -73,6 +73,7 @@ def test_profiles_are_their_formulas(name):
                              for time in times])
         assert amplitudes(profile, times) == pytest.approx(expected, abs=1e-12)
         assert np.array([profile.at(time) for time in times]) == pytest.approx(expected, abs=1e-12)
+        assert profile.values(times) == pytest.approx(expected[:, 0], abs=1e-12)
 
 
 def test_a_table_with_its_rates():
