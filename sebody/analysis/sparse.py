@@ -4,10 +4,41 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
+SMALL = 100         # unknowns up to which LAPACK takes less time than SciPy to call SuperLU
 SINGULAR = 1e-13    # smallest pivot of a regular matrix, relative to the largest
+
+
+class _Dense:
+    """Factors of a small matrix."""
+
+    def __init__(self, matrix: csc_matrix):
+        self._factors, self._exchanges, zero = dgetrf(matrix.toarray(order="F"), overwrite_a=True)
+        if zero:
+            raise RuntimeError("a pivot is exactly zero")
+        self.pivots, self.unknowns = np.abs(self._factors.diagonal()), np.arange(matrix.shape[0])
+
+    def solve(self, right: NDArray) -> NDArray:
+        return dgetrs(self._factors, self._exchanges, right)[0]
+
+
+class _Sparse:
+    """Factors of a large one; pivots in the order of elimination."""
+
+    def __init__(self, matrix: csc_matrix):
+        self._factors = splu(matrix)
+        self.solve = self._factors.solve
+
+    @cached_property
+    def pivots(self) -> NDArray:
+        return np.abs(self._factors.U.diagonal())
+
+    @property
+    def unknowns(self) -> NDArray:
+        return np.argsort(self._factors.perm_c)
 
 
 class Scaled:
@@ -31,7 +62,7 @@ class Scaled:
         matrix.data = entries * self.scale[row] * self.scale[column]
         self.matrix = matrix
         try:
-            self.factors = splu(self.matrix)
+            self.factors = (_Dense if across <= SMALL else _Sparse)(self.matrix)
         except RuntimeError:        # a pivot is exactly zero
             self.factors = None
 
@@ -40,7 +71,7 @@ class Scaled:
         """Whether no pivot is too small to be trusted."""
         if self.factors is None:
             return False
-        pivots = np.abs(self.factors.U.diagonal())
+        pivots = self.factors.pivots
         return bool(pivots.min() >= SINGULAR * pivots.max())
 
     @property
@@ -48,8 +79,7 @@ class Scaled:
         """The unknown of the smallest pivot, None if a pivot is exactly zero."""
         if self.factors is None:
             return None
-        pivot = int(np.argmin(np.abs(self.factors.U.diagonal())))
-        return int(np.argsort(self.factors.perm_c)[pivot])
+        return int(self.factors.unknowns[np.argmin(self.factors.pivots)])
 
     def solve(self, right: NDArray) -> NDArray:
         """Solution by the factors."""
