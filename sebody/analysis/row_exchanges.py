@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import splu
 
 from sebody.analysis.evaluation import assembled
-from sebody.analysis.sparse import SINGULAR
+from sebody.analysis.sparse import SINGULAR, factors
 from sebody.engine.relaxation import PROJECTIONS, RELAXATION, relax
 from sebody.engine.state import RELAXED, State
 from sebody.engine.system import System
@@ -41,10 +40,8 @@ class RowExchanges:
         """Whether the matrix is regular."""
         scale = diags(self.state.scale[:self.system.diagonal.size])
         matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
-        try:
-            self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
-        except RuntimeError:        # a pivot is exactly zero
-            self._factors = None
+        self._factors = factors(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
+        if self._factors is None:
             return False
         pivots = np.abs(self._factors.U.diagonal())
         return bool(pivots.min() >= SINGULAR * pivots.max())

@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from sebody.engine.relaxation import LIGHT
 from sebody.engine.system import System
@@ -15,6 +15,18 @@ SUSPICIOUS = 1e-6   # pivot below which constraints are looked into, relative to
 RELAXATION = 1e-8   # of regularized matrices as in the engine, but never of an older state
 ATTEMPTS = 20       # refinements: each leaves 2 RELAXATION / s of a part of strength s
 SETTLED = 1e-15     # change of the last refinement, relative to the solution
+
+
+def factors(matrix: csc_matrix, **options: object) -> SuperLU | None:
+    """Factors by SuperLU with its options; None where a pivot is exactly zero.
+
+    The diagonal must be stored, zeros included: of a matrix whose pattern is singular SuperLU reads
+    beyond its arrays.
+    """
+    try:
+        return splu(matrix, **options)
+    except RuntimeError:
+        return None
 
 
 class Scaled:
@@ -37,10 +49,7 @@ class Scaled:
         # on the entries: for a few bodies SciPy's products take ten times as long as their numbers
         matrix.data = entries * self.scale[row] * self.scale[column]
         self.matrix = matrix
-        try:
-            self.factors = splu(self.matrix)
-        except RuntimeError:        # a pivot is exactly zero
-            self.factors = None
+        self.factors = factors(self.matrix)
 
     @cached_property
     def regular(self) -> bool:
