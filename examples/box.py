@@ -8,7 +8,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.fem import frame
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -31,7 +31,8 @@ def build(layout: str = "small", modes: int = 6, elements: int = 4) -> Scene:
     elements : int
         Finite elements a member.
     """
-    keep = {"small": "translation", "full": "full"}[layout]
+    keeps = {"small": "translation", "full": "full"}
+    keep = keeps[inputs.choice(layout, "layout", keeps)]
     edges = [(i, j) for i, j in combinations(range(8), 2)
              if np.count_nonzero(CORNERS[i] != CORNERS[j]) == 1]
     fe_model = frame(CORNERS, edges, SECTION, elements)
@@ -44,7 +45,7 @@ def build(layout: str = "small", modes: int = 6, elements: int = 4) -> Scene:
     model.fix("base", "position")
     model.force("tip", (0.2, 1.0, -0.6), PUSH)
     return Scene("box", "box of members with eight translation-only corners, on a spherical joint",
-                 model, h=0.005, t_end=2.0)
+                 model, h=0.005, t_end=20.0)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ two multipliers keep the axes together.
 
 import numpy as np
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.fem import Section, straight_beam
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes.scene import Scene
@@ -33,6 +33,7 @@ def build(links: int = 16, modes: int = 4) -> Scene:
     modes : int
         Internal modes a link.
     """
+    links = inputs.integer(links, "links", least=1)
     body, model = link_body(modes), Model()
     model.gravity(GRAVITY)
     base = model.node("base", np.zeros(3))

@@ -4,7 +4,7 @@ One degree of freedom. Each rocker and coupler is one angle; a coupler hangs on 
 rocker by a rigid link, and two multipliers close each loop.
 """
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.scenes.scene import Scene
 
 GRAVITY = (0.0, -9.81)
@@ -19,6 +19,7 @@ def build(loops: int = 2) -> Scene:
     loops : int
         Number of four-bar loops side by side.
     """
+    loops = inputs.integer(loops, "loops", least=1)
     model = Model(planar=True)
     model.gravity(GRAVITY)
     for k in range(loops + 1):

@@ -5,7 +5,7 @@ The load node needs no rotation: three unknowns less, and nothing lost (`layout=
 
 import numpy as np
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.fem import frame
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -27,7 +27,8 @@ def build(layout: str = "small", modes: int = 6, elements: int = 10) -> Scene:
     elements : int
         Finite elements a leg.
     """
-    keep = {"small": "translation", "full": "full"}[layout]
+    keeps = {"small": "translation", "full": "full"}
+    keep = keeps[inputs.choice(layout, "layout", keeps)]
     fe_model = frame(POINTS, [(0, 1), (1, 2)], SECTION, elements)
     body = craig_bampton(fe_model, [(0, "full"), (1, "full"), (2, keep)], modes)
     model = Model()

@@ -7,7 +7,7 @@ spin, and the two layouts drop different parts).
 
 import numpy as np
 
-from sebody import Model
+from sebody import Model, inputs
 from sebody.fem import straight_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -29,8 +29,9 @@ def build(layout: str = "small", modes: int = 8, elements: int = 16) -> Scene:
     elements : int
         Finite elements, an even number.
     """
-    keep = {"small": "rotation", "full": "full"}[layout]
-    half = elements // 2
+    keeps = {"small": "rotation", "full": "full"}
+    keep = keeps[inputs.choice(layout, "layout", keeps)]
+    half = inputs.integer(elements / 2, "half the number of elements", least=1)
     start, end = np.zeros(3), np.array([LENGTH, 0.0, 0.0])
     fe_model = straight_beam(start, end, SECTION, elements)
     body = craig_bampton(fe_model, [(0, "full"), (elements, "full"), (half, keep)], modes)

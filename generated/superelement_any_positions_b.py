@@ -47,12 +47,13 @@ MODES = None          # first internal mode
 DAMPED = False        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 31
+WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
 OPERATIONS = {"residual": (460, 217, 128, 3),
               "column": (81, 277, 352, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
+ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -270,9 +271,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             alpha = alphas[i]
             px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
-            f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             mass = masses[0]
+            f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             t15 = alpha*mass
             t16 = X_z + u_z
             t17 = X_y + u_y
@@ -617,8 +618,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                     alpha = alphas[i]
                     px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
-                    f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     mass = masses[0]
+                    f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]

@@ -45,12 +45,13 @@ MODES = 18          # first internal mode
 DAMPED = False        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 31
+WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
 OPERATIONS = {"residual": (300, 136, 249, 3),
               "column": (81, 172, 811, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
+ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -250,12 +251,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-            f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             mass = masses[0]
             alpha = alphas[i]
+            X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
+            u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
+            f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             t17 = alpha*mass
             t18 = X_z + u_z
             t19 = X_y + u_y
@@ -302,8 +303,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             pxd_x, pxd_y, pxd_z = pd[i3], pd[i3 + 1], pd[i3 + 2]
-            f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             alpha = alphas[i]
+            f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
             h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + f_x + pxd_x
             h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x + f_y + pxd_y
             h[i3 + 2] = F_z*alpha + Om0_x*px_y - Om0_y*px_x + f_z + pxd_z
@@ -627,11 +628,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                     vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                    f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                    X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     mass = masses[0]
                     alpha = alphas[i]
+                    X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
+                    u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
+                    f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]

@@ -44,12 +44,13 @@ MODES = 9          # first internal mode
 DAMPED = False        # has structural damping
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 29
+WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
 OPERATIONS = {"residual": (212, 61, 5, 3),
               "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "878225a49504"     # hash of sebody/kernels, which this file was made for
+ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -197,12 +198,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             px_x, px_y = p[i3], p[i3 + 1]
             vs_x, vs_y = yd[i3], yd[i3 + 1]
-            f_x, f_y = s[i3], s[i3 + 1]
-            X_x, X_y = X[i3], X[i3 + 1]
-            u_x, u_y = y[i3], y[i3 + 1]
             gamma_x, gamma_y = gamma[0], gamma[1]
             mass = masses[0]
             alpha = alphas[i]
+            X_x, X_y = X[i3], X[i3 + 1]
+            u_x, u_y = y[i3], y[i3 + 1]
+            f_x, f_y = s[i3], s[i3 + 1]
             t2 = alpha*mass
             F_x += -f_x - gamma_x*t2
             F_y += -f_y - gamma_y*t2
@@ -225,8 +226,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             px_x, px_y = p[i3], p[i3 + 1]
             pxd_x, pxd_y = pd[i3], pd[i3 + 1]
-            f_x, f_y = s[i3], s[i3 + 1]
             alpha = alphas[i]
+            f_x, f_y = s[i3], s[i3 + 1]
             h[i3] = F_x*alpha - Om0_z*px_y + f_x + pxd_x
             h[i3 + 1] = F_y*alpha + Om0_z*px_x + f_y + pxd_y
         # force on the nodes
@@ -401,11 +402,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 2*i
                     px_x, px_y = p[i3], p[i3 + 1]
                     vs_x, vs_y = yd[i3], yd[i3 + 1]
-                    f_x, f_y = s[i3], s[i3 + 1]
-                    X_x, X_y = X[i3], X[i3 + 1]
-                    u_x, u_y = y[i3], y[i3 + 1]
                     mass = masses[0]
                     alpha = alphas[i]
+                    X_x, X_y = X[i3], X[i3 + 1]
+                    u_x, u_y = y[i3], y[i3 + 1]
+                    f_x, f_y = s[i3], s[i3 + 1]
                     du_x, du_y = dy[i3], dy[i3 + 1]
                     dgamma_x, dgamma_y = dgamma[0], dgamma[1]
                     df_x, df_y = ds[i3], ds[i3 + 1]

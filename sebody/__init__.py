@@ -14,8 +14,10 @@ from sebody.errors import (
 )
 from sebody.model.histories import with_corners
 from sebody.model.model import Model
+from sebody.model.profiles import harmonic, piecewise, ramp, rest_to_rest, spline, trapezoidal
 from sebody.results.result import Result
 
 __all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
-           "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha", "hht",
-           "simulate", "simulate_within", "with_corners"]
+           "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha",
+           "harmonic", "hht", "piecewise", "ramp", "rest_to_rest", "simulate", "simulate_within",
+           "spline", "trapezoidal", "with_corners"]

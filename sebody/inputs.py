@@ -137,7 +137,7 @@ def rotation(value: ArrayLike, what: str, dimension: int = 3) -> NDArray:
     InputError
         Another shape, axes that are not orthonormal, or a reflection.
     """
-    remedy = f"give a proper rotation matrix of shape ({dimension}, {dimension})"
+    remedy = f"it must be a proper rotation matrix of shape ({dimension}, {dimension})"
     R = array(value, what, (dimension, dimension), remedy=remedy)
     if not np.abs(R.T @ R - np.eye(dimension)).max() <= ORTHOGONAL or np.linalg.det(R) < 0:
         raise InputError(f"{what} must be a proper rotation matrix of shape ({dimension}, "
@@ -278,7 +278,7 @@ def _numbers(value: Any) -> NDArray | None:
     """An array of floats; None for what cannot be one."""
     try:
         found = value if isinstance(value, np.ndarray) else np.asarray(value, dtype=object)
-        if found.dtype.kind not in "iuf" and not (found.dtype.kind == "O" and found.ndim
+        if found.dtype.kind not in "iuf" and not (found.dtype.kind == "O"
                                                   and all(map(_is_real, found.flat))):
             return None
         return np.array(found, dtype=float)

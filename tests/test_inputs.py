@@ -79,7 +79,7 @@ def test_what_is_no_number(value):
     (lambda: inputs.array([[1j]], "A", (1, 1)), "A is .*: give 1 x 1 finite"),
     (lambda: inputs.rotation(2 * TURN, "R"), "R must be a proper rotation .*orthonormalise"),
     (lambda: inputs.rotation(-np.eye(3), "R"), "R must be a proper rotation"),
-    (lambda: inputs.rotation(np.eye(2), "R"), r"R has shape \(2, 2\): give a proper"),
+    (lambda: inputs.rotation(np.eye(2), "R"), r"R has shape \(2, 2\): it must be a proper"),
     (lambda: inputs.flag(1, "planar"), "^planar is 1: give True or False$"),
     (lambda: inputs.flag("no", "planar"), "^planar is 'no': give True or False$"),
     (lambda: inputs.name(3, "name of a node"), "^name of a node is 3: give a text that is not"),

@@ -10,14 +10,15 @@ import pytest
 ROOMS = {
     "sebody": {"InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
                "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha",
-               "hht", "simulate", "simulate_within", "with_corners"},
+               "harmonic", "hht", "piecewise", "ramp", "rest_to_rest", "simulate",
+               "simulate_within", "spline", "trapezoidal", "with_corners"},
     "sebody.analysis": {"Linearization", "Modes", "Vibrations", "equilibrium", "linearize",
                         "modes", "resume", "save_state", "spin_limit", "vibrations"},
     "sebody.results": {"Recording", "Result", "Start", "save_picture"},
     "sebody.fem": {"FEModel", "Section", "StiffnessSection", "circle", "frame", "hexahedral_block",
                    "i_profile", "planar_beam", "rectangle", "straight_beam", "tube"},
-    "sebody.reduction": {"ComponentModes", "ReducedBody", "body_weights", "component_modes",
-                         "craig_bampton", "frame_weights"},
+    "sebody.reduction": {"ComponentModes", "ReducedBody", "RigidFace", "body_weights",
+                         "component_modes", "craig_bampton", "frame_weights"},
     "sebody.io": set(),
 }
 

@@ -17,17 +17,18 @@ ADDED = Shift("forces conjugate to y, damping included", "s", "friction", "+")
 
 def damping(q: Quantities) -> Damping:
     """Rates of deformation and the damping forces, added to the elastic ones."""
-    return Damping("structural damping", (*_rates(q), FRICTION, ADDED))
+    return Damping("structural damping", (*rates(q), FRICTION, ADDED))
 
 
 def linearized_damping(q: Quantities, chain: Linearizer) -> Damping:
     """Their differentials; velocities must have been moved before."""
-    steps: list[Step] = [chain.stage(step) for step in _rates(q)]
+    steps: list[Step] = [chain.stage(step) for step in rates(q)]
     return Damping("differential: structural damping",
                    (*steps, FRICTION.differential(), ADDED.differential()))
 
 
-def _rates(q: Quantities) -> tuple[Stage, ...]:
+def rates(q: Quantities) -> tuple[Stage, ...]:
+    """Rates of the local coordinates: those of the origin, displacements, rotations, modes."""
     in_time = dict(zip((*q.dx.symbols, *q.dx0.symbols, *q.dth.symbols, *q.dth0.symbols),
                        (*q.vs.symbols, *q.v0.symbols, *q.Om.symbols, *q.Om0.symbols), strict=True))
     return (origin_stage(q, q.v0, q.vs),

@@ -40,17 +40,22 @@ def gravity(q: Quantities) -> Gravity:
     mass, at_rest, x0 = q.mass.symbols[0], q.mc.symbols, q.x0.symbols
     d = at_rest + moment
     potential = -(mass * (R0.T * x0).dot(gamma) + d.dot(gamma))
-    field = Stage("gravity in frame axes", "element", sets=((q.gamma, R0.T * q.field.symbols),),
-                  short=(cross(gamma, q.dth0.symbols),))
     _check_variation(q, d, mass)
     axes = 2 if q.space.planar else 3
     return Gravity(
-        before=(field, Product("first moment of mass of the deformation, d = r^T Mbar y",
+        before=(in_frame_axes(q), Product("first moment of mass of the deformation, d = r^T Mbar y",
                                "mass_rows", "y", "d", (str(axes), "n"))),
         products=(Product("weight conjugate to y, Mbar r gamma", "mass_columns", "gamma",
                           "weight", ("n", str(axes))),),
         on_frame=cross(gamma, d), origin=-mass * gamma, potential=potential,
         strain=moment.dot(gamma) / 2)
+
+
+def in_frame_axes(q: Quantities) -> Stage:
+    """The field, seen in the frame."""
+    return Stage("gravity in frame axes", "element",
+                 sets=((q.gamma, q.R0.symbols.T * q.field.symbols),),
+                 short=(cross(q.gamma.symbols, q.dth0.symbols),))
 
 
 def _check_variation(q: Quantities, d: sp.Matrix, mass: sp.Expr) -> None:

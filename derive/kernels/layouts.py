@@ -4,7 +4,14 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sebody.kernels.layout import LETTERS, FrameTraits, first_mode, first_rotation, layout_name
+from sebody.kernels.layout import (
+    LETTERS,
+    FrameTraits,
+    InertiaTraits,
+    first_mode,
+    first_rotation,
+    layout_name,
+)
 from sebody.kernels.names import ANY, layout_variant
 
 PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?)(d)?")
@@ -94,6 +101,21 @@ def fits(layout: Layout, frame: FrameTraits) -> bool:
     return ((layout.rotations > 0 or not frame.needs_rotations)
             and layout.positions >= frame.fewest_positions[layout.planar]
             and (frame.planar or not layout.planar))
+
+
+def check_inertia(frame: str, inertia: str, frames: Mapping[str, FrameTraits],
+                  options: Mapping[str, InertiaTraits]) -> None:
+    """Refuse a frame that depends on the last step where rates of the frame are needed.
+
+    Raises
+    ------
+    LayoutError
+        With the frames that the option can have.
+    """
+    if options[inertia].field and frames[frame].incremental:
+        others = " or ".join(repr(name) for name, other in frames.items() if not other.incremental)
+        raise LayoutError(f"inertia option {inertia!r} needs the exact rates of a frame that "
+                          f"depends on the state alone, which {frame!r} does not: use {others}")
 
 
 def check_frame(layout: Layout, frame: str, frames: Mapping[str, FrameTraits]) -> None:

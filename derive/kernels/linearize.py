@@ -6,15 +6,11 @@ held fixed between the two, which leaves the paper's tangents (31), (48)-(51), (
 
 from functools import cache
 
-from sebody.derive.formulas.damping import linearized_damping
 from sebody.derive.formulas.frames.frame import FrameOption, origin_stage
-from sebody.derive.formulas.gravity import TAKEN_OFF
-from sebody.derive.formulas.gravity import linearized as linearized_gravity
 from sebody.derive.formulas.inertia.option import InertiaOption
 from sebody.derive.formulas.kinematics import elastic_rotation_variation, unknown_rules
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.kernels.superelement import (
-    ELASTIC,
     Superelement,
     kept,
     node_formulas,
@@ -46,15 +42,8 @@ def node_tangent(planar: bool, frame: FrameOption, inertia: InertiaOption) -> tu
         Stage("differential: internal modes", "mode", sets=((d(q.ym), d(q.qm).symbols),))]
     for quantity in (q.psi, q.ym, q.beta, q.beta0):
         chain.move(quantity)
-    steps += [ELASTIC.differential(), _geometric_switch(q), *formulas.frame.differentials,
-              *linearized_gravity(q, formulas.weight, chain), TAKEN_OFF.differential()]
-    for quantity in (q.f, q.m, q.fm):
-        chain.move(quantity)
-    steps += [chain.step(step) for step in velocities if step.role is not Role.BY_RULE]
-    steps.append(linearized_damping(q, chain))
-    steps += [product.differential() for product in formulas.inertia.products]
-    for quantity in (q.px, q.pw, q.pxd, q.pwd, q.pmd):
-        chain.move(quantity)
+    steps += [*formulas.local.held, _geometric_switch(q), *formulas.frame.differentials,
+              *formulas.local.column(chain, tuple(velocities))]
     for step in formulas.after:
         steps.append(_in_frame_axes(q, chain, step) if step.role is Role.NODE_FORCE else
                      chain.step(step))

@@ -29,10 +29,16 @@ SUPERELEMENTS = (
     ("planar-f2", "converged_mean", "a"),
     ("planar-f2", "positions", "b"),
     ("planar-f3", "converged_mean", "b"),
+    ("f2", "converged_mean", "c"),
+    ("planar-f2", "converged_mean", "c"),
     # for all other layouts: counts of nodes are read at run time
     ("any", "converged_mean", "b"),
     ("any", "positions", "b"),
     ("planar-any", "converged_mean", "b"),
     ("planar-any", "positions", "b"),
+    ("any", "converged_mean", "c"),
+    ("any", "positions", "c"),
+    ("planar-any", "converged_mean", "c"),
+    ("planar-any", "positions", "c"),
 )
 ELEMENTS = tuple(CATALOGUE)

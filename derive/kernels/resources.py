@@ -8,11 +8,16 @@ import sympy as sp
 from sebody.derive.formulas.elements import Element
 from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.symbolic.steps import Step, Uses, united
-from sebody.kernels.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS
+from sebody.kernels.layout import DAMPING_CONSTANTS, MOST_SLAVED, SUPERELEMENT_CONSTANTS
 
 STATE = "qe", "ve", "ae"                # gathered before the steps
 DIRECTIONS = "dqe", "dve", "dae"        # of a column of the matrix, set before its steps
 GIVEN = {"R", "field", "frame", "g", "nodes", "reference", "N_POSITIONS", "N_ROTATIONS"}
+
+
+# arrays of option C: a row for each slaved coordinate, or component of a product with z
+TALL = {"Zq": MOST_SLAVED, "Zd": MOST_SLAVED, "Za": MOST_SLAVED, "products": 15, "more": 12}
+SQUARES = "Lz", "Lv", "La", "Gy"
 
 
 class Resources(NamedTuple):
@@ -21,19 +26,25 @@ class Resources(NamedTuple):
     rows: tuple[str, ...]       # scratch memory, in the order of first use
     calls: tuple[str, ...]
     pointers: tuple[str, ...] = ()      # into the arguments
+    tall: tuple[str, ...] = ()          # of many rows each, see `TALL`
+    squares: tuple[str, ...] = ()       # of as many rows as coordinates
 
 
 def resources(kernel: Superelement) -> Resources:
     """Collect what the steps report."""
     def used(steps: Iterable[Step]) -> Uses:
         return united(step.uses(kernel.space, kernel.names) for step in steps)
-    forces, column = used((*kernel.residual, *kernel.energy)), used(kernel.tangent)
+    forces = used((*kernel.residual, *kernel.energy))
+    column = used((*kernel.prepared, *kernel.tangent))
     provided = GIVEN | {part.name for part in (*SUPERELEMENT_CONSTANTS, *DAMPING_CONSTANTS,
                                                *kernel.declared)}
     rows = dict.fromkeys((*STATE, *forces.arrays, *DIRECTIONS, *column.arrays))
-    return Resources(tuple(row for row in rows if row not in provided),
+    scratch = [row for row in rows if row not in provided]
+    return Resources(tuple(row for row in scratch if row not in (*TALL, *SQUARES)),
                      tuple(dict.fromkeys((*forces.calls, *column.calls))),
-                     tuple(row for row in rows if row in GIVEN))
+                     tuple(row for row in rows if row in GIVEN),
+                     tuple(row for row in scratch if row in TALL),
+                     tuple(row for row in scratch if row in SQUARES))
 
 
 def element_resources(element: Element) -> Resources:

@@ -4,26 +4,32 @@
     -> moment on the frame, pulled back -> forces on the unknowns
 """
 
+from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
 import sympy as sp
 
-from sebody.derive.formulas.damping import damping
-from sebody.derive.formulas.elastic import VirtualWork, conjugate_to
+from sebody.derive.formulas.damping import damping, linearized_damping
+from sebody.derive.formulas.elastic import ELASTIC, VirtualWork, conjugate_to
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
-from sebody.derive.formulas.gravity import TAKEN_OFF, Gravity, gravity
-from sebody.derive.formulas.inertia.option import Inertia, InertiaOption
+from sebody.derive.formulas.gravity import TAKEN_OFF, Gravity, gravity, linearized
+from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
 from sebody.derive.formulas.kinematics import local_displacement, local_velocity
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.kernels.layouts import Layout, check_frame
-from sebody.derive.kernels.options import FRAMES, INERTIA_OPTIONS, frame_traits
+from sebody.derive.kernels.layouts import Layout, check_frame, check_inertia
+from sebody.derive.kernels.options import (
+    FRAMES,
+    INERTIA_OPTIONS,
+    frame_traits,
+    inertia_traits,
+)
+from sebody.derive.symbolic.linearize import Linearizer
 from sebody.derive.symbolic.rotations import stumpff, tangent_inverse
 from sebody.derive.symbolic.spaces import Space
 from sebody.derive.symbolic.steps import (
     Damping,
     Names,
-    Product,
     Role,
     Solve,
     Stage,
@@ -33,8 +39,6 @@ from sebody.derive.symbolic.steps import (
 from sebody.kernels.layout import Part
 from sebody.kernels.names import superelement_name
 
-ELASTIC = Product("elastic force, s = Sbar y", "S", "y", "s")
-
 
 class Formulas(NamedTuple):
     """Steps at node level, the same for every layout."""
@@ -42,17 +46,15 @@ class Formulas(NamedTuple):
     q: Quantities
     frame: Frame
     inertia: Inertia
-    weight: Gravity
+    local: Local
     before: tuple[Stage | Solve, ...]   # from the frame to local velocities and accelerations
     after: tuple[Stage | Solve, ...]    # from local forces to those on the unknowns
-    energy: tuple[Step, ...]
 
     @property
     def residual(self) -> tuple[Step, ...]:
         """All steps of the forces."""
-        q, weight = self.q, self.weight
-        return (origin_stage(q, q.x0, q.x), *self.frame.locate, *self.before, *weight.before,
-                ELASTIC, *weight.products, TAKEN_OFF, damping(q), *self.inertia.products,
+        q = self.q
+        return (origin_stage(q, q.x0, q.x), *self.frame.locate, *self.before, *self.local.forces,
                 *self.after)
 
 
@@ -66,6 +68,7 @@ class Superelement(NamedTuple):
     formulas: Formulas
     residual: tuple[Step, ...]
     energy: tuple[Step, ...]
+    prepared: tuple[Step, ...]          # of the matrix, once for all columns
     tangent: tuple[Step, ...] = ()      # of one column
 
     @property
@@ -95,13 +98,15 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
     Raises
     ------
     LayoutError
-        If the layout cannot carry the frame.
+        If the layout cannot carry the frame, or the inertia option cannot have it.
     """
     check_frame(layout, frame, frame_traits())
+    check_inertia(frame, inertia, frame_traits(), inertia_traits())
     options = FRAMES[frame], INERTIA_OPTIONS[inertia]
     formulas = node_formulas(layout.planar, *options)
     return Superelement(layout, frame, inertia, options, formulas,
-                        kept(formulas.residual, layout), kept(formulas.energy, layout))
+                        kept(formulas.residual, layout), kept(formulas.local.energy, layout),
+                        kept(formulas.local.prepared, layout))
 
 
 def kept(steps: tuple[Step, ...], layout: Layout) -> tuple[Step, ...]:
@@ -117,20 +122,43 @@ def node_formulas(planar: bool, frame: FrameOption, inertia: InertiaOption) -> F
     """Derive the steps at node level."""
     q = Quantities(Space(planar))
     chosen, option = frame.derive(q), inertia.derive(q)
-    work, weight = chosen.work(q), gravity(q)
-    return Formulas(q, chosen, option, weight, _motion(q, chosen, option),
-                    _forces(q, chosen, option, work, weight), _energy(q, option, weight))
+    local = (option.local or _of_nodes(option))(q, chosen)
+    before = local_displacement(q), local_velocity(q), *local.motion
+    return Formulas(q, chosen, option, local, before,
+                    _forces(q, chosen, option, chosen.work(q), local))
 
 
-def _motion(q: Quantities, frame: Frame, inertia: Inertia) -> tuple[Stage | Solve, ...]:
-    return (local_displacement(q), local_velocity(q), *inertia.velocity, *frame.velocity,
-            *inertia.acceleration,
-            Stage("internal modes", "mode",
-                  sets=((q.ym, q.qm.symbols), (q.ydm, q.vm.symbols), (q.yddm, q.am.symbols))))
+def _of_nodes(inertia: Inertia) -> Callable[[Quantities, Frame], Local]:
+    """Local forces from momenta of the nodes and modes, ``Mbar ydot``."""
+    def local(q: Quantities, frame: Frame) -> Local:
+        weight = gravity(q)
+        modes = Stage("internal modes", "mode",
+                      sets=((q.ym, q.qm.symbols), (q.ydm, q.vm.symbols), (q.yddm, q.am.symbols)))
+
+        def column(chain: Linearizer, velocities: tuple[Step, ...]) -> tuple[Step, ...]:
+            steps: list[Step] = [*linearized(q, weight, chain), TAKEN_OFF.differential()]
+            for quantity in (q.f, q.m, q.fm):
+                chain.move(quantity)
+            steps += [chain.step(step) for step in velocities if step.role is not Role.BY_RULE]
+            steps.append(linearized_damping(q, chain))
+            steps += [product.differential() for product in inertia.products]
+            for quantity in (q.px, q.pw, q.pxd, q.pwd, q.pmd):
+                chain.move(quantity)
+            return tuple(steps)
+        return Local(
+            motion=(*inertia.velocity, *frame.velocity, *inertia.acceleration, modes),
+            forces=(*weight.before, ELASTIC, *weight.products, TAKEN_OFF, damping(q),
+                    *inertia.products),
+            share=weight.origin,
+            on_frame=Stage("moment of gravity on the frame", "element",
+                           adds=((q.W, weight.on_frame),), continues=True),
+            energy=_energy(q, inertia, weight), prepared=(), held=(ELASTIC.differential(),),
+            column=column)
+    return local
 
 
 def _forces(q: Quantities, frame: Frame, inertia: Inertia, work: VirtualWork,
-            weight: Gravity) -> tuple[Stage | Solve, ...]:
+            local: Local) -> tuple[Stage | Solve, ...]:
     R0, h, alpha = q.R0.symbols, q.h.symbols, q.alpha.symbols[0]
     origin = [Stage("force on the origin, through the frame", "position",
                     adds=((q.F, frame.origin),), continues=True)] if any(frame.origin) else []
@@ -139,10 +167,9 @@ def _forces(q: Quantities, frame: Frame, inertia: Inertia, work: VirtualWork,
     of_mean = q.alpha_r.symbols[0] * q.Ms.symbols if work.mean else sp.zeros(3, 1)
     return (
         Stage("forces on the frame: elastic (30) and inertia (57)", "position",
-              adds=((q.F, work.origin + alpha * weight.origin),
+              adds=((q.F, work.origin + alpha * local.share),
                     (q.W, work.frame_positions + inertia.frame_positions))),
-        Stage("moment of gravity on the frame", "element", adds=((q.W, weight.on_frame),),
-              continues=True),
+        local.on_frame,
         Stage("moments on the frame: elastic (30) and inertia (45)", "rotation",
               adds=((q.W, work.frame_rotations + inertia.frame_rotations),), continues=True),
         *frame.pull, *origin, *on_mean,
@@ -153,7 +180,8 @@ def _forces(q: Quantities, frame: Frame, inertia: Inertia, work: VirtualWork,
         Stage("moment on the nodes, (30), (57)", "rotation",
               sets=((q.gt, work.rotation + inertia.rotation + frame.rotation + of_mean),)),
         Stage("force of the internal modes", "mode",
-              sets=((q.gm, q.fm.symbols + q.pmd.symbols),)),)
+              sets=((q.gm, q.fm.symbols + (q.pmd.symbols if inertia.products
+                                           else sp.zeros(1, 1))),)),)
 
 
 def _energy(q: Quantities, inertia: Inertia, weight: Gravity) -> tuple[Stage, ...]:
@@ -175,7 +203,7 @@ def _energy(q: Quantities, inertia: Inertia, weight: Gravity) -> tuple[Stage, ..
 
 def _names(q: Quantities) -> dict[sp.Expr, sp.Symbol]:
     names = {}
-    for vector, values in ((q.psi, (q.e0, q.e1)), (q.beta, (q.b0, q.b1))):
+    for vector, values in ((q.psi, (q.e0, q.e1, q.e2)), (q.beta, (q.b0, q.b1))):
         s = vector.symbols.dot(vector.symbols)
         names |= {tangent_inverse(k, s): value.symbols[0] for k, value in enumerate(values)}
     s = q.beta0.symbols.dot(q.beta0.symbols)

@@ -2,28 +2,45 @@
 
 from collections.abc import Iterable
 
-from sebody.derive.printing.expressions import indented
-from sebody.kernels.layout import Part
+from sebody.derive.printing.expressions import WIDTH, indented
+from sebody.kernels.layout import Counts, Part, axes_of
 
 
 def table(parts: Iterable[Part], levels: int = 0) -> str:
     """A tuple of parts, written out over lines."""
-    lines = [_part(part) + "," for part in parts]
+    lines = [line for part in parts for line in _part(part, 4 * (levels + 1))]
     return "\n".join(["(", indented(lines, levels + 1), indented([")"], levels)]) if lines else "()"
 
 
-def _part(part: Part) -> str:
-    """A part as the call that makes it, what is default left out."""
+def _part(part: Part, indent: int) -> list[str]:
+    """A part as the call that makes it, what is default left out; in two lines if it is long."""
     given = [repr(part.name)]
     given += [repr(part.shape)] if part.shape or part.meaning else []
     given += [repr(part.meaning)] if part.meaning else []
     given += ["columns=True"] if part.columns else []
-    return f"Part({', '.join(given)})".replace("'", '"')
+    line = f"Part({', '.join(given)}),".replace("'", '"')
+    if indent + len(line) <= WIDTH:
+        return [line]
+    head = f"Part({', '.join(given[:2])},".replace("'", '"')
+    return [head, f"     {', '.join(given[2:])}),".replace("'", '"')]
 
 
 def chain(parts: tuple[Part, ...], planar: bool) -> list[str]:
     """Pointers to the constants of a superelement, one after the other."""
-    known = {"D": 2 if planar else 3}
+    known = axes_of(planar)
     starts = ["constants, index[first + AT_CONSTANTS]"]
     starts += [f"{part.name}, {part.expression(known)}" for part in parts[:-1]]
-    return [f"{part.name} = at({start})" for part, start in zip(parts, starts, strict=True)]
+    lines = []
+    for part, start in zip(parts, starts, strict=True):
+        lines.append(f"{part.name} = at({start})")
+        if part.name == "sizes":        # of all parts that follow
+            lines += _counts(known)
+    return lines
+
+
+def _counts(known: Counts) -> list[str]:
+    """Counts of option C: slaved coordinates, resultants, and what follows from them."""
+    motions = known["lines"] - known["pairs"]
+    return ["slaved, resultants = int(sizes[0]), int(sizes[1])", f"free = n - {motions}",
+            "N = free + slaved", f"quadratic, slaving = {known['blocks']}*N, slaved*free",
+            f"hn, hN, deep = padded(free), padded(N), padded(N + {motions})"]

@@ -10,10 +10,12 @@ from sebody.derive.kernels.layouts import Layout
 from sebody.derive.printing.expressions import code, nested, offset
 from sebody.derive.symbolic.spaces import Quantity, Space
 from sebody.derive.symbolic.steps import (
+    Call,
     Damping,
     Entry,
     Names,
     Product,
+    Repeat,
     Scaling,
     Search,
     Shift,
@@ -26,6 +28,9 @@ from sebody.derive.symbolic.steps import (
 )
 
 LOOPS = {"position": ("i", "i3", "N_POSITIONS"), "rotation": ("j", "j3", "N_ROTATIONS")}
+SINGLE = {"mode": ("k", "range(MODES, n)"), "coordinate": ("i", "range(n)"),
+          "shape": ("i", "range(N)"), "slaved": ("b", "range(slaved)"),
+          "resultant": ("e", "range(resultants)")}
 
 
 class StepPrinter:
@@ -42,7 +47,8 @@ class StepPrinter:
         """Text of some steps, one comment line a step."""
         printers = {Stage: self._stage, Product: self._product, Solve: self._solve,
                     Search: self._search, Values: self._values, Shift: self._shift,
-                    Scaling: self._scaling, Damping: self._damping}
+                    Scaling: self._scaling, Damping: self._damping, Call: self._call,
+                    Repeat: self._repeat}
         out = []
         for step in steps:
             text = printers[type(step)](step)
@@ -73,8 +79,9 @@ class StepPrinter:
         """A loop over what carries the values; `indexed`: its first coordinate is used."""
         if over == "element":
             return body
-        if over == "mode":
-            return ["for k in range(MODES, n):", *nested(body)]
+        if over in SINGLE:
+            index, values = SINGLE[over]
+            return [f"for {index} in {values}:", *nested(body)]
         index, first, count = LOOPS[over]
         size = self.layout.position_size if over == "position" else self.layout.rotation_size
         start = "" if over == "position" else "ROTATIONS + "
@@ -96,13 +103,15 @@ class StepPrinter:
         if not quantity.array:
             return str(symbol)
         k = quantity.kept.index(symbol)
+        if quantity.place:
+            return f"{quantity.array}[{_index(quantity.place, quantity.first + k)}]"
         if quantity.home == "element":
             return f"{quantity.array}[{k}]"
         if quantity.kind == "rotation":
             node = "9*nodes[j]" if quantity.array == "R" else "9*j"
             return f"{quantity.array}[{node} + {k}]"
         if quantity.kind == "scalar":
-            index = {"position": "i", "rotation": "j", "mode": "k"}[quantity.home]
+            index = (LOOPS | SINGLE)[quantity.home][0]
             return f"{quantity.array}[{index}]"
         return f"{quantity.array}[{offset(LOOPS[quantity.home][1], k)}]"
 
@@ -172,6 +181,13 @@ class StepPrinter:
         return [f"{', '.join(str(s) for s in frame.symbols[r, :])} = "
                 f"{', '.join(f'frame[{3 * r + c}]' for c in range(3))}" for r in range(3)]
 
+    def _call(self, step: Call) -> list[str]:
+        self.products += step.products
+        return [f"{step.function}({', '.join(step.arguments)})"]
+
+    def _repeat(self, step: Repeat) -> list[str]:
+        return [f"for {step.index} in range({step.count}):", *nested(self.lines(step.steps))]
+
     def _values(self, step: Values) -> list[str]:
         self.operations[step.of.home] += step.operations
         outputs = ", ".join(self._place(q, s) for q in step.outputs for s in q.kept)
@@ -202,6 +218,12 @@ def _shared(expressions: tuple, start: int) -> tuple[list, list]:
 def _by_triplet(quantity: Quantity) -> bool:
     """Whether its values stand in triplets (or pairs), node after node."""
     return bool(quantity.array) and quantity.home in LOOPS and quantity.kind in ("vector", "axial")
+
+
+def _index(place: str, k: int) -> str:
+    """An index without products and sums with zero."""
+    index = place.format(k=k)
+    return index if k else index.replace("0*hN + ", "").removesuffix(" + 0")
 
 
 def _sum(symbol: sp.Symbol, value: sp.Expr) -> Entry:

@@ -5,13 +5,13 @@ from collections import Counter
 import sympy
 
 from sebody.derive.kernels.layouts import Layout
-from sebody.derive.kernels.resources import Resources
+from sebody.derive.kernels.resources import TALL, Resources
 from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.printing import parts, templates
 from sebody.derive.printing.expressions import indented
 from sebody.derive.printing.imports import import_lines
 from sebody.derive.printing.step_printer import StepPrinter, product_name
-from sebody.kernels.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS
+from sebody.kernels.layout import DAMPING_CONSTANTS, MARGIN, SUPERELEMENT_CONSTANTS
 from sebody.kernels.sources import room_hash
 
 
@@ -22,6 +22,7 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     residual = printer.lines(kernel.residual)
     in_residual = _counted(printer)
     energy = [*printer.lines(kernel.energy), *templates.ENERGY_OUTPUTS[planar]]
+    prepared = printer.lines(kernel.prepared)
     printer.operations, printer.products = Counter(), 0
     tangent = printer.lines(kernel.tangent)
     return templates.SUPERELEMENT.format(
@@ -29,11 +30,10 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
         filled=templates.FILLED * (layout.modes is None),
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
         reference=templates.REFERENCE * ("reference" in uses.pointers),
-        work_rows=len(uses.rows), rows=indented([*_reads(layout), *_rows(uses.rows)], 1),
+        work_rows=len(uses.rows) + sum(TALL[name] for name in uses.tall),
+        work_squares=len(uses.squares), rows=indented([*_reads(layout), *_rows(uses)], 1),
         residual_operations=in_residual, column_operations=_counted(printer),
-        residual=indented(residual, 2), kinetic="0.5*{}[i]*{}[i]".format(
-            *kernel.formulas.inertia.kinetic),
-        friction="\n" * layout.damped + indented(templates.FRICTION * layout.damped, 3),
+        residual=indented(residual, 2), sums=_sums(kernel), prepared=_prepared(prepared),
         energy=indented(energy, 3), seeds=indented(templates.SEEDS[planar], 4),
         tangent=indented(tangent, 4))
 
@@ -94,7 +94,24 @@ def _counted(printer: StepPrinter) -> str:
     return f"({', '.join(map(str, [*found, printer.products]))})"
 
 
-def _rows(names: tuple[str, ...]) -> list[str]:
+def _sums(kernel: Superelement) -> str:
+    """Energies that are sums over the coordinates, where they are."""
+    factors, damped = kernel.formulas.inertia.kinetic, kernel.layout.damped
+    lines = [line.format(*factors) for line in templates.SUMS] if factors else []
+    friction = templates.FRICTION if factors else templates.FRICTION_ALONE
+    return indented([*lines, *(friction * damped)], 3) + "\n" * bool(lines or damped)
+
+
+def _prepared(lines: list[str]) -> str:
+    return indented(lines, 3) + "\n" * bool(lines)
+
+
+def _rows(uses: Resources) -> list[str]:
     """Scratch memory: a row of local coordinates each, or of rotations of the nodes."""
-    return ["row = padded(max(n, 9*N_ROTATIONS))",
-            *(f"{name} = at(work, {k}*row)" for k, name in enumerate(names))]
+    margin = f" + {MARGIN}" if uses.squares else ""
+    lines, first = [f"row = padded(max(n{margin}, 9*N_ROTATIONS))"], 0
+    for name in (*uses.rows, *uses.tall):
+        lines.append(f"{name} = at(work, {first}*row)")
+        first += TALL.get(name, 1)
+    return lines + [f"{name} = at(work, ({first} + {k}*(n{margin}))*row)"
+                    for k, name in enumerate(uses.squares)]

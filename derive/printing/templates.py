@@ -33,6 +33,7 @@ MODES = {first_mode}          # first internal mode
 DAMPED = {damped}        # has structural damping
 N_MODES = {n_modes}        # their number, None where it is read at run time
 WORK_ROWS = {work_rows}
+WORK_SQUARES = {work_squares}
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
 OPERATIONS = {{"residual": {residual_operations},
@@ -59,17 +60,12 @@ ROOM = "{room}"     # hash of sebody/kernels, which this file was made for
             ae[i] = a[unknowns[i]]
 {residual}
         if task == ENERGY:
-            kinetic = 0.0
-            strain = 0.0
-            for i in range(n):
-                kinetic += {kinetic}
-                strain += 0.5*y[i]*s[i]{friction}
-{energy}
+{sums}{energy}
         if task == TANGENT:
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
-            for column in range(n):
+{prepared}            for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0
                     dve[i] = 0.0
@@ -88,6 +84,13 @@ SUPERELEMENT_NAMES = (
 GENERAL_NAMES = "AT_POSITIONS", "AT_ROTATIONS"
 DAMPING_NAMES = "AT_PORT", "DAMPING_CONSTANTS", "POWERS"
 
+SUMS = (
+    "kinetic = 0.0",
+    "strain = 0.0",
+    "for i in range(n):",
+    "    kinetic += 0.5*{}[i]*{}[i]",
+    "    strain += 0.5*y[i]*s[i]",
+)
 FRICTION = (
     "lost = 0.0",
     "for i in range(n):",
@@ -95,6 +98,7 @@ FRICTION = (
     "    lost -= eta[i]*friction[i]",
     "energies[POWERS + index[first + AT_PORT]] = lost",
 )
+FRICTION_ALONE = tuple(line for line in FRICTION if "strain" not in line)
 
 FILLED = "        filled = int(full[0])\n"
 REFERENCE = "        reference = at(references, 9*index[first + AT_FRAME])\n"

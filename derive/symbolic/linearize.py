@@ -1,5 +1,7 @@
 """Differentials of steps, by the chain rule over the named quantities."""
 
+from collections.abc import Callable
+
 import sympy as sp
 
 from sebody.derive.symbolic.spaces import Quantity, Space
@@ -15,15 +17,19 @@ class Linearizer:
     space : Space
     rules : dict
         Differentials of the quantities the stages start from.
+    named : callable, optional
+        The quantity that holds the differential of another one; `space.d` by default.
     """
 
-    def __init__(self, space: Space, rules: Rules):
+    def __init__(self, space: Space, rules: Rules,
+                 named: Callable[[Quantity], Quantity] | None = None):
         self.space = space
         self.rules = dict(rules)
+        self.d, self.title = named or space.d, "rate: " if named else "differential: "
 
     def move(self, quantity: Quantity) -> None:
         """Let a quantity vary from here on, along its own differential."""
-        self.rules |= along_own(self.space, quantity)
+        self.rules |= along(quantity.symbols, self.d(quantity).symbols)
 
     def step(self, step: Stage | Solve) -> Stage | Solve:
         """The differential of a stage or of an equation."""
@@ -33,12 +39,12 @@ class Linearizer:
         """The differential of a stage; a short form is proved against the chain rule first."""
         chains = [differential(expression, self.rules) for _, expression in step.sets]
         results = self._proved(step, chains) if step.short else chains
-        d = self.space.d
+        d = self.d
         sets = tuple((d(q), e) for (q, _), e in zip(step.sets, results, strict=True))
         adds = tuple((d(q), differential(e, self.rules)) for q, e in step.adds)
         for quantity, _ in (*step.sets, *step.adds):
             self.move(quantity)
-        return Stage("differential: " + step.title, step.over, sets, adds,
+        return Stage(self.title + step.title, step.over, sets, adds,
                      continues=step.continues)
 
     def _proved(self, step, chains):
@@ -51,11 +57,11 @@ class Linearizer:
 
     def solve(self, step: Solve) -> Solve:
         """``B du = - d(equation) at fixed u``: the same matrix, a new right-hand side."""
-        d_unknown = self.space.d(step.unknown)
+        d_unknown = self.d(step.unknown)
         summand = solve_matrix(step) * d_unknown.symbols + differential(step.summand, self.rules)
         constant = differential(step.constant, self.rules)
         self.move(step.unknown)
-        return Solve("differential: " + step.title, d_unknown, step.over, summand, constant,
+        return Solve(self.title + step.title, d_unknown, step.over, summand, constant,
                      step.inverse, step.transposed)
 
 

@@ -157,6 +157,33 @@ class Search(NamedTuple):
                     (self.function,))
 
 
+class Call(NamedTuple):
+    """A call of a function of the runtime; arguments are text, arrays those it reads or writes."""
+
+    title: str
+    function: str
+    arguments: tuple[str, ...]
+    arrays: tuple[str, ...]
+    products: int = 0                   # with n x n matrices, for the operation count
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """The function and its arrays."""
+        return Uses(self.arrays, (self.function,))
+
+
+class Repeat(NamedTuple):
+    """Steps once for each value of an index that their calls and quantities use."""
+
+    title: str
+    index: str
+    count: str
+    steps: tuple
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """What its steps use."""
+        return united(step.uses(space, names) for step in self.steps)
+
+
 class Values(NamedTuple):
     """Values of a function of the runtime of the square of a vector."""
 
@@ -177,7 +204,7 @@ class Values(NamedTuple):
 
 
 class Shift(NamedTuple):
-    """``to += what`` of whole rows of local coordinates, or ``to -= what``."""
+    """``to += what`` of whole rows of local coordinates, ``to -= what`` or ``to = what``."""
 
     title: str
     to: str
@@ -217,7 +244,7 @@ class Damping(NamedTuple):
         return united(step.uses(space, names) for step in self.steps)
 
 
-Step = Stage | Product | Solve | Search | Values | Shift | Scaling | Damping
+Step = Stage | Product | Solve | Search | Call | Repeat | Values | Shift | Scaling | Damping
 
 
 def united(uses: Iterable[Uses]) -> Uses:

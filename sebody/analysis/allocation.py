@@ -48,7 +48,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
     state = State.of(
         counts,
-        aux=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
+        aux=zeros(total), aux_change=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
         v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total), T=R.copy(),
         loads=zeros(3 * ports), loads_old=zeros(3 * ports), powers=zeros(ports),
         powers_old=zeros(ports), coefficients=coefficients,

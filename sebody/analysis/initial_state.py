@@ -6,6 +6,7 @@ from scipy.sparse import csc_matrix
 
 from sebody.analysis.evaluation import evaluate, matrix
 from sebody.analysis.redundancy import Solver, least, part_sizes
+from sebody.analysis.rigid_start import follow_drives
 from sebody.analysis.user_faults import fault
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.engine.evaluate import (
@@ -50,7 +51,9 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
            "start from a state the joints allow")
     system.inertias[:numbering.free] = part_sizes(masses, system)
     solver = Solver(masses, system, numbering)
-    changed = _fit_velocities(model, system, numbering, state, masses, multipliers)
+    changed = follow_drives(model, system, numbering, state, masses,
+                            _rates(system, state, multipliers))
+    changed |= _fit_velocities(model, system, numbering, state, masses, multipliers)
     _accelerate(system, numbering, state, solver)
     state.aux[:numbering.free] = state.a[:numbering.free]
     state.frames_old[:] = state.frames

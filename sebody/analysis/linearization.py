@@ -1,9 +1,4 @@
-"""Small motion about a state, at rest or in steady rotation: exact matrices and eigenvalues.
-
-In axes that rotate with the angular velocity W of the state, a position moves as x + xi, a rotation
-as R exp(theta). Then dv = xi' + W x xi, da = xi'' + 2 W x xi' + W x (W x xi), and with the material
-W of the node dOmega = theta' + W x theta, dA = theta'' + W x theta'.
-"""
+"""Small motion about a state, at rest or in steady rotation: exact matrices and eigenvalues."""
 
 from typing import NamedTuple
 
@@ -15,102 +10,13 @@ from scipy.sparse import csc_matrix
 from sebody import inputs
 from sebody.analysis import user_faults
 from sebody.analysis.evaluation import matrix
+from sebody.analysis.shapes import Shapes
 from sebody.analysis.simulation import Simulation
-from sebody.assembly.numbering import coordinates
+from sebody.analysis.turning import Spin, motion, of_levers, summed
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import EVALUATED, WANTED
 from sebody.errors import InputError
 from sebody.results.result import Result
-
-
-class Spin:
-    """A steady rotation of everything about the origin."""
-
-    def __init__(self, velocity: NDArray, planar: bool):
-        self.velocity, self.planar = velocity, planar
-
-    @classmethod
-    def of(cls, run: Simulation | Result, velocity: ArrayLike | None) -> "Spin":
-        """The spin a user gives, none by default.
-
-        Raises
-        ------
-        InputError
-            The wrong shape or no numbers, or rigid links that rotate.
-        """
-        planar = run.model.planar
-        if velocity is None:
-            velocity = 0.0 if planar else np.zeros(3)
-        spin = cls(np.array(inputs.number(velocity, "spin", remedy="give a number")) if planar else
-                   inputs.vector(velocity, "spin", 3, remedy="give three numbers"), planar)
-        if spin.rotates and run.numbering.dependent:
-            raise InputError(f"{run.numbering.dependent[0].name} hangs on a rigid link, which the "
-                             "tangents of turning states leave out: give it a body of its own")
-        return spin
-
-    def times(self, factor: float) -> "Spin":
-        """The spin multiplied by a factor."""
-        return Spin(factor * self.velocity, self.planar)
-
-    @property
-    def rotates(self) -> bool:
-        """Whether the angular velocity is not zero."""
-        return bool(np.any(self.velocity))
-
-    def move(self, run: Simulation) -> None:
-        """Set velocities and accelerations to those of the rotation, of fixed nodes, too."""
-        state, numbering = run.state, run.numbering
-        state.v[:], state.a[:] = 0.0, 0.0
-        for node in run.model.nodes.values():
-            if node.position is not None and id(node.position) in numbering.triplets:
-                at = coordinates(numbering, node.position)
-                state.v[at] = self.cross(state.q[at])
-                state.a[at] = self.cross(state.v[at])
-            if node.rotation is not None and id(node.rotation) in numbering.triplets:
-                at = coordinates(numbering, node.rotation)
-                state.v[at] = self.velocity if self.planar else self._material(run, node.rotation)
-
-    def cross(self, x: NDArray) -> NDArray:
-        """``W x x``."""
-        if self.planar:
-            return float(self.velocity) * np.array([-x[1], x[0]])
-        return np.cross(self.velocity, x)
-
-    def _material(self, run: Simulation | Result, rotation) -> NDArray:
-        k = run.numbering.rotations[id(rotation)]
-        return run.state.R[9 * k:9 * k + 9].reshape(3, 3).T @ self.velocity
-
-    def operators(self, run: Simulation | Result) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
-        """Derivatives of velocity and acceleration by motion, and of acceleration by its rate."""
-        n = run.numbering.free
-        velocity, place, rate = (np.zeros((n, n)) for _ in range(3))
-        frame_of = dict(run.system.rotated.tolist())
-        for node in run.model.nodes.values():
-            for triplet in (node.position, node.rotation):
-                at = (None if triplet is None or id(triplet) not in run.numbering.triplets
-                      else coordinates(run.numbering, triplet))
-                if at is None or at[0] >= n:
-                    continue
-                block = np.ix_(at, at)
-                if triplet is node.position:
-                    own = self._in_axes(run, frame_of.get(at[0]))
-                    velocity[block], place[block], rate[block] = own, own @ own, 2.0 * own
-                elif not self.planar:
-                    velocity[block] = rate[block] = _skew(self._material(run, triplet))
-        return csc_matrix(velocity), csc_matrix(place), csc_matrix(rate)
-
-    def _in_axes(self, run: Simulation | Result, frame: int | None) -> NDArray:
-        """The operator ``W x`` in the axes a position is solved for in."""
-        if self.planar:
-            return float(self.velocity) * np.array([[0.0, -1.0], [1.0, 0.0]])
-        if frame is None:
-            return _skew(self.velocity)
-        axes = run.state.frames[9 * frame:9 * frame + 9].reshape(3, 3)
-        return _skew(axes.T @ self.velocity)
-
-
-def _skew(a: NDArray) -> NDArray:
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
 def derivative(run: Simulation | Result, mass: float, damping: float,
@@ -118,8 +24,7 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
     """Weighted sum of the exact derivatives, in body axes.
 
     Weights are those of the derivatives with respect to accelerations, velocities, and positions
-    and rotations. Constraints go with the last: in a rotating state the columns of the others are
-    combined with `Spin.operators`.
+    and rotations. Constraints go with the last.
     """
     state = run.state
     state.control[WANTED] = EVALUATED     # a run that goes on needs its own matrix again
@@ -130,14 +35,25 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
 
 def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
     """Tangent stiffness in axes that rotate with the spin, and the residual."""
-    stiffness = derivative(run, 0.0, 0.0, 1.0)
+    stiffness = _turning(run, spin)[2] if spin.rotates else derivative(run, 0.0, 0.0, 1.0)
     residual = run.state.residual.copy()
     to_body_axes(run.system, run.state.frames, residual, False)
-    if spin.rotates:
-        velocity, place, _ = spin.operators(run)
-        stiffness = (stiffness + derivative(run, 0.0, 1.0, 0.0) @ velocity
-                     + derivative(run, 1.0, 0.0, 0.0) @ place)
     return csc_matrix(stiffness), residual[:run.numbering.free]
+
+
+def _turning(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
+    """Mass, damping and stiffness in axes that rotate with the spin; see `turning`."""
+    mass, damping, stiffness = (_summed(run, *weights) for weights in np.eye(3))
+    velocity, place, rate = spin.operators(run)
+    G = motion(run)
+    return (G.T @ mass @ G, G.T @ (damping + mass @ rate) @ G,
+            G.T @ (stiffness + damping @ velocity + mass @ place) @ G
+            + of_levers(run, run.state.residual))
+
+
+def _summed(run: Simulation | Result, *weights: float) -> csc_matrix:
+    derivative(run, *weights)
+    return summed(run)
 
 
 class Linearization(NamedTuple):
@@ -164,17 +80,15 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     Raises
     ------
     InputError
-        A state that cannot be evaluated, a wrong spin, or one with rigid links.
+        A state that cannot be evaluated, or a wrong spin.
     """
     inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
                     "of an equilibrium")
     steady = Spin.of(run, spin)
     user_faults.forget(run.model)
-    stiffness, _ = rotating(run, steady)
-    mass, damping = derivative(run, 1.0, 0.0, 0.0), derivative(run, 0.0, 1.0, 0.0)
-    if steady.rotates:
-        damping = damping + mass @ steady.operators(run)[2]
-    K, C, M = (A.toarray() for A in (stiffness, damping, mass))
+    matrices = (_turning(run, steady) if steady.rotates else
+                tuple(derivative(run, *weights) for weights in np.eye(3)))
+    M, C, K = (A.toarray() for A in matrices)
     if not all(np.isfinite(A).all() for A in (K, C, M)):
         did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
         raise InputError(f"the state cannot be evaluated: {did}")
@@ -192,6 +106,20 @@ class Vibrations(NamedTuple):
 
     omega: NDArray      # (m,) angular frequencies, ascending [1/time]
     shapes: NDArray     # (unknowns, m) mass-normalised, in the axes of the unknowns
+    of_names: Shapes
+
+    def shape(self, name: str) -> NDArray:
+        """Part of all shapes, (size, m): ``shape("tip.position")`` in global axes.
+
+        Of ``<node>.position`` the displacement, of ``<node>.rotation`` the small rotation about
+        global axes, of ``<superelement>.modes`` the amplitudes.
+
+        Raises
+        ------
+        InputError
+            A name that nothing has.
+        """
+        return self.of_names.of(name, self.shapes)
 
 
 def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations:
@@ -217,7 +145,8 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
     if squares[0] < -100 * np.finfo(float).eps * squares[-1]:
         raise InputError(f"the state is not stable: the lowest square of a frequency is "
                          f"{squares[0]:.4g}")
-    return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count], free @ shapes[:, :count])
+    return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count], free @ shapes[:, :count],
+                      Shapes(run))
 
 
 class Modes(NamedTuple):
@@ -225,6 +154,11 @@ class Modes(NamedTuple):
 
     values: NDArray     # (m,) complex, by ascending frequency [1/time]
     shapes: NDArray     # (unknowns, m) complex, of unit length
+    of_names: Shapes
+
+    def shape(self, name: str) -> NDArray:
+        """Part of all shapes, (size, m): see `Vibrations.shape`."""
+        return self.of_names.of(name, self.shapes)
 
     @property
     def omega(self) -> NDArray:
@@ -247,4 +181,5 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
     kept = np.flatnonzero(values.imag >= 0.0)
     order = kept[np.lexsort((values[kept].real, values[kept].imag))]
     shapes = free @ vectors[:m, order]
-    return Modes(values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300))
+    return Modes(values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
+                 Shapes(run))

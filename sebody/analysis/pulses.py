@@ -31,8 +31,8 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
             continue
         steps = times / h
         before = np.floor(steps + ON_GRID) * h
-        seen = np.sort([_values(history, before), _values(history, before + h)], axis=0)
-        values = _values(history, times)
+        seen = np.sort([history.values(before), history.values(before + h)], axis=0)
+        values = history.values(times)
         excess = np.maximum(values - seen[1], seen[0] - values)
         on_grid = np.abs(steps - np.round(steps)) < ON_GRID
         missed = np.flatnonzero(~on_grid & (excess > MISSED * np.abs(values).max()))
@@ -49,13 +49,3 @@ def _known(history: History) -> NDArray:
         return np.array(history.times)
     corners = np.array(history.corners)
     return np.concatenate([corners, (corners[1:] + corners[:-1]) / 2])
-
-
-def _values(history: History, times: NDArray) -> NDArray:
-    """Values of a history, constant outside a table."""
-    if history.functions:
-        return np.array([history.functions[0].ctypes(t) for t in times])
-    starts = np.array(history.times)
-    row = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
-    since = np.maximum(times - starts[row], 0.0)
-    return (np.array(history.cubics)[row] * since[:, None] ** np.arange(4)).sum(axis=1)

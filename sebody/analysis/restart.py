@@ -11,7 +11,7 @@ from sebody import inputs
 from sebody.analysis.fingerprint import fingerprint
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
-from sebody.engine.state import PIVOTED, Scheme, State
+from sebody.engine.state import CURRENT_STEP, PIVOTED, STEP, TIME, Scheme, State
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.model.model import Model
@@ -19,7 +19,7 @@ from sebody.model.model import Model
 VERSION = 2
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
-FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old", "clock")
+FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old")
 
 
 def save_state(run: Simulation, path: str | Path) -> Path:
@@ -61,8 +61,9 @@ def resume(model: Model, path: str | Path) -> Simulation:
             arrays[name].shape != array.shape for name, array in fits.items()):
         raise InputError(f"restart file {path} is of another model: build the one it was saved "
                          "from, with the same bodies, joints and loads")
-    for name in FINITE:
-        if not np.isfinite(arrays[name]).all():
+    times = {"clock": arrays["clock"][[TIME, STEP, CURRENT_STEP]]}
+    for name, array in ({name: arrays[name] for name in FINITE} | times).items():
+        if not np.isfinite(array).all():
             raise InputError(f"restart file {path} holds numbers in {name} that are not finite: "
                              "run the model again")
     for name, array in fits.items():

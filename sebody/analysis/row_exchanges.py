@@ -40,8 +40,10 @@ class RowExchanges:
         """Whether the matrix is regular."""
         scale = diags(self.state.scale[:self.system.diagonal.size])
         matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
-        self._factors = factors(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
-        if self._factors is None:
+        try:
+            self._factors = factors(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
+        except RuntimeError:
+            self._factors = None
             return False
         pivots = np.abs(self._factors.U.diagonal())
         return bool(pivots.min() >= SINGULAR * pivots.max())

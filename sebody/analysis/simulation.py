@@ -112,6 +112,7 @@ class Simulation:
             self._choose_steps(tolerance)
         if self.scheme.stabilized:
             self._offset_accelerations()
+        self.state.aux_old[:] = self.state.aux
         first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
         write_record(self.state, first)

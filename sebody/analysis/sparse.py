@@ -4,12 +4,15 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import csc_matrix, diags
+from scipy.sparse.csgraph import structural_rank
 from scipy.sparse.linalg import SuperLU, splu
 
 from sebody.engine.relaxation import LIGHT
 from sebody.engine.system import System
 
+SMALL = 100         # unknowns up to which LAPACK takes less time than SciPy to call SuperLU
 SINGULAR = 1e-13    # smallest pivot of a regular matrix, relative to the largest
 SUSPICIOUS = 1e-6   # pivot below which constraints are looked into, relative to the largest
 RELAXATION = 1e-8   # of regularized matrices as in the engine, but never of an older state
@@ -17,16 +20,49 @@ ATTEMPTS = 20       # refinements: each leaves 2 RELAXATION / s of a part of str
 SETTLED = 1e-15     # change of the last refinement, relative to the solution
 
 
-def factors(matrix: csc_matrix, **options: object) -> SuperLU | None:
-    """Factors by SuperLU with its options; None where a pivot is exactly zero.
+def factors(matrix: csc_matrix, **options: object) -> SuperLU:
+    """Factors by SuperLU with its options.
 
-    The diagonal must be stored, zeros included: of a matrix whose pattern is singular SuperLU reads
-    beyond its arrays.
+    Raises
+    ------
+    RuntimeError
+        A pivot is exactly zero. Of a matrix whose pattern is singular SuperLU would read beyond its
+        arrays; one with a stored diagonal, zeros included, is not.
     """
-    try:
-        return splu(matrix, **options)
-    except RuntimeError:
-        return None
+    n = matrix.shape[0]
+    stored = np.count_nonzero(matrix.indices == np.repeat(np.arange(n), np.diff(matrix.indptr)))
+    if stored < n and structural_rank(matrix) < n:
+        raise RuntimeError("the pattern is singular")
+    return splu(matrix, **options)
+
+
+class _Dense:
+    """Factors of a small matrix."""
+
+    def __init__(self, matrix: csc_matrix):
+        self._factors, self._exchanges, zero = dgetrf(matrix.toarray(order="F"), overwrite_a=True)
+        if zero:
+            raise RuntimeError("a pivot is exactly zero")
+        self.pivots, self.unknowns = np.abs(self._factors.diagonal()), np.arange(matrix.shape[0])
+
+    def solve(self, right: NDArray) -> NDArray:
+        return dgetrs(self._factors, self._exchanges, right)[0]
+
+
+class _Sparse:
+    """Factors of a large one; pivots in the order of elimination."""
+
+    def __init__(self, matrix: csc_matrix):
+        self._factors = factors(matrix)
+        self.solve = self._factors.solve
+
+    @cached_property
+    def pivots(self) -> NDArray:
+        return np.abs(self._factors.U.diagonal())
+
+    @property
+    def unknowns(self) -> NDArray:
+        return np.argsort(self._factors.perm_c)
 
 
 class Scaled:
@@ -49,7 +85,10 @@ class Scaled:
         # on the entries: for a few bodies SciPy's products take ten times as long as their numbers
         matrix.data = entries * self.scale[row] * self.scale[column]
         self.matrix = matrix
-        self.factors = factors(self.matrix)
+        try:
+            self.factors = (_Dense if across <= SMALL else _Sparse)(self.matrix)
+        except RuntimeError:        # a pivot is exactly zero
+            self.factors = None
 
     @cached_property
     def regular(self) -> bool:
@@ -64,7 +103,7 @@ class Scaled:
     def _pivots_above(self, share: float) -> bool:
         if self.factors is None:
             return False
-        pivots = np.abs(self.factors.U.diagonal())
+        pivots = self.factors.pivots
         return bool(pivots.min() >= share * pivots.max())
 
     @property
@@ -72,8 +111,7 @@ class Scaled:
         """The unknown of the smallest pivot, None if a pivot is exactly zero."""
         if self.factors is None:
             return None
-        pivot = int(np.argmin(np.abs(self.factors.U.diagonal())))
-        return int(np.argsort(self.factors.perm_c)[pivot])
+        return int(self.factors.unknowns[np.argmin(self.factors.pivots)])
 
     def solve(self, right: NDArray) -> NDArray:
         """Solution by the factors."""

@@ -5,9 +5,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.analysis import user_faults
-from sebody.analysis.linearization import Spin, rotating
+from sebody.analysis.linearization import rotating
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.sparse import Scaled
+from sebody.analysis.turning import Spin
 from sebody.engine.evaluate import set_loads, to_body_axes, update_rotations
 from sebody.errors import SimulationError
 from sebody.kernels.layout import FIELD, RECORD_T
@@ -44,7 +45,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     Raises
     ------
     InputError
-        Not a positive number of steps, a spin of the wrong shape, or a spin and rigid links.
+        Not a positive number of steps, a spin of the wrong shape.
     SimulationError
         No equilibrium is found; what was found before is in its `result`.
     """

@@ -16,8 +16,9 @@ from sebody.assembly.contracts import (
     index_row,
     positions_of,
 )
+from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
-from sebody.generated.options import INERTIA_OPTIONS
+from sebody.generated.options import FRAMES, INERTIA_OPTIONS
 from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.mechanism import Mechanism
@@ -146,11 +147,16 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     origin = body.alpha @ points
     of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
     damping = {} if reduced.damping is None else {"C": reduced.damping}
-    return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
+    values = {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
             "alpha_rs": body.alpha_r, "X": points - origin, "S": reduced.stiffness,
             "M": reduced.mass, "mass_columns": of_translations, "mass_rows": of_translations.T,
             "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
             "full": [_filled(body)], "masses": [reduced.total_mass], **damping}
+    if not INERTIA_OPTIONS[body.inertia].field:
+        return values
+    conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts_of(body), values)
+    return values | floating_constants(reduced.invariants.about(origin), reduced.stiffness,
+                                       conditions)
 
 
 def _filled(body: Superelement) -> int:

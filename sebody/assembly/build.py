@@ -11,7 +11,7 @@ from sebody.assembly.places import dense_layout, element_places, sparse_layout
 from sebody.assembly.ports import port_arrays
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import LANES, whole_vectors
+from sebody.kernels.layout import LANES, scratch_size
 from sebody.kernels.loader import load
 from sebody.model.mechanism import Mechanism
 
@@ -66,8 +66,8 @@ def work_size(model: Mechanism) -> int:
     rows = []
     for body in model.bodies.values():
         kernel = load(body.kernel)
-        longest = max(len(body.body.stiffness), 9 * len(body.rotations))
-        rows.append(kernel.WORK_ROWS * whole_vectors(longest))
+        rows.append(scratch_size(kernel.WORK_ROWS, kernel.WORK_SQUARES, len(body.body.stiffness),
+                                 len(body.rotations)))
     elements = max((sum(t.start.size for t in one.triplets) for one in model.loads), default=0)
     return max([*rows, 64, 4 * elements])
 

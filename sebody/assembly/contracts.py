@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.numbering import Numbering
 from sebody.errors import InputError
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import (
     INDEX,
     ContractError,
@@ -120,8 +121,10 @@ def positions_of(element: Element) -> int:
 def counts_of(body: Superelement) -> Counts:
     """The counts that sizes of a superelement's rows are products of."""
     reduced = body.body
+    extra = reduced.invariants if INERTIA_OPTIONS[body.inertia].field else None
     return superelement_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
-                               reduced.planar, _width(body))
+                               reduced.planar, _width(body), extra.slaved if extra else 0,
+                               extra.resultants if extra else 0)
 
 
 def _width(body: Superelement) -> int:

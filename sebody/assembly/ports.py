@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.engine.tables import AMPLITUDE, PIECE, POLYNOMIAL
 from sebody.kernels.loader import element_kernel
-from sebody.model.histories import History
+from sebody.model.histories import History, same_waves
 from sebody.model.mechanism import Mechanism
 
 
@@ -49,10 +50,19 @@ def port_arrays(histories: list[History],
     """The members of `System` for histories of ports and for prescribed coordinates."""
     return {"table_at": np.array([0, *accumulate(len(h.times) for h in histories)], dtype=np.int64),
             "table_times": np.array([t for h in histories for t in h.times], dtype=float),
-            "table_cubics": np.array([c for h in histories for c in h.cubics],
-                                     dtype=float).reshape(-1, 4),
+            "table_pieces": _pieces(histories),
             "corners": np.array(sorted({t for h in histories for t in h.corners}), dtype=float),
             "functions": np.array([h.addresses for h in histories],
                                   dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in prescribed], dtype=np.int64).reshape(-1, 3),
             "prescribed_factor": np.array([row[3] for row in prescribed], dtype=float)}
+
+
+def _pieces(histories: list[History]) -> NDArray:
+    """Polynomials and harmonics of all pieces of all histories, (pieces, PIECE)."""
+    found = np.zeros((sum(len(h.pieces) for h in histories), PIECE))
+    if histories:
+        found[:, :POLYNOMIAL] = np.concatenate([h.polynomials() for h in histories])
+    if waves := same_waves(histories):
+        found[:, AMPLITUDE:] = waves
+    return found

@@ -5,7 +5,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.engine.links import place_dependent, pull_back
-from sebody.engine.tables import cubic_at
+from sebody.engine.tables import history_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.layout import C_DAMPING, ENERGY, OK, POWERS, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
@@ -50,8 +50,8 @@ def set_loads(system, loads, t):
     """Amplitudes of the power ports at a time, and their first two derivatives."""
     for k in range(system.functions.shape[0]):
         if system.functions[k, 0] == 0:
-            cubic_at(system.table_times, system.table_cubics, system.table_at[k],
-                     system.table_at[k + 1] - 1, t, loads, 3 * k)
+            history_at(system.table_times, system.table_pieces, system.table_at[k],
+                       system.table_at[k + 1] - 1, t, loads, 3 * k)
             continue
         for i in range(3):
             loads[3 * k + i] = (_call_function(system.functions[k, i], t)

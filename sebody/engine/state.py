@@ -56,6 +56,7 @@ class State(Arrays):
     integrator
     ------------------------------------------------------------------------------------------------
     aux                   (N,) auxiliary accelerations of generalized-alpha
+    aux_change            (N,) their change in the last step
     q_start               (N,) coordinates at t = 0
     q_old, v_old, a_old   (N,) coordinates, velocities, accelerations
     aux_old               (N,) auxiliary accelerations
@@ -122,6 +123,7 @@ class State(Arrays):
     frames: NDArray
     frames_old: NDArray
     aux: NDArray
+    aux_change: NDArray
     q_start: NDArray
     q_old: NDArray
     R_old: NDArray

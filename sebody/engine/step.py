@@ -58,26 +58,46 @@ def begin_step(system, state, scheme):
         state.R_old[i] = state.R[i]
     for i in range(state.frames.size):
         state.frames_old[i] = state.frames[i]
+    alpha_m, beta, gamma = scheme.alpha_m, scheme.beta, scheme.gamma
     to_a = 1.0 / (1.0 - scheme.alpha_f)
     # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
     offset = h / state.clock[AUX_STEP]
     state.clock[AUX_STEP] = h
-    for i in range(state.dq.size):      # with the auxiliary acceleration held constant
+    follow = 1.0 if _steady(system, state) and offset == 1.0 else 0.0     # not from cut steps on
+    for i in range(state.dq.size):
         q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
+        change = follow * state.aux_change[i]
         if offset != 1.0:
             aux = a + offset * (aux - a)
-            state.aux[i] = aux
         state.q_old[i], state.v_old[i], state.a_old[i], state.aux_old[i] = q, v, a, aux
-        state.dq[i] = h * v + 0.5 * h * h * aux
+        state.dq[i] = h * v + h * h * (0.5 * aux + beta * change)
         state.q[i] = q + state.dq[i]
-        state.v[i] = v + h * aux
-        state.a[i] = to_a * (aux - scheme.alpha_f * a)
+        state.v[i] = v + h * (aux + gamma * change)
+        state.a[i] = to_a * (aux + (1.0 - alpha_m) * change - scheme.alpha_f * a)
+        state.aux[i] = aux + change
     set_loads(system, state.loads, state.clock[TIME] + h)
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     update_rotations(system, state)
     state.control[ITERATION], state.control[SECANT] = 0, 0
     state.clock[LAST_NORM] = 0.0
+
+
+@compiled(forceinline=True)
+def _steady(system, state):
+    """Whether auxiliary accelerations changed in the last step as in the step before, roughly.
+
+    If so, they are predicted to go on changing like that, else to stay as they are. What Newton's
+    iteration leaves is proportional to the error of the prediction.
+    """
+    constant = linear = 0.0
+    for i in range(system.diagonal.size):
+        w, change = state.weight[i], state.aux[i] - state.aux_old[i]
+        bend = change - state.aux_change[i]
+        state.aux_change[i] = change
+        constant += change * change * w * w
+        linear += bend * bend * w * w
+    return linear < constant
 
 
 @compiled(forceinline=True)

@@ -69,7 +69,7 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     table_at            (p + 1,) where the table of each port begins
     table_times         times of the tables, ascending in each
-    table_cubics        (times, 4) see `sebody.model.histories`
+    table_pieces        (times, PIECE) see `sebody.engine.tables`
     functions           (p, 3) addresses of a compiled history and its rates, 0 for a table
     corners             times at which a history has a corner, ascending
     prescribed          (k, 3) coordinate, port, 1 for rotations
@@ -119,7 +119,7 @@ class System(Arrays):
     magnitude: NDArray
     table_at: NDArray
     table_times: NDArray
-    table_cubics: NDArray
+    table_pieces: NDArray
     corners: NDArray
     functions: NDArray
     prescribed: NDArray

@@ -1,22 +1,43 @@
-"""Tables of loads and drives in compiled code."""
+"""Histories of loads and drives in compiled code."""
+
+import numpy as np
 
 from sebody.kernels.pipeline import compiled
 
+# numbers of a piece: those of its polynomial by ascending powers, then amplitude, angular
+# frequency and phase of its harmonic
+POLYNOMIAL = 6
+AMPLITUDE, OMEGA, PHASE = range(POLYNOMIAL, POLYNOMIAL + 3)
+PIECE = POLYNOMIAL + 3
+
 
 @compiled
-def cubic_at(times, cubics, first, last, t, out, at):
-    """Value and two rates at t of the cubics `first` to `last`; constant outside their times."""
-    out[at + 1], out[at + 2] = 0.0, 0.0
-    if t <= times[first]:
-        out[at] = cubics[first, 0]
-        return
-    if t >= times[last]:
-        out[at] = cubics[last, 0]
-        return
+def history_at(times, pieces, first, last, t, out, at):
+    """Value and two rates at t of the pieces `first` to `last`; constant before the first.
+
+    At the time of a piece the value and rates are those of this piece: a motion that starts from
+    speed has it at once.
+    """
     i = first
-    while times[i + 1] < t:
+    while i < last and times[i + 1] <= t:
         i += 1
-    x, c = t - times[i], cubics[i]
-    out[at] = c[0] + x * (c[1] + x * (c[2] + x * c[3]))
-    out[at + 1] = c[1] + x * (2.0 * c[2] + 3.0 * x * c[3])
-    out[at + 2] = 2.0 * c[2] + 6.0 * x * c[3]
+    x = max(t - times[i], 0.0)
+    a, b, c, d, e, f = (pieces[i, 0], pieces[i, 1], pieces[i, 2], pieces[i, 3], pieces[i, 4],
+                        pieces[i, 5])
+    out[at] = a + x * (b + x * (c + x * (d + x * (e + x * f))))
+    out[at + 1] = b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e + x * 5.0 * f)))
+    out[at + 2] = 2.0 * c + x * (6.0 * d + x * (12.0 * e + x * 20.0 * f))
+    if pieces[i, AMPLITUDE] != 0.0:
+        _add_harmonic(pieces, i, x, out, at)
+    if t < times[first]:
+        out[at + 1], out[at + 2] = 0.0, 0.0
+
+
+@compiled
+def _add_harmonic(pieces, i, x, out, at):
+    w = pieces[i, OMEGA]
+    angle = w * x + pieces[i, PHASE]
+    wave = pieces[i, AMPLITUDE] * np.sin(angle)
+    out[at] += wave
+    out[at + 1] += pieces[i, AMPLITUDE] * w * np.cos(angle)
+    out[at + 2] -= w * w * wave

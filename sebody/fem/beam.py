@@ -8,11 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.fem import beam_element
-from sebody.fem.model import PLANAR, SPATIAL, FEModel, assemble
+from sebody.fem.beam_model import beam_model
+from sebody.fem.model import FEModel
 from sebody.fem.section import AnySection, section_at
-
-_IN_PLANE = np.array([0, 1, 5, 6, 7, 11])   # rows of an element in the xy plane
 
 
 def straight_beam(
@@ -135,34 +133,19 @@ def _count(elements: int) -> int:
 def _beam_model(
     nodes: NDArray, pairs: NDArray, section: AnySection, elements: int, up: ArrayLike | None
 ) -> FEModel:
-    """Assemble one element per node pair, `elements` a member, turned into global axes."""
-    planar = nodes.shape[1] == 2
+    """One element for each pair of nodes; `elements` of them in a row make a member."""
     if up is not None:
-        if planar:
+        if nodes.shape[1] == 2:
             raise InputError("up is for beams in space: a planar beam bends with inertia_z")
         up = inputs.vector(up, "up", 3)
-    node_dofs = PLANAR if planar else SPATIAL
     sections = [section_at(section, (k + 0.5) / elements) for k in range(elements)]
-    stiffness, mass = [], []
-    for k, (first, last) in enumerate(pairs):
-        axis = np.zeros(3)
-        axis[: nodes.shape[1]] = nodes[last] - nodes[first]
-        turn = np.kron(np.eye(4), _section_axes(axis, up))  # global to member axes
-        of_element = sections[k % elements], float(np.linalg.norm(axis))
-        for target, local in ((stiffness, beam_element.stiffness(*of_element)),
-                              (mass, beam_element.mass(*of_element))):
-            matrix = turn.T @ local @ turn
-            target.append((matrix + matrix.T) / 2)
-    rows = np.arange(len(node_dofs))
-    dofs = np.concatenate([len(node_dofs) * pairs[:, [end]] + rows for end in (0, 1)], axis=1)
-    kept = np.ix_(range(len(pairs)), *[_IN_PLANE if planar else range(12)] * 2)
-    size = len(nodes) * len(node_dofs)
-    return FEModel(
-        assemble(dofs, np.array(stiffness)[kept], size),
-        assemble(dofs, np.array(mass)[kept], size),
-        nodes,
-        node_dofs,
-    )
+    members = pairs.reshape(-1, elements, 2)
+    lines = np.zeros((len(members), 3))
+    lines[:, : nodes.shape[1]] = nodes[members[:, -1, 1]] - nodes[members[:, 0, 0]]
+    axes = np.array([_section_axes(line, up) for line in lines])
+    lengths = np.linalg.norm(lines, axis=1) / elements
+    return beam_model(nodes, pairs, np.repeat(lengths, elements),
+                      np.repeat(axes, elements, axis=0), sections * len(members))
 
 
 def _section_axes(axis: NDArray, up: ArrayLike | None) -> NDArray:

@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
 
 from sebody import inputs
 from sebody.fem.model import SOLID, FEModel, assemble
@@ -59,20 +60,68 @@ def hexahedral_block(
     step = ((_CORNERS + 1) / 2).astype(int) @ np.array([1, nx, nx * ny])
     connectivity = np.flatnonzero(inside)[:, None] + step
     dofs = (3 * connectivity[:, :, None] + np.arange(3)).reshape(len(connectivity), 24)
+    *matrices, stresses, slopes = _brick(size / counts, youngs_modulus, poisson_ratio, density)
     stiffness, mass = (
         assemble(dofs, np.broadcast_to(matrix, (len(dofs), 24, 24)), 3 * len(nodes))
-        for matrix in _brick(size / counts, youngs_modulus, poisson_ratio, density)
+        for matrix in matrices
     )
-    return FEModel(stiffness, mass, nodes, SOLID)
+    return FEModel(stiffness, mass, nodes, SOLID,
+                   geometric_stiffness=BrickPrestress(dofs, stresses, slopes, 3 * len(nodes)))
+
+
+class BrickPrestress:
+    """Geometric stiffness ``integral sigma_ij N_a,i N_b,j (x) I`` of the linear stresses.
+
+    O.C. Zienkiewicz and R.L. Taylor, The Finite Element Method, vol. 2. Incompatible modes take
+    part in the stresses alone.
+
+    Parameters
+    ----------
+    dofs : (n, 24)
+        DOFs of the elements, all alike.
+    stresses : (g, 6, 24)
+        Stress at each integration point times its volume, of unit DOFs.
+    slopes : (g, 8, 3)
+        Gradients of the nodes' shape functions there [1/length].
+    size : int
+        Number of DOFs.
+    """
+
+    def __init__(self, dofs: NDArray, stresses: NDArray, slopes: NDArray, size: int):
+        self._dofs, self._size = dofs, size
+        # of unit stresses: (xx, yy, zz, yz, zx, xy)
+        parts = [slopes[:, :, None, i] * slopes[:, None, :, j] for i in range(3) for j in range(3)]
+        whole = np.array(parts).reshape(3, 3, *parts[0].shape)
+        units = [whole[i, i] for i in range(3)] + [
+            whole[i, j] + whole[j, i] for i, j in ((1, 2), (2, 0), (0, 1))]
+        # rows of the DOFs, columns of the pairs of nodes
+        self._factors = np.einsum("gsa,sgmn->amn", stresses, np.array(units)).reshape(24, 64)
+
+    def __call__(self, displacement: NDArray) -> sparse.csc_array:
+        """Geometric stiffness (n_dofs, n_dofs) of the displacement (n_dofs,) of a prestress."""
+        by_nodes = (displacement[self._dofs] @ self._factors).reshape(-1, 8, 8)
+        nodes = self._dofs[:, ::3] // 3
+        one = assemble(nodes, (by_nodes + by_nodes.transpose(0, 2, 1)) / 2, self._size // 3)
+        return sparse.csc_array(sparse.kron(one, sparse.eye_array(3)))
 
 
 def _brick(
     edges: NDArray, youngs_modulus: float, poisson_ratio: float, density: float
-) -> tuple[NDArray, NDArray]:
-    """Stiffness and mass (24, 24) of one rectangular element, 2 x 2 x 2 Gauss points."""
+) -> tuple[NDArray, ...]:
+    """One rectangular element, 2 x 2 x 2 Gauss points.
+
+    Returns
+    -------
+    stiffness, mass : (24, 24)
+    stresses : (8, 6, 24)
+        At the Gauss points, times their volume.
+    slopes : (8, 8, 3)
+        Gradients of the shape functions of the nodes there.
+    """
     elasticity = _elasticity(youngs_modulus, poisson_ratio)
     weight = np.prod(edges) / 8
     full, mass = np.zeros((33, 33)), np.zeros((8, 8))
+    strains, gradients = [], []
     for point in _CORNERS / np.sqrt(3):
         factors = (1 + _CORNERS * point) / 2
         shape = factors.prod(axis=1)
@@ -81,13 +130,18 @@ def _brick(
             others = np.delete(factors, axis, axis=1).prod(axis=1)
             slopes[:8, axis] = _CORNERS[:, axis] / 2 * others
             slopes[8 + axis, axis] = -2 * point[axis]
-        strain = _strain(slopes * 2 / edges)
+        gradients.append(slopes * 2 / edges)
+        strain = _strain(gradients[-1])
+        strains.append(strain)
         full += weight * strain.T @ elasticity @ strain
         mass += weight * density * np.outer(shape, shape)
     own, extra = slice(0, 24), slice(24, 33)
     condensed = np.linalg.solve(full[extra, extra], full[extra, own])
     stiffness = full[own, own] - full[own, extra] @ condensed
-    return (stiffness + stiffness.T) / 2, np.kron(mass, np.eye(3))
+    whole = np.vstack([np.eye(24), -condensed])     # incompatible modes follow the nodes
+    stresses = weight * elasticity @ np.array(strains) @ whole
+    return ((stiffness + stiffness.T) / 2, np.kron(mass, np.eye(3)), stresses,
+            np.array(gradients)[:, :8])
 
 
 def _elasticity(youngs_modulus: float, poisson_ratio: float) -> NDArray:

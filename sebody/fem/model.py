@@ -1,5 +1,6 @@
 """What an FE program hands over: matrices, node coordinates and the meaning of the DOFs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from scipy import sparse
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.mass_field import MassField, nodal_field
 
 SPATIAL = ("x", "y", "z", "rx", "ry", "rz")
 PLANAR = ("x", "y", "rz")
@@ -28,6 +30,12 @@ class FEModel:
     node_dofs : tuple of str
         DOFs of one node in order: ``('x', 'y', 'z', 'rx', 'ry', 'rz')``, planar
         ``('x', 'y', 'rz')``, solids ``('x', 'y', 'z')``; an ``r`` marks a rotation.
+    mass_field : MassField, optional
+        What the mass matrix is made of, for the inertia of the moving body. Models without
+        rotations whose mass is the same along x, y and z have that of their nodes by default.
+    geometric_stiffness : function, optional
+        Geometric stiffness (n_dofs, n_dofs), sparse and symmetric, of the linear stresses that a
+        displacement (n_dofs,) of the free body causes.
 
     Raises
     ------
@@ -40,6 +48,8 @@ class FEModel:
     mass: sparse.csc_array
     coordinates: NDArray
     node_dofs: tuple[str, ...] = SPATIAL
+    mass_field: MassField | None = None
+    geometric_stiffness: Callable[[NDArray], sparse.csc_array] | None = None
 
     def __post_init__(self) -> None:
         layouts = f"use {SPATIAL}, {PLANAR} or {SOLID}"
@@ -66,6 +76,10 @@ class FEModel:
                     f"{self.dofs_per_node} DOFs each need ({size}, {size})"
                 )
             object.__setattr__(self, name, matrix)
+        if self.mass_field is not None:
+            self.mass_field.check(size, dimension)
+        elif self.node_dofs == SOLID:
+            object.__setattr__(self, "mass_field", nodal_field(self.mass, coordinates))
 
     @property
     def dofs_per_node(self) -> int:

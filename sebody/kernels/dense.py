@@ -29,16 +29,20 @@ def columns_times(typingctx, A, x, out, rows, columns):
     return types.void(floats, floats, floats, types.int64, types.int64), codegen
 
 
-@intrinsic
-def _add_columns_times(typingctx, A, x, out, rows, columns, height):
+@compiled
+def block_times(A, x, out, rows, columns, height):
+    """``out = A x`` of the first `rows` of some columns that are `height` numbers apart.
+
+    Eight vectors of rows at a time, so that a factor is read once for all of them: tall matrices
+    take half the time of `columns_times`.
+    """
+    _block(A, x, out, rows, columns, height)
+
+
+@compiled
+def add_block_times(A, x, out, rows, columns, height):
     """``out += A x`` of the first `rows` of some columns that are `height` numbers apart."""
-    floats = types.CPointer(types.float64)
-
-    def codegen(context, builder, sig, args):
-        _multiply(builder, *args, True)
-        return context.get_dummy_value()
-
-    return types.void(floats, floats, floats, *[types.int64] * 3), codegen
+    _add_block(A, x, out, rows, columns, height)
 
 
 @compiled
@@ -55,6 +59,82 @@ def arrow_times(A, x, out, n, filled):
         _add_columns_times(at(A, filled * height), at(x, filled), out, filled, n - filled, height)
         for k in range(filled, n):
             out[k] += A[k * height + k] * x[k]
+
+
+@compiled
+def rows_times(A, x, out, rows, columns, height):
+    """``out_k = a_k . x`` with columns a_k that are `height` numbers apart.
+
+    Vectors are read to their padding, where those of A are zero and `x` is finite.
+    """
+    _dots(A, x, out, rows, columns, height)
+
+
+@compiled
+def add_rows_times(A, x, out, rows, columns, height):
+    """``out_k += a_k . x``; see `rows_times`."""
+    _add_dots(A, x, out, rows, columns, height)
+
+
+def _dot(builder, A, x, out, rows, columns, height, add):
+    """Vector operations for products of columns with a vector, some columns at a time."""
+    word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
+    last = _whole_vectors(builder, rows)
+    done = word(0)
+    for count in (4, 1):
+        totals = [cgutils.alloca_once(builder, vector) for _ in range(count)]
+        end = builder.sub(columns, builder.srem(builder.sub(columns, done), word(count)))
+        with cgutils.for_range_slice(builder, done, end, word(count)) as (column, _):
+            for total in totals:
+                builder.store(ir.Constant(vector, [0.0] * LANES), total)
+            with cgutils.for_range_slice(builder, word(0), last, word(LANES)) as (row, _):
+                factor = _load(builder, x, row, vector)
+                for k, total in enumerate(totals):
+                    place = builder.mul(builder.add(column, word(k)), height)
+                    product = builder.fmul(_load(builder, A, builder.add(place, row), vector),
+                                           factor, flags=("contract",))
+                    builder.store(builder.fadd(builder.load(total), product,
+                                               flags=("contract",)), total)
+            for k, total in enumerate(totals):
+                result = _added_up(builder, builder.load(total))
+                place = builder.gep(out, [builder.add(column, word(k))])
+                builder.store(builder.fadd(builder.load(place), result) if add else result, place)
+        done = end
+
+
+def _added_up(builder, numbers):
+    """Sum of the lanes of a vector."""
+    parts = [builder.extract_element(numbers, ir.IntType(32)(lane)) for lane in range(LANES)]
+    while len(parts) > 1:
+        parts = [builder.fadd(a, b) for a, b in zip(parts[::2], parts[1::2], strict=True)]
+    return parts[0]
+
+
+def _multiply_wide(builder, A, x, out, rows, columns, height, add):
+    """Vector operations for ``out = A x``, or ``out += A x``, some vectors of rows at a time."""
+    word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
+    last = _whole_vectors(builder, rows)
+    done = word(0)
+    for count in (8, 4, 2, 1):
+        totals = [cgutils.alloca_once(builder, vector) for _ in range(count)]
+        rest = builder.srem(builder.sub(last, done), word(count * LANES))
+        end = builder.sub(last, rest)
+        with cgutils.for_range_slice(builder, done, end, word(count * LANES)) as (row, _):
+            places = [builder.add(row, word(k * LANES)) for k in range(count)]
+            for place, total in zip(places, totals, strict=True):
+                builder.store(_load(builder, out, place, vector) if add else
+                              ir.Constant(vector, [0.0] * LANES), total)
+            with cgutils.for_range_slice(builder, word(0), columns, word(1)) as (column, _):
+                factor = _broadcast(builder, builder.load(builder.gep(x, [column])), vector)
+                first = builder.mul(column, height)
+                for place, total in zip(places, totals, strict=True):
+                    entries = _load(builder, A, builder.add(first, place), vector)
+                    product = builder.fmul(entries, factor, flags=("contract",))
+                    builder.store(builder.fadd(builder.load(total), product,
+                                               flags=("contract",)), total)
+            for place, total in zip(places, totals, strict=True):
+                _store(builder, builder.load(total), out, place)
+        done = end
 
 
 def _multiply(builder, A, x, out, rows, columns, height, add):
@@ -167,6 +247,50 @@ def _broadcast(builder, number, vector):
     lane = builder.insert_element(undefined, number, ir.IntType(32)(0))
     lanes = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
     return builder.shuffle_vector(lane, undefined, lanes)
+
+
+def _product(write, add):
+    """The operation with a block that `write` writes in vector operations."""
+    @intrinsic
+    def product(typingctx, A, x, out, rows, columns, height):
+        floats = types.CPointer(types.float64)
+
+        def codegen(context, builder, sig, args):
+            write(builder, *args, add)
+            return context.get_dummy_value()
+
+        return types.void(floats, floats, floats, *[types.int64] * 3), codegen
+    return product
+
+
+_block, _add_block = (_product(_multiply_wide, add) for add in (False, True))
+_dots, _add_dots = (_product(_dot, add) for add in (False, True))
+_add_columns_times = _product(_multiply, True)
+
+
+@compiled
+def gather(row, kept, to, count, end):
+    """Some numbers of a row, by their places, and zeros to an end."""
+    for k in range(count):
+        to[k] = row[int(kept[k])]
+    for k in range(count, end):
+        to[k] = 0.0
+
+
+@compiled
+def scatter(row, kept, to, count, size):
+    """The opposite: numbers to their places, zeros to the others."""
+    for k in range(size):
+        to[k] = 0.0
+    for k in range(count):
+        to[int(kept[k])] = row[k]
+
+
+@compiled
+def scale(row, factor, count):
+    """Numbers times a factor."""
+    for k in range(count):
+        row[k] *= factor
 
 
 @compiled

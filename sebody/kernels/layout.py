@@ -10,6 +10,8 @@ N_POSITIONS   nodes of the element that keep their position
 N_ROTATIONS   nodes that keep their rotation
 D             coordinates of a position: 3, in a plane 2
 n             unknowns of the element
+free          local coordinates that determine the others in their frame, in option C
+N             these, and the coordinates that follow them
 ============  ======================================================================================
 """
 
@@ -115,7 +117,7 @@ class Row(NamedTuple):
             shape = tuple(counts[s] if isinstance(s, str) else s for s in part.shape)
             piece = row[self.slices(counts)[part.name]]
             if part.columns:
-                values[part.name] = piece.reshape(shape[1], -1)[:, :shape[0]].T
+                values[part.name] = piece.reshape(shape[1], whole_vectors(shape[0]))[:, :shape[0]].T
             else:
                 values[part.name] = piece.reshape(shape)
         return values
@@ -251,14 +253,37 @@ SUPERELEMENT_CONSTANTS = (
     Part("full", (1,), "leading rows and columns of S, M and C that are not diagonal"),
     Part("masses", (1,), "mass"),
 )
+MOST_SLAVED = 12        # coordinates that may follow the unknowns: load modes of three
+# translations, three rotations and six products of angular velocities
+MARGIN = MOST_SLAVED + 6    # what scratch rows of option C have beyond n: these, a force, a moment
 DAMPING_CONSTANTS = (Part("C", ("n", "n"), "reduced damping", columns=True),)
 
 
-def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int
-                        ) -> dict[str, int]:
+def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int,
+                        slaved: int = 0, resultants: int = 0) -> dict[str, int]:
     """The counts that sizes of a superelement's rows are products of."""
-    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, "D": 2 if planar else 3,
-            "n": unknowns}
+    axes = axes_of(planar)
+    free = unknowns - (axes["lines"] - axes["pairs"])
+    N = free + slaved
+    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, **axes, "n": unknowns,
+            "free": free, "N": N, "resultants": resultants, "quadratic": axes["blocks"] * N,
+            "slaving": slaved * free, "stressing": resultants * free}
+
+
+def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: int) -> int:
+    """Scratch memory of a superelement's kernel: rows, and squares of as many rows."""
+    longest = max(unknowns + MARGIN * (work_squares > 0), 9 * rotations)
+    return (work_rows + work_squares * (unknowns + MARGIN)) * whole_vectors(longest)
+
+
+def axes_of(planar: bool) -> dict[str, int]:
+    """The counts that follow from the space: of a position, a rotation, a symmetric matrix.
+
+    ``lines`` are a first moment, a rotation and an inertia for each coordinate, ``blocks`` an
+    inertia and two rotations.
+    """
+    D, turns, pairs = (2, 1, 1) if planar else (3, 3, 6)
+    return {"D": D, "pairs": pairs, "lines": D + turns + pairs, "blocks": pairs + 2 * turns}
 
 
 def first_rotation(positions: int, planar: bool) -> int:
@@ -289,6 +314,7 @@ class InertiaTraits(NamedTuple):
     summary: str
     material: bool                  # T in material angular velocities; else in those of the frame
     modes_apart: bool = False       # internal modes meet in S, M and C alone, nowhere else
+    field: bool = False             # T of the displacement field, from integrals over the body
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 
 

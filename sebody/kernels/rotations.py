@@ -64,6 +64,24 @@ def inverse_tangent_coefficients(s):
     return top / (2.0 * c2), (d_top - top * d_c2 / c2) / (2.0 * c2)
 
 
+@compiled
+def inverse_tangent_second(s):
+    """``d^2 e/ds^2`` of `inverse_tangent_coefficients`."""
+    if s < 0.25:
+        return 1 / 15120 + s * (1 / 201600 + s * (1 / 3991680 + s * (691 / 65383718400 + s * (
+            1 / 2490808320 + s * (25319 / 1778437140480000 + s * (
+                56 * 43867 / 5109094217170944000 + s * (
+                    72 * 174611 / 802857662698291200000)))))))
+    c2, c3, c4, c5 = stumpff_2345(s)
+    c6, c7, c8 = stumpff(6, s), stumpff(7, s), stumpff(8, s)
+    d_c2, d_c3 = 0.5 * (2.0 * c4 - c3), 0.5 * (3.0 * c5 - c4)
+    d_c4, d_c5, d_c6 = 0.5 * (4.0 * c6 - c5), 0.5 * (5.0 * c7 - c6), 0.5 * (6.0 * c8 - c7)
+    e = (c3 - 2.0 * c4) / (2.0 * c2)
+    d_e = 0.5 * (d_c3 - 2.0 * d_c4 - 2.0 * e * d_c2) / c2
+    dd_top = 0.5 * (3.0 * d_c5 - d_c4) - (4.0 * d_c6 - d_c5)
+    return (0.5 * dd_top - 0.5 * (2.0 * d_c4 - d_c3) * e - 2.0 * d_c2 * d_e) / c2
+
+
 @compiled(fastmath=False)      # for the time loop
 def tangent_operator(x, y, z):
     """``T(psi)``, row by row: ``Omega = T(psi) psidot``."""

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 from numpy.typing import ArrayLike
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem import planar_beam, straight_beam
 from sebody.fem.section import AnySection, part_of
@@ -60,13 +61,22 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     InputError
         No element, elements that cannot be divided among the bodies, or names that are taken.
     """
-    first, last = (known(model, n) for n in ends)
-    bodies = elements if bodies is None else bodies
-    if elements != int(elements) or elements < 1:
-        raise InputError(f"beam {name!r} has {elements} elements: give a whole number >= 1")
-    if bodies != int(bodies) or bodies < 1 or elements % bodies:
-        raise InputError(f"beam {name!r}: {elements} elements cannot be divided among {bodies} "
-                         "bodies: give a multiple")
+    inputs.name(name, "name of a beam")
+    pair = inputs.items(ends, f"ends of beam {name!r}", "give two nodes")
+    if len(pair) != 2:
+        raise inputs.refusal(f"ends of beam {name!r}", ends, "give two nodes")
+    first, last = (known(model, n) for n in pair)
+    elements = inputs.integer(elements, "elements", least=1, remedy=f"beam {name!r} has "
+                              f"{inputs.shown(elements)} elements: give a whole number >= 1")
+    undivided = (f"beam {name!r}: {elements} elements cannot be divided among "
+                 f"{inputs.shown(bodies)} bodies: give a multiple")
+    bodies = elements if bodies is None else inputs.integer(bodies, "bodies", least=1,
+                                                            remedy=undivided)
+    damping = inputs.number(damping, f"beam {name!r}: damping", least=0)
+    if up is not None and model.planar:
+        raise InputError(f"beam {name!r}: up is for beams in space, leave it out")
+    if elements % bodies:
+        raise InputError(undivided)
     step, each = (last.point - first.point) / bodies, elements // bodies
     nodes = [first, *(node(model, f"{name} {k}", first.point + k * step)
                       for k in range(1, bodies)), last]

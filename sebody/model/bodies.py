@@ -5,10 +5,17 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.layout import layout_name
 from sebody.kernels.loader import superelement_kernel_name
-from sebody.model.frames import FRAMES, check_frame, check_options, frame_weights
+from sebody.model.frames import (
+    FRAMES,
+    check_frame,
+    check_invariants,
+    check_options,
+    frame_weights,
+)
 from sebody.model.inputs import known, refuse_taken, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
@@ -27,7 +34,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable
     nodes : iterable of Node or str
         One node for each boundary node of the body, in its order.
     frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
-    inertia : {'a', 'b'}
+    inertia : {'a', 'b', 'c'}
     rotation : (3, 3), planar (2, 2), optional
         Rotates vectors from FE axes to global axes; identity by default.
     frame_node : int
@@ -39,16 +46,20 @@ def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable
         Nodes that do not fit the body, unknown options, or no kernel for the layout (the
         message says how to make it).
     """
-    nodes = tuple(known(model, n) for n in nodes)
     _check_name(model, name, "superelement")
+    nodes = tuple(known(model, n) for n in inputs.items(
+        nodes, f"nodes of superelement {name!r}", "give a list of nodes"))
+    inputs.instance(body, f"body of superelement {name!r}", ReducedBody,
+                    "give a ReducedBody, such as craig_bampton returns")
     if body.planar != model.planar:
         raise InputError(f"superelement {name!r} is {'planar' if body.planar else 'spatial'} "
                          f"and the model is {'planar' if model.planar else 'spatial'}: use one "
                          "kind in a model")
     check_options(frame, inertia)
-    placed = body if rotation is None else body.rotated(np.asarray(rotation, dtype=float))
+    placed = body if rotation is None else body.rotated(rotation)
     _check_place(name, placed, nodes)
     check_frame(name, placed, frame)
+    check_invariants(name, placed, inertia)
     alpha, alpha_r = frame_weights(name, placed, frame, frame_node)
     layout = layout_name(placed.keeps, placed.planar)
     kernel = superelement_kernel_name(layout, FRAMES[frame].kernel, inertia, placed.modes,
@@ -76,10 +87,10 @@ def rigid_body(model: Mechanism, name: str, node: Node | str, mass: float, inert
     InputError
         A mass or inertia no body has, or a name that is taken.
     """
+    mass = _check_rigid(model, name, mass)
     node = known(model, node)
     for kind in ("position", "rotation"):
         triplet(node, kind)
-    _check_rigid(model, name, mass)
     centre = node.point if centre is None else vector(model, centre, f"centre of {name!r}")
     arm = centre - node.point
     J = _inertia(model, name, inertia)
@@ -101,7 +112,7 @@ def point_mass(model: Mechanism, name: str, node: Node | str, mass: float) -> El
     InputError
         A mass that is not positive, or a name that is taken.
     """
-    _check_rigid(model, name, mass)
+    mass = _check_rigid(model, name, mass)
     node = known(model, node)
     triplet(node, "position")
     return _add(model, Element(name, model.kind_of("point_mass"), positions(node),
@@ -115,24 +126,23 @@ def _add(model: Mechanism, body: Element) -> Element:
 
 
 def _check_name(model: Mechanism, name: str, what: str) -> None:
+    inputs.name(name, f"name of a {what}")
     if name in model.bodies or name in model.rigid_bodies:
         raise InputError(f"{what} {name!r} exists already: give it its own name")
     refuse_taken(model, name, f"{what} {name!r}")
 
 
-def _check_rigid(model: Mechanism, name: str, mass: float) -> None:
+def _check_rigid(model: Mechanism, name: str, mass: float) -> float:
     _check_name(model, name, "body")
-    if not (np.isfinite(mass) and mass > 0):
-        raise InputError(f"mass of {name!r} is {mass}: give a positive number")
+    return inputs.number(mass, f"mass of {name!r}", above=0)
 
 
-def _inertia(model: Mechanism, name: str, inertia: ArrayLike) -> NDArray:
+def _inertia(model: Mechanism, name: str, inertia: ArrayLike) -> NDArray | float:
     """Inertia about the centre of mass; moments must be those of a body."""
-    J = np.asarray(inertia, dtype=float)
+    what = f"inertia of {name!r}"
     if model.planar:
-        if J.shape != () or not (np.isfinite(J) and J >= 0):
-            raise InputError(f"inertia of {name!r} is {inertia}: give one number >= 0")
-        return J
+        return inputs.number(inertia, what, least=0, remedy="give one number >= 0")
+    J = inputs.reals(inertia, what, "give 3 x 3 finite numbers, or three principal moments")
     J = np.diag(J) if J.shape == (3,) else J
     if J.shape != (3, 3) or not np.isfinite(J).all():
         raise InputError(f"inertia of {name!r} has shape {J.shape}: give 3 x 3 finite numbers, "

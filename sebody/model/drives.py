@@ -5,7 +5,6 @@ from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
 from sebody.model import histories
-from sebody.model.histories import History
 from sebody.model.inputs import (
     along,
     axes,
@@ -40,11 +39,12 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
 
     Parameters
     ----------
-    motion : table or tuple of three functions
-        See `sebody.model.histories.motion`; zero at the start [rad].
+    motion : table, function, tuple of three functions or ready profile
+        The angle, counted from where the nodes start: its value at t = 0 is taken off [rad]. A
+        rate that it has at t = 0 is that of the start. See `sebody.model.histories.motion`.
     """
     a, b = pair(model, node, to, "drive", ("rotation",))
-    history = _starting_at_zero(histories.motion(motion), a)
+    history = histories.motion(motion)
     vectors = None if model.planar else axes(model, axis, "drive", a)
     constants = dict(zip(("n", "m"), vectors[1:], strict=True)) if vectors else {}
     name = chosen_name(model, name, f"angle at {a.name}")
@@ -58,13 +58,13 @@ def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayL
 
     Parameters
     ----------
-    motion : table or tuple of three functions
-        The displacement, zero at the start [length]; see `sebody.model.histories.motion`.
+    motion : table, function, tuple of three functions or ready profile
+        The displacement, counted from where the nodes start [length]; see `drive_angle`.
     """
     a, b = pair(model, node, to, "drive")
     vectors = along(model, axis, "drive", a)
     constants = {"e": vectors[0], "start": vectors[0] @ (b.point - a.point)}
-    history = _starting_at_zero(histories.motion(motion), a)
+    history = histories.motion(motion)
     name = chosen_name(model, name, f"slide at {a.name}")
     equation = Element(name, model.kind_of("slide_drive"), positions(a, b) + rotations(a),
                        constants, 1, history)
@@ -80,8 +80,8 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     direction : (3,), planar (2,); of a planar rotation a number
         For positions, the motion times this vector is added to the initial position, and several
         motions add up. For rotations, the axis about which the motion is the angle.
-    motion : table or tuple of three functions
-        See `sebody.model.histories.motion`; zero at the start.
+    motion : table, function, tuple of three functions or ready profile
+        Counted from where the node starts; see `drive_angle`.
     what : {'position', 'rotation'}
 
     Raises
@@ -90,7 +90,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
         A rotation moved about two axes, or a dependent position at the end of a rigid link.
     """
     node = known(model, node)
-    if what not in ("position", "rotation"):
+    if not isinstance(what, str) or what not in ("position", "rotation"):
         raise InputError(f"cannot move {what!r}: use position or rotation")
     moved = triplet(node, what)
     if what == "position":
@@ -103,7 +103,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     if not np.linalg.norm(way) > 0:
         raise InputError(f"motion of {moved.name} has the direction {direction}: give one "
                          "that is not zero")
-    history = _starting_at_zero(histories.motion(motion), node)
+    history = histories.motion(motion)
     count = len(moved.motions) + 1
     name = chosen_name(model, name, f"motion{f' {count}' * (count > 1)} of {moved.name}")
     hold(model, node, what)
@@ -114,12 +114,3 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
 def _drive(model: Mechanism, drive: Joint) -> Joint:
     model.joints.append(drive)
     return drive
-
-
-def _starting_at_zero(history: History, node: Node) -> History:
-    value = (history.functions[0].ctypes(0.0) if history.functions else
-             np.interp(0.0, history.times, [c[0] for c in history.cubics]))
-    if abs(value) > 1e-9:
-        raise InputError(f"the motion at {node.name!r} is {value:.6g} at t = 0: motions count "
-                         "from the start, take that off")
-    return history

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.generated import options
 from sebody.kernels.layout import FrameTraits
@@ -26,10 +27,28 @@ FRAMES["node"] = FRAMES["converged_mean"]._replace(on_one_node=True)    # the me
 
 def check_options(frame: str, inertia: str) -> None:
     """Refuse options that do not exist."""
-    if frame not in FRAMES:
+    if not isinstance(frame, str) or frame not in FRAMES:
         raise InputError(f"frame {frame!r} is unknown: use one of {', '.join(sorted(FRAMES))}")
-    if inertia not in INERTIAS:
+    if not isinstance(inertia, str) or inertia not in INERTIAS:
         raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
+    if options.INERTIA_OPTIONS[inertia].field and FRAMES[frame].traits.incremental:
+        others = ", ".join(sorted(n for n, f in FRAMES.items() if not f.traits.incremental))
+        raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "
+                         f"the state alone, which {frame!r} does not: use one of {others}")
+
+
+def check_invariants(name: str, body: ReducedBody, inertia: str) -> None:
+    """Refuse an option that needs more of a body than its reduced matrices, where it has no more.
+
+    Raises
+    ------
+    InputError
+        With the remedy.
+    """
+    if options.INERTIA_OPTIONS[inertia].field and body.invariants is None:
+        raise InputError(f"superelement {name!r}: inertia {inertia!r} needs the mass and modes of "
+                         "the FE model, and the body has reduced matrices alone: reduce it from a "
+                         "model, or use inertia='b'")
 
 
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:
@@ -55,6 +74,7 @@ def frame_weights(name: str, body: ReducedBody, frame: str,
     """Weights of positions and rotations in the frame; `node` carries frames on one node."""
     if not FRAMES[frame].on_one_node:
         return body_weights(body)
+    node = inputs.integer(node, "frame_node")
     if node not in body.position_nodes or node not in body.rotation_nodes:
         raise InputError(f"superelement {name!r}: boundary node {node} cannot carry the frame, it "
                          "needs both its position and its rotation: choose a full node")

@@ -1,29 +1,44 @@
-"""Histories of loads and drives: tables, or a user's functions compiled for the loop.
+"""Histories of loads and motions of drives: pieces of formulas, or functions of a user.
 
-Every history is a piecewise cubic or three compiled functions: value and two rates. Loads need the
-value alone, drives all three.
+A history of pieces is on each of its intervals a polynomial of degree five at most plus a harmonic:
+see `History`. Loads need the value alone, drives its first two derivatives, too.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+from math import cos, sin
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
-from sebody.kernels.user_functions import compile_history
+from sebody.kernels.user_functions import UserFunction, compile_history
+from sebody.model.derivatives import rates_of
 
+LOAD, MOTION = "load history", "motion of a drive"
 SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
+COEFFICIENTS = 6        # most of a polynomial
+SMALL = 1e-9            # jump of a value or rate, relative to its size, that is rounding
+
+Source = "ArrayLike | Callable | tuple[Callable, Callable, Callable] | History | None"
 
 
 @dataclass(frozen=True)
 class History:
-    """A function of time: cubics ``sum_k c_k (t - t_i)^k``, constant outside, or functions."""
+    """A function of time with its first two derivatives.
+
+    From the time t_i on, and until the next one, the value is
+    ``sum_k c_k x^k + A sin(w x + p)`` with ``x = t - t_i``; before the first time it is constant.
+    """
 
     times: tuple[float, ...] = (0.0,)
-    cubics: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0, 0.0),)
-    functions: tuple = ()       # keeps the compiled functions alive
-    corners: tuple[float, ...] = ()     # times at which the rate jumps
+    pieces: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0, 0.0),)     # c_0, c_1, ... of each
+    waves: tuple[tuple[float, float, float], ...] = ()      # A, w, p of each; none at all: zeros
+    functions: tuple[UserFunction, ...] = ()    # in place of pieces: value and its rates
+    corners: tuple[float, ...] = ()     # times at which it is not smooth: variable steps end there
 
     @property
     def addresses(self) -> tuple[int, int, int]:
@@ -31,11 +46,77 @@ class History:
         given = [f.address for f in self.functions]
         return (*given, *[0] * (3 - len(given)))
 
+    def at(self, t: float) -> NDArray:
+        """Value and two rates at a time, (3,); at the time of a piece those of this piece."""
+        if self.functions:
+            return np.array([f.ctypes(t) for f in self.functions] + [0.0] * (
+                3 - len(self.functions)))
+        k = int(np.searchsorted(self.times, t, side="right")) - 1
+        return self.of_piece(max(k, 0), t) if k >= 0 else np.array(
+            [self.of_piece(0, self.times[0])[0], 0.0, 0.0])
 
-def history(source: "ArrayLike | Callable[[float], float] | History | None") -> History:
-    """A load history from None (constant 1), a table ``[(t, value), ...]`` or a function of time.
+    def values(self, times: NDArray) -> NDArray:
+        """Values at some times, (n,)."""
+        if self.functions:
+            return np.array([self.functions[0].ctypes(t) for t in times])
+        starts = np.array(self.times)
+        row = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
+        x = np.maximum(times - starts[row], 0.0)
+        found = (self.polynomials()[row] * x[:, None]**np.arange(COEFFICIENTS)).sum(axis=1)
+        if self.waves:
+            A, w, p = np.array(self.waves)[row].T
+            found += A * np.sin(w * x + p)
+        return found
 
-    A table is interpolated linearly and keeps its end values outside; a function is compiled.
+    def polynomials(self) -> NDArray:
+        """Coefficients of all pieces, (pieces, COEFFICIENTS)."""
+        found = np.zeros((len(self.pieces), COEFFICIENTS))
+        for row, coefficients in zip(found, self.pieces, strict=True):
+            row[:len(coefficients)] = coefficients
+        return found
+
+    def of_piece(self, k: int, t: float) -> NDArray:
+        """Value and two rates of a piece, also outside its interval."""
+        x, polynomial = t - self.times[k], np.polynomial.Polynomial(self.pieces[k])
+        found = np.array([polynomial.deriv(m)(x) if m else polynomial(x) for m in range(3)])
+        if self.waves:
+            A, w, p = self.waves[k]
+            s, c = sin(w * x + p), cos(w * x + p)
+            found += A * np.array([s, w * c, -w * w * s])
+        return found
+
+    def jumps(self) -> list[tuple[float, NDArray, NDArray]]:
+        """Times after the start at which value or rates jump, with what they are on both sides."""
+        found = []
+        for k, t in enumerate(self.times):
+            if t <= 0.0:
+                continue
+            after = self.of_piece(k, t)
+            before = self.of_piece(k - 1, t) if k else np.array([after[0], 0.0, 0.0])
+            if (np.abs(after - before) > SMALL * np.maximum(np.abs(after), np.abs(before))).any():
+                found.append((t, before, after))
+        return found
+
+    def with_corners(self) -> "History":
+        """This history of pieces, its corners where its value or a rate jumps."""
+        return replace(self, corners=tuple(t for t, *_ in self.jumps()))
+
+    def from_zero(self) -> "History":
+        """The same less its value at t = 0."""
+        value = self.at(0.0)[0]
+        if value == 0.0 or not np.isfinite(value):
+            return self
+        if self.functions:
+            return replace(self, functions=(_less(self.functions[0].function, value),
+                                            *self.functions[1:]))
+        return replace(self, pieces=tuple((c[0] - value, *c[1:]) for c in self.pieces))
+
+
+def history(source: Source) -> History:
+    """A load history from None (constant 1), a table, a function of time or a ready profile.
+
+    A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; a
+    function is compiled, of a tuple of a function and its rates the function.
 
     Raises
     ------
@@ -47,13 +128,15 @@ def history(source: "ArrayLike | Callable[[float], float] | History | None") -> 
         return History()
     if isinstance(source, History):
         return source
+    if _is_function_with_rates(source):
+        source = source[0]
     if callable(source):
-        return History(functions=(compile_history(source, "load history"),))
-    times, values = _table(source, "load history")
+        return History(functions=(compile_history(source, LOAD),))
+    times, values = table(source, LOAD)
     slopes = np.append(np.diff(values) / np.diff(times), 0.0)
-    cubics = tuple((v, s, 0.0, 0.0) for v, s in zip(values, slopes, strict=True))
     bends = np.diff(slopes, prepend=0.0) != 0.0
-    return History(tuple(times), cubics, corners=tuple(times[bends]))
+    return History(tuple(times), tuple(zip(values, slopes, strict=True)),
+                   corners=tuple(times[bends]))
 
 
 def with_corners(function: Callable[[float], float], corners: Sequence[float]) -> History:
@@ -64,53 +147,120 @@ def with_corners(function: Callable[[float], float], corners: Sequence[float]) -
     InputError
         A function Numba cannot compile, or times that are no numbers.
     """
-    times = np.asarray(corners, dtype=float)
-    if times.ndim != 1 or not np.isfinite(times).all():
-        raise InputError(f"corners are {corners}: give a list of times")
-    return History(functions=(compile_history(function, "load history"),),
-                   corners=tuple(times.tolist()))
+    remedy = f"corners are {inputs.shown(corners)}: give a list of times"
+    times = np.unique(inputs.vector(corners, "corners", remedy=remedy))
+    inputs.function(function, "function", "give a function of time")
+    return History(functions=(compile_history(function, LOAD),), corners=tuple(times.tolist()))
 
 
 def clock() -> History:
     """A history whose value is the time itself."""
-    return History((0.0, 1e30), ((0.0, 1.0, 0.0, 0.0), (1e30, 0.0, 0.0, 0.0)))
+    return History((0.0,), ((0.0, 1.0),))
 
 
-def motion(source: "ArrayLike | tuple[Callable, Callable, Callable] | History") -> History:
-    """The motion of a drive: a position and its first two derivatives.
+def motion(source: Source) -> History:
+    """The motion of a drive: a position and its first two derivatives, less its value at t = 0.
 
     Parameters
     ----------
-    source : table or tuple of three functions
+    source : table, function, tuple of three functions or ready profile
         A table ``[(t, value), ...]`` becomes a cubic spline, at rest at both ends and outside.
-        Three functions of time are value, rate and second rate.
+        The rates of a function of time are derived from it by SymPy; three functions are value,
+        rate and second rate.
 
     Raises
     ------
     InputError
-        None of these, or functions that are not each other's derivatives.
+        None of these, functions that are not each other's derivatives, a function that cannot be
+        compiled or differentiated, a position or rate that jumps.
     """
     if isinstance(source, History):
-        return source
-    if isinstance(source, tuple) and len(source) == 3 and all(map(callable, source)):
-        functions = tuple(compile_history(f, "motion of a drive") for f in source)
-        _check_rates(functions)
-        return History(functions=functions)
+        if len(source.functions) == 1:
+            value = source.functions[0]
+            rates = (compile_history(f, MOTION) for f in rates_of(value.function, MOTION))
+            source = replace(source, functions=(value, *rates))
+        _refuse_jumps(source)
+        return source.from_zero()
     if callable(source):
-        raise InputError("the motion of a drive is one function: give three, (value, rate, second "
-                         "rate), or a table [(t, value), ...]")
-    times, values = _table(source, "motion of a drive")
+        source = (source, *rates_of(source, MOTION))
+    if _is_function_with_rates(source):
+        functions = tuple(compile_history(f, MOTION) for f in source)
+        _check_rates(functions)
+        return History(functions=functions).from_zero()
+    times, values = table(source, MOTION)
     if len(times) < 2:
         raise InputError("the motion of a drive has one row: give at least two rows (t, value), "
                          "or fix the node")
+    return spline_of(times, values, (0.0, 0.0)).from_zero()
+
+
+def spline_of(times: NDArray, values: NDArray, rates: tuple[float, float]) -> History:
+    """A cubic spline with these rates at its ends, constant outside."""
     from scipy.interpolate import CubicSpline  # takes 0.2 s to import
 
-    spline = CubicSpline(times, values, bc_type="clamped")
-    return History(tuple(times), (*(tuple(c) for c in spline.c[::-1].T),
-                                  (values[-1], 0.0, 0.0, 0.0)))
+    spline = CubicSpline(times, values, bc_type=((1, rates[0]), (1, rates[1])))
+    return of_cubics(times, spline.c, values[-1])
 
 
-def _check_rates(functions) -> None:
+def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> History:
+    """A history of SciPy's cubics (4, intervals), highest power first, then constant."""
+    return History(tuple(times.tolist()), (*map(tuple, coefficients[::-1].T.tolist()),
+                                           (float(last),)))
+
+
+def table(source: ArrayLike, what: str) -> tuple[NDArray, NDArray]:
+    """Times and values of a table.
+
+    Raises
+    ------
+    InputError
+        Other shapes than rows (t, value), numbers that are not finite, times that do not increase.
+    """
+    rows = inputs.reals(source, f"{what} cannot be read as numbers: it",
+                        "give rows (t, value), or a function of time")
+    if rows.ndim != 2 or rows.shape[1] != 2 or not len(rows):
+        raise InputError(f"{what} has shape {rows.shape}: give rows (t, value)")
+    if not np.isfinite(rows).all():
+        raise InputError(f"{what} contains NaN or infinite entries: give finite numbers")
+    if (np.diff(rows[:, 0]) <= 0).any():
+        raise InputError(f"times of a {what} must increase: sort the rows and merge equal times")
+    return rows[:, 0], rows[:, 1]
+
+
+def same_waves(parts: Sequence[History]) -> tuple[tuple[float, float, float], ...]:
+    """Harmonics of all pieces of some histories, zeros where one has none."""
+    if not any(part.waves for part in parts):
+        return ()
+    none = (0.0, 0.0, 0.0)
+    return tuple(wave for part in parts
+                 for wave, _ in zip_longest(part.waves, part.pieces, fillvalue=none))
+
+
+def _is_function_with_rates(source: object) -> bool:
+    return isinstance(source, tuple) and len(source) == 3 and all(map(callable, source))
+
+
+def _less(function: Callable[[float], float], value: float) -> UserFunction:
+    inner = njit(function)
+
+    def less(t):
+        return inner(t) - value
+    less.__name__ = getattr(function, "__name__", "function")
+    return compile_history(less, MOTION)
+
+
+def _refuse_jumps(given: History) -> None:
+    """Refuse a motion that no body can follow."""
+    for t, before, after in given.jumps():
+        for k, what in enumerate(("position", "rate")):
+            if abs(after[k] - before[k]) > SMALL * max(abs(after[k]), abs(before[k])):
+                raise InputError(
+                    f"motion of a drive: its {what} jumps from {before[k]:.6g} to {after[k]:.6g} "
+                    f"at t = {t:.6g}, which no body can follow: go there by rest_to_rest, "
+                    "trapezoidal or a spline; only at t = 0 may it have a speed at once")
+
+
+def _check_rates(functions: Sequence[UserFunction]) -> None:
     """Refuse a rate that is not the derivative of the function before it."""
     for k, what in ((0, "second function is not the derivative of the first"),
                     (1, "third function is not the derivative of the second")):
@@ -121,20 +271,3 @@ def _check_rates(functions) -> None:
             if not abs(slope - rate(t)) < 1e-4 * size:
                 raise InputError(f"motion of a drive: the {what}: at t = {t} it is {rate(t):.6g}, "
                                  f"differences give {slope:.6g}")
-
-
-def _table(source: ArrayLike, what: str) -> tuple[NDArray, NDArray]:
-    try:
-        table = np.asarray(source, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{what} cannot be read as numbers: give rows (t, value), or a function "
-                         "of time") from error
-    if table.ndim != 2 or table.shape[1] != 2 or not len(table):
-        raise InputError(f"{what} has shape {table.shape}: give rows (t, value)")
-    if not np.isfinite(table).all():
-        raise InputError(f"{what} contains NaN or infinite entries: give finite numbers")
-    if (np.diff(table[:, 0]) <= 0).any():
-        raise InputError(f"times of a {what} must increase: sort the rows and merge equal times")
-    return table[:, 0], table[:, 1]
-
-

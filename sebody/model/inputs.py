@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
@@ -10,6 +11,8 @@ from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Tripl
 
 def known(model: Mechanism, node: Node | str) -> Node:
     """A node of this model."""
+    if not isinstance(node, Node | str):
+        raise inputs.refusal("node", node, "give a node of the model or its name")
     name = node.name if isinstance(node, Node) else node
     if name not in model.nodes:
         raise InputError(f"node {name!r} is unknown: the model has "
@@ -29,27 +32,28 @@ def triplet(node: Node, kind: str) -> Triplet:
 
 def vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
     """A vector of space or of the plane."""
-    given = _numbers(value)
-    if given.shape != (model.dimension,) or not np.isfinite(given).all():
-        raise InputError(f"{what} is {value}: give {model.dimension} finite numbers")
-    return given
+    return inputs.vector(value, what, model.dimension)
 
 
 def rotation_vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
     """A rotation vector, axis or angular velocity: three numbers, in a plane one."""
-    given = np.atleast_1d(_numbers(value))
-    if given.shape != (model.rotation_size,) or not np.isfinite(given).all():
-        raise InputError(f"{what} is {value}: give {model.rotation_size} finite number(s)")
-    return given
+    if not model.planar:
+        return inputs.vector(value, what, 3)
+    remedy = "give 1 finite number"
+    given = inputs.reals(value, what, remedy)
+    if given.shape not in ((), (1,)) or not np.isfinite(given).all():
+        raise inputs.refusal(what, value, remedy)
+    return np.atleast_1d(given)
 
 
 def direction(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> NDArray:
     """Unit vector along an axis."""
     axis = vector(model, axis, f"axis of the {what} at {node.name!r}")
-    length = np.linalg.norm(axis)
-    if not length > 0:
+    largest = np.abs(axis).max()
+    if not largest > 0:
         raise InputError(f"axis of the {what} at {node.name!r} is zero: give its direction")
-    return axis / length
+    axis = axis / largest           # squares of very large or small numbers leave the range
+    return axis / np.linalg.norm(axis)
 
 
 def axes(model: Mechanism, axis: ArrayLike, what: str,
@@ -84,8 +88,7 @@ def chosen_name(model: Mechanism, name: str | None, default: str) -> str:
             numbered = default if count == 1 else f"{default} ({count})"
             if numbered not in model.own_names:
                 return numbered
-    if not (isinstance(name, str) and name):
-        raise InputError(f"name of the {default} is {name!r}: give a text that is not empty")
+    name = inputs.name(name, f"name of the {default}")
     refuse_taken(model, name, default)
     model.own_names.add(name)
     return name
@@ -103,10 +106,3 @@ def _described(element: Superelement | Element | Joint | Motion) -> str:
     return element.kind.replace("_", " ") if isinstance(element, Element) else (
         type(element).__name__.lower())
 
-
-def _numbers(value: ArrayLike) -> NDArray:
-    """An array of numbers; what cannot be read as numbers becomes NaN, for the caller to refuse."""
-    try:
-        return np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        return np.full(1, np.nan)

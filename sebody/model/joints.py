@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.inputs import along, axes, chosen_name, known, triplet
 from sebody.model.mechanism import Mechanism
@@ -47,11 +48,13 @@ def fix(model: Mechanism, node: Node | str, what: str = "both") -> None:
         The position is a dependent one, at the end of a rigid link.
     """
     node = known(model, node)
-    if what not in ("position", "rotation", "both"):
+    if not isinstance(what, str) or what not in ("position", "rotation", "both"):
         raise InputError(f"cannot fix {what!r}: use position, rotation or both")
-    for kind in ("position", "rotation"):
-        if what in (kind, "both"):
-            hold(model, node, kind)
+    kinds = ("position", "rotation") if what == "both" else (what,)
+    for kind in kinds:
+        triplet(node, kind)
+    for kind in kinds:
+        hold(model, node, kind)
 
 
 def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.0),
@@ -171,7 +174,7 @@ def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
 def distance(model: Mechanism, node: Node | str, to: Node | str,
              name: str | None = None) -> Joint:
     """Two points keep the distance they start at: a massless rod with ball joints."""
-    a, b = pair(model, node, to, "distance", ("position",))
+    a, b = pair(model, node, known(model, to), "distance", ("position",))
     length = np.linalg.norm(b.point - a.point)
     if not length > NEAR * model.size():
         raise InputError(f"distance between {a.name!r} and {b.name!r} is zero: use a spherical "
@@ -197,6 +200,7 @@ def _joint(model: Mechanism, name: str, node: Node, to: Node, equations: list[Eq
 def _together(model: Mechanism, a: Node, b: Node, to: Node | str | None, what: str,
               explicit: bool) -> list[Equations]:
     """Make two positions one: shared or fixed, else by the equations that are returned."""
+    inputs.flag(explicit, f"explicit of the {what}")
     check_together(model, a, b, what)
     if explicit and a.position is b.position:
         raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} share their position "

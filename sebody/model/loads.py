@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Iterable
 
-import numpy as np
 from numpy.typing import ArrayLike
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.user_functions import compile_force
 from sebody.model.histories import History, clock, history
@@ -24,7 +24,7 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
     on = triplet(node, "position")
     constants = {"d": vector(model, direction, f"force on {on.name}")}
     places = positions(node)
-    if follower:
+    if inputs.flag(follower, "follower"):
         triplet(node, "rotation")
         places += rotations(node)
     kind = model.kind_of("follower_" * follower + "force")
@@ -43,6 +43,7 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
     node = known(model, node)
     on = triplet(node, "rotation")
     constants = {"d": rotation_vector(model, direction, f"torque on {on.name}")}
+    follower = inputs.flag(follower, "follower")
     kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
     course = history(amplitude)
     name = chosen_name(model, name, f"torque on {on.name}")
@@ -56,17 +57,17 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
 
     A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
     """
-    if body not in model.bodies:
+    if not isinstance(body, str) or body not in model.bodies:
         raise InputError(f"superelement {body!r} is unknown: the model has "
                          f"{', '.join(model.bodies) or 'none'}")
     count = model.bodies[body].body.modes
-    if mode not in range(count):
+    mode = inputs.integer(mode, f"mode of superelement {body!r}")
+    if not 0 <= mode < count:
         raise InputError(f"superelement {body!r} has no mode {mode!r}: it has {count}, from 0")
-    if not np.isfinite(factor):
-        raise InputError(f"force on mode {mode} of {body!r} is {factor}: give a finite number")
+    factor = inputs.number(factor, f"force on mode {mode} of {body!r}")
     course = history(amplitude)
     name = chosen_name(model, name, f"force on mode {mode} of {body}")
-    return _add(model, Element(name, "mode_force", (), {"factor": float(factor)}, history=course,
+    return _add(model, Element(name, "mode_force", (), {"factor": factor}, history=course,
                                mode=(body, mode)))
 
 
@@ -87,7 +88,9 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
     InputError
         A function that cannot be compiled, or no nodes.
     """
-    places = positions(*(known(model, n) for n in nodes))
+    inputs.name(name, "name of a user force")
+    places = positions(*(known(model, n) for n in inputs.items(
+        nodes, f"nodes of user force {name!r}", "give a list of nodes")))
     for place in places:
         triplet(place.node, "position")
     if not places:

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.parts import (
     Connection,
@@ -43,6 +44,7 @@ class Mechanism:
     gravity_field: NDArray = field(init=False)
 
     def __post_init__(self) -> None:
+        self.planar = inputs.flag(self.planar, "planar")
         self.gravity_field = np.zeros(self.dimension)
 
     @property

@@ -6,6 +6,7 @@ triplet has no unknowns.
 """
 
 from sebody.model import beams, bodies, drives, joints, loads, nodes, springs
+from sebody.model.atomic import atomic
 from sebody.model.mechanism import Mechanism
 
 
@@ -20,37 +21,37 @@ class Model(Mechanism):
         Motion in the x-y plane: positions (x, y) and one angle a node.
     """
 
-    node = nodes.node
-    attach = nodes.attach
-    initial_velocity = nodes.initial_velocity
-    rigid_velocity = nodes.rigid_velocity
+    node = atomic(nodes.node)
+    attach = atomic(nodes.attach)
+    initial_velocity = atomic(nodes.initial_velocity)
+    rigid_velocity = atomic(nodes.rigid_velocity)
 
-    superelement = bodies.superelement
-    rigid_body = bodies.rigid_body
-    point_mass = bodies.point_mass
-    beam = beams.beam
+    superelement = atomic(bodies.superelement)
+    rigid_body = atomic(bodies.rigid_body)
+    point_mass = atomic(bodies.point_mass)
+    beam = atomic(beams.beam)
 
-    fix = joints.fix
-    revolute = joints.revolute
-    universal = joints.universal
-    cylindrical = joints.cylindrical
-    prismatic = joints.prismatic
-    slider = joints.slider
-    planar_joint = joints.planar_joint
-    spherical = joints.spherical
-    weld = joints.weld
-    distance = joints.distance
+    fix = atomic(joints.fix)
+    revolute = atomic(joints.revolute)
+    universal = atomic(joints.universal)
+    cylindrical = atomic(joints.cylindrical)
+    prismatic = atomic(joints.prismatic)
+    slider = atomic(joints.slider)
+    planar_joint = atomic(joints.planar_joint)
+    spherical = atomic(joints.spherical)
+    weld = atomic(joints.weld)
+    distance = atomic(joints.distance)
 
-    drive_angle = drives.drive_angle
-    drive_slide = drives.drive_slide
-    move = drives.move
+    drive_angle = atomic(drives.drive_angle)
+    drive_slide = atomic(drives.drive_slide)
+    move = atomic(drives.move)
 
-    force = loads.force
-    torque = loads.torque
-    mode_force = loads.mode_force
-    user_force = loads.user_force
-    gravity = loads.gravity
+    force = atomic(loads.force)
+    torque = atomic(loads.torque)
+    mode_force = atomic(loads.mode_force)
+    user_force = atomic(loads.user_force)
+    gravity = atomic(loads.gravity)
 
-    spring = springs.spring
-    torsion_spring = springs.torsion_spring
-    bushing = springs.bushing
+    spring = atomic(springs.spring)
+    torsion_spring = atomic(springs.torsion_spring)
+    bushing = atomic(springs.bushing)

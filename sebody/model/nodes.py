@@ -3,10 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.inputs import known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Node, Triplet
+
+RESERVED = ("constraints", "energy")    # first parts of quantities of the whole model
 
 
 def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
@@ -30,7 +33,7 @@ def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
     _check_new(model, name)
     at = None if at is None else known(model, at)
     point = vector(model, point, f"point of node {name!r}")
-    if keeps not in ("full", "translation", "rotation"):
+    if not isinstance(keeps, str) or keeps not in ("full", "translation", "rotation"):
         raise InputError(f"node {name!r} keeps {keeps!r}: use full, translation or rotation")
     size = max(1.0, np.abs(point).max())
     if at is not None and np.abs(at.point - point).max() > 1e-9 * size:
@@ -84,7 +87,7 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
 
     Velocities that are not given are solved for, see `sebody.Simulation`.
     """
-    node = known(model, node)
+    node, rates = known(model, node), []
     for kind, value, check in (("position", linear, vector),
                                ("rotation", angular, rotation_vector)):
         if value is None:
@@ -94,6 +97,8 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
         if not moving.solved and np.any(rate):
             raise InputError(f"initial rate of {moving.name} is {value}, but it is fixed, "
                              "prescribed or hangs on another node: leave it out")
+        rates.append((moving, rate))
+    for moving, rate in rates:
         moving.rate, moving.given = rate, True
 
 
@@ -114,6 +119,10 @@ def rigid_velocity(model: Mechanism, linear: ArrayLike, angular: ArrayLike,
 
 
 def _check_new(model: Mechanism, name: str) -> None:
+    inputs.name(name, "name of a node")
+    if name in RESERVED:
+        raise InputError(f"a node cannot be called {name!r}: results have {name}.* of the model; "
+                         "give it another name")
     if name in model.nodes:
         raise InputError(f"node {name!r} exists already: give every node its own name")
 

@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import axes, chosen_name
+from sebody.model.inputs import axes, chosen_name, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
 from sebody.model.parts import Element, Node, Place, positions, rotations
@@ -27,7 +28,7 @@ def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float 
     InputError
         Numbers that are negative, or nodes that start together.
     """
-    a, b = pair(model, node, to, "spring", ("position",))
+    a, b = pair(model, node, known(model, to), "spring", ("position",))
     start = np.linalg.norm(b.point - a.point)
     if not start > 0:
         raise InputError(f"spring: nodes {a.name!r} and {b.name!r} start together, so it has "
@@ -49,8 +50,7 @@ def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
     """
     what = "torsion spring"
     a, b = pair(model, node, to, what, ("rotation",))
-    if not np.isfinite(rest):
-        raise InputError(f"torsion spring at {a.name!r}: rest is {rest}: give a number")
+    rest = inputs.number(rest, f"torsion spring at {a.name!r}: rest", remedy="give a number")
     _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
     constants = {"k": stiffness, "k3": cubic, "c": damping, "rest": rest}
     if not model.planar:
@@ -69,12 +69,12 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     """
     a, b = pair(model, node, to, "bushing")
     check_together(model, a, b, "bushing")
-    constants = {"k": _spread(stiffness, model.dimension), "c": _spread(damping, model.dimension),
-                 "kt": _spread(turning_stiffness, model.rotation_size),
-                 "ct": _spread(turning_damping, model.rotation_size)}
-    if not all(np.isfinite(v).all() and (v >= 0).all() for v in constants.values()):
-        raise InputError(f"bushing at {a.name!r} has a coefficient that is negative or no "
-                         "number: give finite numbers >= 0")
+    where = f"bushing at {a.name!r} has a coefficient that is negative or no number"
+    lengths = (model.dimension, model.rotation_size)
+    constants = {"k": _spread(stiffness, f"{where}: stiffness", lengths[0]),
+                 "c": _spread(damping, f"{where}: damping", lengths[0]),
+                 "kt": _spread(turning_stiffness, f"{where}: turning_stiffness", lengths[1]),
+                 "ct": _spread(turning_damping, f"{where}: turning_damping", lengths[1])}
     return _add(model, name, "bushing", a, positions(a, b) + rotations(a, b), constants)
 
 
@@ -86,12 +86,15 @@ def _add(model: Mechanism, name: str | None, what: str, a: Node, places: tuple[P
     return model.loads[-1]
 
 
-def _spread(value: ArrayLike, size: int) -> NDArray:
+def _spread(value: ArrayLike, what: str, size: int) -> NDArray:
     """A coefficient for each axis."""
-    return np.broadcast_to(np.asarray(value, dtype=float), (size,))
+    remedy = f"give one finite number >= 0, or {size}"
+    given = inputs.reals(value, what, remedy)
+    if given.shape not in ((), (1,), (size,)) or not (np.isfinite(given) & (given >= 0)).all():
+        raise inputs.refusal(what, value, remedy)
+    return np.broadcast_to(given, (size,))
 
 
 def _check(what: str, **values: float) -> None:
     for name, value in values.items():
-        if not (np.isfinite(value) and value >= 0):
-            raise InputError(f"{what}: {name} is {value}: give a finite number >= 0")
+        inputs.number(value, f"{what}: {name}", least=0)

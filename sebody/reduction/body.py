@@ -10,7 +10,9 @@ from scipy.linalg import LinAlgError, block_diag, eigh
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.reduction import checks
+from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.recovery import Recovery
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -41,6 +43,8 @@ class ReducedBody:
         Reduced damping matrix, acting on the rates of deformation; see `damped`.
     invariants : InertiaInvariants, optional
         What inertia option C needs beyond the reduced matrices.
+    recovery : Recovery, optional
+        Shapes of the FE model, for `displacements`.
 
     Raises
     ------
@@ -56,6 +60,7 @@ class ReducedBody:
     modes: int = 0
     damping: NDArray | None = None
     invariants: InertiaInvariants | None = None
+    recovery: Recovery | None = None
 
     def __post_init__(self) -> None:
         coordinates = inputs.reals(self.coordinates, "coordinates",
@@ -78,6 +83,9 @@ class ReducedBody:
             checks.check_matrix("damping", damping, names)
             self._store("damping", (damping + damping.T) / 2)
             checks.check_damping(self.damping, rigid, names)
+        if self.invariants is not None:
+            check_invariants(self.invariants, self.stiffness, self.mass,
+                             self.rigid_modes_about(self.invariants.origin), names)
 
     def _store(self, name: str, array: NDArray) -> None:
         object.__setattr__(self, name, _read_only(array))
@@ -143,6 +151,27 @@ class ReducedBody:
         moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
         return _read_only(middle + moments / self.total_mass)
 
+    def displacements(self, y: ArrayLike) -> NDArray:
+        """Displacements of all FE nodes, with those of second order, (n_nodes, dofs_per_node).
+
+        Parameters
+        ----------
+        y : (n,)
+            Reduced coordinates, relative to the body's frame.
+
+        Raises
+        ------
+        InputError
+            The body is made of reduced matrices alone.
+        """
+        if self.recovery is None:
+            raise InputError("the body has no shapes of an FE model, so it knows no displacements "
+                             "inside; reduce the FE model with craig_bampton")
+        y = np.asarray(y, dtype=float)
+        following = np.zeros(0) if self.invariants is None else self.invariants.Q @ y @ y / 2
+        field = self.recovery.shapes @ np.concatenate([y, following])
+        return field.reshape(len(self.recovery.coordinates), -1)
+
     def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> "ReducedBody":
         """The same body with structural damping of its deformation.
@@ -200,4 +229,5 @@ class ReducedBody:
             damping=None if self.damping is None else by @ self.damping @ by.T,
             coordinates=self.coordinates @ rotation.T,
             invariants=self.invariants and self.invariants.rotated(rotation, by),
+            recovery=self.recovery and self.recovery.rotated(rotation, by),
         )

@@ -9,19 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.linalg import block_diag, eigh
-from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
+from scipy.linalg import block_diag
 
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel, fe_matrix
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.checks import KEEPS
+from sebody.reduction.boundary import BoundaryItem, RigidFace, boundary_of
+from sebody.reduction.clamped import ClampedInterior
+from sebody.reduction.constants import with_constants
 
-_DENSE_LIMIT = 1000  # internal DOFs up to which the dense eigenvalue solver is used
-_SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which the internal stiffness is singular
 _ROUNDING = 1e-11  # ratio of stiffness to its summands below which stiffness is rounding error
-_REPEATED = 1e-6  # relative distance below which eigenvalues or components count as equal
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +62,14 @@ class ComponentModes:
 
 def craig_bampton(
     fe_model: FEModel,
-    boundary: Mapping[int, str] | Iterable[tuple[int, str]],
+    boundary: Mapping[int | RigidFace, str] | Iterable[BoundaryItem],
     modes: int,
     select: Sequence[int] | None = None,
 ) -> ReducedBody:
     """Superelement of an FE model; no modes gives Guyan's reduction.
+
+    Where the model knows the points of its mass, the body gets the constants of its exact inertia,
+    and with a geometric stiffness those of its stiffening.
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ def craig_bampton(
         Free FE model.
     boundary : mapping or pairs of node index and 'full', 'translation' or 'rotation'
         Boundary nodes, in the order wanted, and the triplets kept there. A triplet not kept is
-        an internal DOF.
+        an internal DOF. A `RigidFace`, which keeps 'full', ties FE nodes to a boundary node.
     modes : int
         Number of fixed-interface modes, from the lowest frequency up.
     select : sequence of int, optional
@@ -90,18 +91,12 @@ def craig_bampton(
         are, or boundary nodes that leave a mechanism inside.
     """
     inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
-    pairs = _boundary_pairs(fe_model, boundary)
-    dofs = np.concatenate(
-        [fe_model.dofs(node, "translation") for node, keep in pairs if keep != "rotation"]
-        + [fe_model.dofs(node, "rotation") for node, keep in pairs if keep != "translation"]
-    )
-    component = component_modes(fe_model.stiffness, fe_model.mass, dofs, modes, select)
+    edge = boundary_of(fe_model, boundary)
+    component, interior = _component_modes(fe_model.stiffness, fe_model.mass, edge.motion, modes,
+                                           select)
     stiffness, mass = component.project(fe_model.stiffness, fe_model.mass)
-    nodes = [node for node, _ in pairs]
-    keeps = tuple(keep for _, keep in pairs)
-    return ReducedBody(
-        stiffness, mass, fe_model.coordinates[nodes], keeps, len(component.omega_squared)
-    )
+    body = ReducedBody(stiffness, mass, edge.coordinates, edge.keeps, len(component.omega_squared))
+    return with_constants(body, fe_model, edge, component.basis, interior)
 
 
 def component_modes(
@@ -132,7 +127,18 @@ def component_modes(
         raise InputError(f"stiffness has shape {stiffness.shape} and mass {mass.shape}: give "
                          "square matrices of one size")
     boundary_dofs = _boundary_rows(boundary_dofs, stiffness.shape[0])
-    internal = np.setdiff1d(np.arange(stiffness.shape[0]), boundary_dofs)
+    count = len(boundary_dofs)
+    held = sparse.csc_array((np.ones(count), (boundary_dofs, np.arange(count))),
+                            shape=(stiffness.shape[0], count))
+    return _component_modes(stiffness, mass, held, modes, select)[0]
+
+
+def _component_modes(
+    stiffness: sparse.csc_array, mass: sparse.csc_array, motion: sparse.csc_array, modes: int,
+    select: Sequence[int] | None
+) -> tuple[ComponentModes, ClampedInterior]:
+    """Modes of a boundary whose unit coordinates move the DOFs by `motion`; the rest is inside."""
+    internal = np.setdiff1d(np.arange(stiffness.shape[0]), motion.indices)
     modes = inputs.integer(modes, "modes")
     if not 0 <= modes <= len(internal):
         raise InputError(
@@ -147,19 +153,11 @@ def component_modes(
             f"select = {chosen} must name different modes among the {modes} computed, counted "
             "from 0; raise modes or correct it"
         )
-    constraint = np.zeros((stiffness.shape[0], len(boundary_dofs)))
-    constraint[boundary_dofs, np.arange(len(boundary_dofs))] = 1.0
-    fixed_interface = np.zeros((stiffness.shape[0], len(chosen)))
-    omega_squared = np.zeros(0)
-    if len(internal):
-        inner = stiffness[internal][:, internal]
-        factor = _factorise(inner)
-        to_boundary = stiffness[internal][:, boundary_dofs].toarray()
-        constraint[internal] = -factor.solve(to_boundary)
-        inner_mass = mass[internal][:, internal]
-        omega_squared, shapes = _fixed_interface_modes(inner, inner_mass, factor, modes)
-        fixed_interface[internal] = shapes[:, chosen]
-    return ComponentModes(constraint, fixed_interface, omega_squared[chosen])
+    interior = ClampedInterior(stiffness, mass, internal)
+    moved = motion.toarray()
+    constraint = moved - interior.displacement(stiffness @ moved)
+    omega_squared, shapes = interior.vibrations(modes)
+    return ComponentModes(constraint, shapes[:, chosen], omega_squared[chosen]), interior
 
 
 def _boundary_rows(rows: Sequence[int], size: int) -> NDArray:
@@ -169,114 +167,3 @@ def _boundary_rows(rows: Sequence[int], size: int) -> NDArray:
     if len(set(found)) != len(found):
         raise inputs.refusal("boundary_dofs", found, remedy)
     return np.array(found, dtype=int)
-
-
-def _boundary_pairs(fe_model: FEModel,
-                    boundary: Mapping[int, str] | Iterable[tuple[int, str]]
-                    ) -> list[tuple[int, str]]:
-    """Boundary nodes and what they keep."""
-    remedy = "give pairs (node, 'full', 'translation' or 'rotation'), or a dict of them"
-    count, pairs = len(fe_model.coordinates), []
-    for one in inputs.items(boundary.items() if isinstance(boundary, Mapping) else boundary,
-                            "boundary", remedy):
-        pair = inputs.items(one, "a boundary node", remedy)
-        if len(pair) != 2:
-            raise inputs.refusal("a boundary node", one, remedy)
-        pairs.append((inputs.integer(pair[0], "boundary node"), pair[1]))
-    if not pairs:
-        raise InputError("boundary is empty; name one boundary node at least")
-    nodes = [node for node, _ in pairs]
-    for node, keep in pairs:
-        if not 0 <= node < count:
-            raise InputError(f"boundary node {node} unknown; the model has nodes 0 to {count - 1}")
-        if nodes.count(node) > 1:
-            raise InputError(f"boundary node {node} appears more than once; name it once")
-        if not isinstance(keep, str) or keep not in KEEPS:
-            raise InputError(
-                f"boundary node {node} keeps {keep!r}; choose one of {', '.join(KEEPS)}"
-            )
-        if keep != "translation" and not len(fe_model.dofs(node, "rotation")):
-            raise InputError(
-                f"boundary node {node} keeps {keep!r}, but the model's nodes have no rotations; "
-                "use 'translation'"
-            )
-    return pairs
-
-
-def _factorise(stiffness: sparse.csc_array) -> SuperLU:
-    """Factor the internal stiffness S_II, refusing one that leaves a motion free."""
-    options = {"SymmetricMode": True}
-    # SciPy 1.11 selects rows with 64-bit indices, which its SuperLU does not accept
-    short = (array.astype(np.intc) for array in (stiffness.indices, stiffness.indptr))
-    matrix = sparse.csc_array((stiffness.data, *short), shape=stiffness.shape)
-    try:
-        factor = splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-        pivots = factor.U.diagonal()[factor.perm_c]
-        weakest = np.min(pivots / stiffness.diagonal())
-    except RuntimeError:  # SuperLU met a pivot of exactly zero
-        weakest = 0.0
-    if not weakest > _SINGULAR:
-        raise InputError(
-            "S_II is singular: with the boundary clamped the body can still move without strain "
-            "(a mechanism inside); keep more boundary nodes or triplets, or connect loose parts"
-        )
-    return factor
-
-
-def _fixed_interface_modes(
-    stiffness: sparse.csc_array, mass: sparse.csc_array, factor: SuperLU, modes: int
-) -> tuple[NDArray, NDArray]:
-    """Lowest `modes` solutions of (5): omega^2 (m,) and mass-normalised shapes (n_internal, m)."""
-    size = stiffness.shape[0]
-    if modes == 0:
-        return np.zeros(0), np.zeros((size, 0))
-    wanted = min(size, modes + 4)  # a few more, so that a repeated frequency is not cut in two
-    if size <= _DENSE_LIMIT or wanted >= size:
-        # The inverse problem: low modes to full accuracy, and massless DOFs do no harm.
-        inverse, shapes = eigh(
-            mass.toarray(), stiffness.toarray(), subset_by_index=[size - wanted, size - 1]
-        )
-        inverse, shapes = inverse[::-1], shapes[:, ::-1]
-        with_mass = inverse > 1e-14 * inverse[0]
-        omega_squared = 1.0 / inverse[with_mass]
-        shapes = shapes[:, with_mass] * np.sqrt(omega_squared)
-    else:
-        omega_squared, shapes = eigsh(
-            stiffness,
-            wanted,
-            mass,
-            sigma=0.0,
-            OPinv=LinearOperator(stiffness.shape, factor.solve),
-            v0=np.random.default_rng(0).standard_normal(size),
-        )
-    if len(omega_squared) < modes:
-        raise InputError(
-            f"modes is {modes}, but only {len(omega_squared)} internal motions carry mass; ask "
-            "for fewer"
-        )
-    shapes = _canonical(omega_squared, shapes)
-    return omega_squared[:modes], shapes[:, :modes]
-
-
-def _canonical(omega_squared: NDArray, shapes: NDArray) -> NDArray:
-    """Shapes that do not depend on the solver's choices of sign and within equal frequencies.
-
-    Each mode's largest component is positive, and the later modes of the same frequency vanish
-    there: a beam of square section gets modes in its principal planes.
-    """
-    shapes = shapes.copy()
-    gaps = np.diff(omega_squared) > _REPEATED * omega_squared[1:]
-    for group in np.split(np.arange(len(omega_squared)), np.flatnonzero(gaps) + 1):
-        for position in range(len(group)):
-            rest = shapes[:, group[position:]]
-            row = rest[_first_largest(np.linalg.norm(rest, axis=1))]
-            # Orthonormal columns, the first along `row`, so only the first mode moves there.
-            turn = np.linalg.qr(np.column_stack([row, np.eye(len(row))]))[0]
-            turn[:, 0] *= np.sign(turn[:, 0] @ row)
-            shapes[:, group[position:]] = rest @ turn
-    return shapes
-
-
-def _first_largest(values: NDArray) -> int:
-    """Index of the first entry that equals the largest up to rounding."""
-    return int(np.argmax(values >= (1 - _REPEATED) * np.max(values)))

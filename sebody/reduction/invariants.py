@@ -2,9 +2,9 @@
 
 The velocity of the body in its floating frame is ``v0* + Omega_0 x (X + Phi y + Psi eta) + Phi ydot
 + Psi etadot``: what the kinetic energy needs of it are integrals of shapes over the mass, computed
-once from the FE mass matrix M. The slaved coordinates ``eta_b = y^T Q_b y / 2`` are displacements of
-second order, and the stress resultants ``s_e = lam_e E_e^T y + y^T Ghat_e y / 2`` make the strain
-energy of second order.
+once from the FE mass matrix M. The slaved coordinates ``eta_b = y^T Q_b y / 2`` are displacements
+of second order, and the stress resultants ``s_e = lam_e E_e^T y + y^T Ghat_e y / 2`` make the
+strain energy of second order.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 @dataclass(frozen=True, eq=False)
 class InertiaInvariants:
-    """Integrals of the body in its FE axes, about the FE origin.
+    """Integrals of the body in its FE axes, about a point near it.
 
     Coordinates are ``z = (y, eta)`` with ``y = (u_B, psi_B, y_I)`` as in `ReducedBody`; n of y,
     N of z. ``A_k b = e_k x b`` of every nodal vector, ``E_rk`` is the rigid rotation about axis k,
@@ -50,6 +50,8 @@ class InertiaInvariants:
         Their eigenvectors, with zeros for internal modes.
     Ghat : (n_e, n, n)
         Symmetric; empty without geometric stiffness.
+    origin : (D,), optional
+        The point the integrals are about; the FE origin by default.
     """
 
     mass: float
@@ -65,8 +67,11 @@ class InertiaInvariants:
     lam: NDArray
     E: NDArray
     Ghat: NDArray
+    origin: NDArray | None = None
 
     def __post_init__(self) -> None:
+        if self.origin is None:
+            object.__setattr__(self, "origin", np.zeros(len(self.c0)))
         for field in fields(self):
             if field.name == "mass":
                 continue
@@ -90,22 +95,23 @@ class InertiaInvariants:
         return len(self.lam)
 
     def about(self, point: ArrayLike) -> "InertiaInvariants":
-        """The same body with `point` as the origin of its axes.
+        """The same integrals about `point`, (D,) in the FE axes.
 
-        A rigid rotation about the point is ``E_rk - E_t a_k`` with ``a_k = e_k x point``; the rest
+        A rigid rotation about the point is ``E_rk - E_t a_k`` with ``a_k = e_k x shift``; the rest
         of the shapes stay.
         """
         point = np.asarray(point, dtype=float)
-        arms = self._cross(point[:, None])[..., 0]      # a_k, (r, D)
+        shift = point - self.origin
+        arms = self._cross(shift[:, None])[..., 0]      # a_k, (r, D)
         moments = self._cross(self.c0[:, None])[..., 0]     # E_t^T M E_rk
         return replace(
-            self, c0=self.c0 - self.mass * point,
+            self, origin=point, c0=self.c0 - self.mass * shift,
             J0=self.J0 - arms @ moments.T - moments @ arms.T + self.mass * arms @ arms.T,
             g=self.g - arms @ self.S1,
             h=self.h - np.einsum("ki,lin->kln", arms, self._cross(self.S1)))
 
     def rotated(self, rotation: ArrayLike, by: ArrayLike) -> "InertiaInvariants":
-        """The body rotated about the origin, in the old axes.
+        """The body rotated about the FE origin, in the old axes.
 
         Parameters
         ----------
@@ -119,8 +125,8 @@ class InertiaInvariants:
         whole = np.eye(len(self.Mbar))
         whole[:len(by), :len(by)] = by
         return replace(
-            self, c0=rotation @ self.c0, S1=rotation @ self.S1 @ whole.T,
-            J0=axes @ self.J0 @ axes.T, g=axes @ self.g @ whole.T,
+            self, origin=rotation @ self.origin, c0=rotation @ self.c0,
+            S1=rotation @ self.S1 @ whole.T, J0=axes @ self.J0 @ axes.T, g=axes @ self.g @ whole.T,
             h=np.einsum("ka,lb,abm,nm->kln", axes, axes, self.h, whole, optimize=True),
             K=np.einsum("ka,mi,aij,nj->kmn", axes, whole, self.K, whole, optimize=True),
             J2=np.einsum("ka,lb,mi,abij,nj->klmn", axes, axes, whole, self.J2, whole,

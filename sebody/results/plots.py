@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.results.result import Result
+from sebody.results.skeleton import lines_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SUFFIXES = (".png", ".pdf", ".svg")
-INSTANTS = 9            # at which the body is drawn
+INSTANTS = 9            # at which the bodies are drawn
+MOST_TICKS = 5          # of the longest axis of a path
 FLAT = 0.03             # share of the motion below which motion out of the plane is not drawn
 INK, ACCENT, PALE = "#1f2a44", "#c8452d", "#9aa5b8"
 COMPONENTS = ((ACCENT, "x"), ("#2a7f62", "y"), (INK, "z"))
@@ -40,7 +43,7 @@ def check_picture(path: str | Path) -> None:
 
 
 def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
-    """Draw the angular velocity of one node and the path of another.
+    """Draw the angular velocity of one node, and the path of another with the bodies on their way.
 
     A base without a rotation has no angular velocity: the velocity of the tip is drawn instead.
 
@@ -50,9 +53,9 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     path : str or Path
         File to write: png, pdf or svg.
     base : str
-        Node whose angular velocity is drawn, and where the body starts.
+        Node whose angular velocity is drawn.
     tip : str
-        Node whose path is drawn, and where the body ends.
+        Node whose path is drawn.
 
     Returns
     -------
@@ -64,8 +67,8 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     InputError
         See `check_picture`; unknown nodes.
     """
+    inputs.instance(result, "result", Result, "give the Result of a run")
     check_picture(path)
-    start, end = _spatial(result[f"{base}.position"]), _spatial(result[f"{tip}.position"])
     title, rates = _rates(result, base, tip)
 
     from matplotlib import rc_context
@@ -76,7 +79,7 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
         figure = Figure(figsize=(9.6, 4.2), layout="constrained")
         FigureCanvasAgg(figure)
         _draw_rates(figure.add_subplot(1, 2, 1), result.t, rates, title)
-        _draw_path(figure, start, end, base, tip)
+        _draw_path(figure, result, tip)
         write_picture(figure, path, 150, bbox_inches="tight", pad_inches=0.1)
     return Path(path)
 
@@ -118,29 +121,49 @@ def _draw_rates(axes, t: NDArray, rates: NDArray, title: str) -> None:
     for values, (color, label) in zip(rates.T, COMPONENTS, strict=False):
         axes.plot(t, values, color=color, linewidth=1.0, label=about + label)
     axes.set_ylabel("component, global axes")
-    axes.legend()
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3)
 
 
-def _draw_path(figure, start: NDArray, end: NDArray, base: str, tip: str) -> None:
-    span = np.ptp(np.concatenate([start, end])[:, :2], axis=0).max()
-    height = max(np.ptp(start[:, 2]), np.ptp(end[:, 2]))
-    flat = height <= FLAT * span
+def _draw_path(figure, result: Result, tip: str) -> None:
+    path = _spatial(result[f"{tip}.position"])
+    chosen = _instants(path)
+    bodies = _bodies(result, chosen)
+    everything = np.concatenate([path, bodies.reshape(-1, 3)])
+    extent = np.nanmax(everything, axis=0) - np.nanmin(everything, axis=0)
+    flat = extent[2] <= FLAT * extent[:2].max()
     axes = figure.add_subplot(1, 2, 2, projection=None if flat else "3d")
-    axes.set_title(f"path of the {tip}, with the body from {base} to {tip}")
+    axes.set_title(f"path of the {tip}, and the bodies")
     size = 2 if flat else 3
-    start, end = start[:, :size], end[:, :size]
-    axes.plot(*end.T, color=ACCENT, linewidth=1.0, label=f"path of the {tip}")
-    for number, k in enumerate(_instants(end)):
-        color = INK if k == 0 else PALE
-        axes.plot(*np.array([start[k], end[k]]).T, color=color, linewidth=2.0,
-                  solid_capstyle="round", zorder=3 if k == 0 else 1.5,
-                  label={0: "body at the start", 1: "and later"}.get(number))
-        axes.plot(*end[k:k + 1].T, "o", color=color, markersize=4, zorder=3)
-    axes.plot(*start[:1].T, "o", color=INK, markersize=5, zorder=4)
+    if not flat:
+        axes.computed_zorder = False        # the path would be behind bodies that are nearer
+    axes.plot(*path[:, :size].T, color=ACCENT, linewidth=1.4, zorder=4, label=f"path of the {tip}")
+    for number, lines in enumerate(bodies):
+        axes.plot(*lines[:, :size].T, color=PALE if number else INK, zorder=2 if number else 3,
+                  linewidth=1.0 if number else 2.0, solid_capstyle="round",
+                  label={0: "bodies at the start", 1: "and later"}.get(number))
+    axes.plot(*path[:1, :size].T, "o", color=ACCENT, markersize=3, zorder=5)
+    axes.set_aspect("equal", adjustable="datalim" if flat else "box")
     for name in "xyz"[:size]:
         getattr(axes, f"set_{name}label")(name)
-    axes.set_aspect("equal", adjustable="datalim" if flat else "box")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12 if flat else 0.0), ncols=3)
+        _thin_ticks(axes, name, extent[:size].max())
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12 if flat else -0.05), ncols=3)
+
+
+def _thin_ticks(axes, name: str, largest: float) -> None:
+    """As many ticks on an axis as its labels have room for beside each other."""
+    low, high = getattr(axes, f"get_{name}lim")()
+    room = MOST_TICKS if axes.name == "rectilinear" else MOST_TICKS * (high - low) / largest
+    axes.locator_params(axis=name, nbins=max(1, min(round(room), MOST_TICKS)))
+
+
+def _bodies(result: Result, chosen: list[int]) -> NDArray:
+    """The bodies at some samples, (samples, points, 3): lines, with NaN between them."""
+    lines = lines_of(result.model)
+    points = {name: _spatial(result[f"{name}.position"][chosen])
+              for name in dict.fromkeys(name for line in lines for name in line)}
+    gap = np.full((len(chosen), 3), np.nan)
+    found = [points_of for one, other in lines for points_of in (points[one], points[other], gap)]
+    return np.stack([gap, *found], axis=1)
 
 
 def _instants(path: NDArray) -> list[int]:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
@@ -42,13 +43,14 @@ def look_up(recording: Recording, name: str) -> NDArray:
     InputError
         A name that nothing has, or a quantity its owner does not have.
     """
+    inputs.name(name, "name of a quantity")
     if name in OF_MODEL:
         return OF_MODEL[name](recording)
     owner, _, quantity = name.rpartition(".")
-    found = [one for one in OWNERS if owner in one.names(recording)]
-    for one in found:
-        if quantity in one.quantities:
+    for one in OWNERS:      # names of nodes come first: those of others are long to list
+        if quantity in one.quantities and owner in one.names(recording):
             return one.quantities[quantity](recording, owner)
+    found = [one for one in OWNERS if owner in one.names(recording)]
     if found:
         raise InputError(f"{quantity!r} is unknown: " + "; ".join(
             f"a {one.kind} has {', '.join(one.quantities)}" for one in found))

@@ -34,8 +34,8 @@ class Recording:
 
     model: Mechanism
     numbering: Numbering
-    system: System
-    state: State                    # last state of the run
+    system: System | None           # None if read from a file, which holds what is made from it
+    state: State | None             # last state of the run
     rows: NDArray                   # (n, numbers of `layout.RECORD`) recorded states
     seconds: float                  # in the compiled loop
     failure: str = ""
@@ -47,6 +47,11 @@ class Recording:
     def recorded(self, name: str) -> NDArray:
         """History of one of the parts of `layout.RECORD`, (n, size)."""
         return self.rows[:, RECORD.slices(record_counts(self.numbering))[name]]
+
+    @cached_property
+    def counters(self) -> NDArray:
+        """Steps, iterations and others, by the CONTROL indices of `engine.state`."""
+        return self.state.control.copy()
 
     @cached_property
     def energies(self) -> NDArray:
@@ -75,6 +80,10 @@ class Recording:
     def constraint_residuals(self) -> NDArray:
         """Largest residuals of the constraints and of their rates, (n, 2)."""
         return constraint_residuals(self.system, self.state, self.rows)
+
+
+# what is made from arrays and last state, and kept in their place in a file; forces likewise
+EVALUATED = "counters", "energies", "powers", "constraint_residuals"
 
 
 def record_counts(numbering: Numbering) -> dict[str, int]:

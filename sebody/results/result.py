@@ -1,5 +1,6 @@
 """Results of a run by name: histories of nodes and bodies, energies, the output file."""
 
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from sebody.files import check_target, replacing
 from sebody.results.advice import kernels_that_pay
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
+from sebody.results.saving import packed, unpacked
 
 OUTPUT = "output file", (".npz",)        # what is saved, see `files.check_target`
 
@@ -58,22 +60,22 @@ class Result(Recording):
     @property
     def steps(self) -> int:
         """Accepted steps, cut ones included."""
-        return int(self.state.control[STEPS])
+        return int(self.counters[STEPS])
 
     @property
     def cuts(self) -> int:
         """Steps that were cut because Newton's iteration did not converge."""
-        return int(self.state.control[CUTS])
+        return int(self.counters[CUTS])
 
     @property
     def matrices(self) -> int:
         """Number of factorizations of the iteration matrix."""
-        return int(self.state.control[MATRICES])
+        return int(self.counters[MATRICES])
 
     @property
     def iterations_per_step(self) -> float:
         """Newton iterations a step."""
-        return float(self.state.control[ITERATIONS]) / max(self.steps, 1)
+        return float(self.counters[ITERATIONS]) / max(self.steps, 1)
 
     @property
     def microseconds_per_step(self) -> float:
@@ -91,12 +93,17 @@ class Result(Recording):
         drift = np.abs(total - total[0] - self["energy.external_work"]).max()
         return float(drift / max(np.abs(inner).max(), 1e-300))
 
+    @cached_property
+    def advice(self) -> dict[str, list[str]]:
+        """Commands that make faster kernels, and the bodies that gain by each."""
+        return kernels_that_pay(self.model)
+
     def arrays(self) -> dict[str, NDArray]:
         """All named histories, as they are saved."""
         return {name: self[name] for name in saved(self)}
 
     def save(self, path: str | Path) -> Path:
-        """Write all named histories to an npz file.
+        """Write an npz file: all named histories, and all that `load` needs.
 
         Raises
         ------
@@ -106,10 +113,23 @@ class Result(Recording):
             Writing fails; an older file is unchanged.
         """
         path = check_target(path, *OUTPUT)
-        arrays = self.arrays()
+        arrays = self.arrays() | packed(self)
         with replacing(path, OUTPUT[0]) as file:
-            np.savez_compressed(file, **arrays)
+            np.savez(file, **arrays)
         return path
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Result":
+        """A result that `save` has written: it can be asked for all that the saved one could be.
+
+        Its `model` is a description: compiled functions are left out, so it cannot be run.
+
+        Raises
+        ------
+        InputError
+            No such file, or one of another kind or version.
+        """
+        return unpacked(cls, path)
 
     def summary(self) -> str:
         """A few lines: steps, iterations, time, balances, works, changes of the initial state."""
@@ -141,7 +161,7 @@ class Result(Recording):
                          + ": multipliers are those of least norm")
         lines += [f"general kernel       of {', '.join(bodies)}: one of the layout's own is "
                   f"faster, made by {command}"
-                  for command, bodies in kernels_that_pay(self.model).items()]
+                  for command, bodies in self.advice.items()]
         lines += [f"WARNING              {message}" for message in self.warnings]
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
 

@@ -1,6 +1,7 @@
 """The scenes and kernels that exist, found by name without running or compiling them."""
 
 import ast
+import re
 from collections.abc import Callable
 from importlib import import_module
 from importlib.util import find_spec
@@ -60,10 +61,8 @@ def kernels() -> list[Kernel]:
 
 
 def _describe(path: Path) -> Kernel:
-    constants, text = {}, path.read_text(encoding="utf-8")
-    for node in ast.parse(text).body:
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
-            constants[node.targets[0].id] = node.value.value
+    text = path.read_text(encoding="utf-8")     # of which the whole tree takes 20 ms
+    constants = dict(re.findall(r'^(LAYOUT|FRAME|INERTIA) = "(.*)"$', text, re.M))
     return Kernel(path.stem, *(constants.get(k, "") for k in ("LAYOUT", "FRAME", "INERTIA")),
                   len(text))
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sebody import InputError, Model, Simulation, generalized_alpha, hht, simulate
+from sebody import InputError, Model, Simulation, generalized_alpha, hht, ramp, simulate
 from sebody.engine import evaluate
 from sebody.fem import straight_beam
 from sebody.kernels.layout import HALF_TURN, RESIDUAL
@@ -263,3 +263,44 @@ def test_start_does_not_depend_on_the_step():
     fine, coarse = (Simulation(hinged(), h) for h in (1e-4, 1e-1))
     assert np.array_equal(fine.state.a, coarse.state.a)
     assert np.array_equal(fine.state.q, coarse.state.q)
+
+
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("how", ["moved", "driven", "moved along", "on a link"])
+def test_flexible_bodies_follow_drives_that_start_from_speed(how, planar):
+    """Two beams behind a turned joint: every node starts in the rigid motion of the drive."""
+    d, speed = 2 if planar else 3, 0.7
+    axis = np.array([0.0, 0, 1]) if planar else np.array([2.0, -1.0, 2.0]) / 3.0
+    model = Model(planar=planar)
+    points = np.array([[0.3, 0.1, 0.2], [40.3, 30.1, 0.2], [40.3, 80.1, 0.2]])[:, :d]
+    nodes = [model.node(name, p) for name, p in zip("abc", points, strict=True)]
+    for name, pair in (("first", nodes[:2]), ("second", nodes[1:])):
+        model.beam(name, pair, SECTION, 4, bodies=1, modes=2)
+    base = "a"
+    if how == "on a link":
+        base = model.node("hub", points[0] - 1.0)
+        model.rigid_body("hub", base, 1.0, 0.1 if planar else (0.1, 0.2, 0.2))
+        model.attach("seat", points[0], base)
+        model.weld("seat", to="a")
+    if how == "driven":
+        model.revolute(base, axis)
+        model.drive_angle(base, ramp(speed, origin=3.0), axis)
+    elif how == "moved along":
+        model.fix(base, "rotation")
+        model.move(base, (speed * np.array([0.6, 0.8, 0.0]))[:d], ramp(1.0))
+    else:
+        model.fix(base, "position")
+        model.move(base, 1.0 if planar else axis, ramp(speed), "rotation")
+    run = Simulation(model, 1e-3)
+    pivot = model.nodes[base if isinstance(base, str) else base.name].point
+    result = run.result()
+    for node in "bc":
+        arm = np.zeros(3)
+        arm[:d] = model.nodes[node].point - pivot
+        expected = (speed * np.array([0.6, 0.8, 0.0]) if how == "moved along" else
+                    speed * np.cross(axis, arm))[:d]
+        assert result[f"{node}.velocity"][0] == pytest.approx(expected, abs=1e-6)
+        spin = 0.0 * axis if how == "moved along" else speed * axis
+        assert result[f"{node}.angular_velocity"][0] == pytest.approx(
+            spin[2] if planar else spin, abs=1e-6)
+        assert f"{node}.position" in run.start.changed

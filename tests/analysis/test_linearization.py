@@ -262,14 +262,94 @@ def test_refusals():
     model = hinged_beam.build().model
     with pytest.raises(InputError, match=r"spin is \(1, 2\): give three numbers"):
         equilibrium(model, spin=(1, 2))
-    linked = Model(planar=True)
-    hub = linked.node("hub", (0, 0))
-    linked.fix(hub, "position")
-    linked.rigid_body("rod", hub, 1.0, 1.0, (1.0, 0.0))
-    linked.attach("end", (1.0, 0.0), hub)
-    linked.point_mass("ball", "end", 1.0)
-    with pytest.raises(InputError, match="hangs on a rigid link, which the tangents"):
-        modes(Simulation(linked, 0.01), 2.0)
+    with pytest.raises(InputError, match="'tip.speed' has no shape: there are <node>.position and "
+                                         "<node>.rotation of base, tip, side, and <super"):
+        vibrations(Simulation(clamped(), 0.01)).shape("tip.speed")
+
+
+def clamped(planar=False, linked=True):
+    """A clamped beam in a turned direction with a mass beside its end."""
+    d = 2 if planar else 3
+    model = Model(planar=planar)
+    along, across = TURNED[0][:d] / np.linalg.norm(TURNED[0][:d]), np.zeros(d)
+    across[:2] = -along[1], along[0]
+    across /= np.linalg.norm(across)
+    ends = model.node("base", 0.4 * along), model.node("tip", 1.4 * along)
+    model.beam("beam", ends, section(), 12, bodies=1, modes=2)
+    model.fix("base")
+    offset = 0.3 * along + 0.2 * across
+    if linked:
+        model.attach("side", ends[1].point + offset, "tip")
+        model.point_mass("mass", "side", 0.5)
+    else:
+        model.rigid_body("mass", "tip", 0.5, 0.0 if planar else (0.0, 0.0, 0.0),
+                         ends[1].point + offset)
+    return model
+
+
+TURNED = Rotation.from_rotvec([0.6, -0.7, 0.4]).as_matrix().T      # rows: x, y, z of the models
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_masses_on_links_turn_as_masses_beside_a_node(planar):
+    """The same body by a rigid link and by its centre of mass: kernel against reduction."""
+    spin = 3.0 if planar else 3.0 * TURNED[2]
+    found = []
+    for linked in (True, False):
+        result = equilibrium(clamped(planar, linked), 2, spin=spin)
+        found.append((result["tip.position"][-1], modes(result, spin), vibrations(
+            Simulation(clamped(planar, linked), 0.01))))
+    (place, turning_modes, still), (place2, turning_modes2, still2) = found
+    assert place == pytest.approx(place2, abs=1e-9)
+    scale = still.omega[-1]     # eigenvalues are exact to EPS of the largest, squared, and a root
+    assert turning_modes.omega == pytest.approx(turning_modes2.omega, abs=1e-6 * scale)
+    assert np.abs(turning_modes.omega[:2] - still.omega[:2]).max() > 1e-3 * still.omega[0]
+    assert still.omega == pytest.approx(still2.omega, rel=1e-9)
+
+
+@pytest.mark.parametrize("axis", ["z", "y", "planar"])
+def test_a_pendulum_on_a_turning_disc(axis):
+    """A ball on a link, hinged at the radius a: ``w^2 = W^2 m L a / (J + m L^2)`` in the plane.
+
+    Out of it, hinged across spin and arm, with a + L in place of a.
+    """
+    planar = axis == "planar"
+    x, y, z = np.eye(3)[:, :2] if planar else TURNED
+    model, a, L, m, J, W = Model(planar=planar), 0.6, 0.9, 1.4, 0.2, 5.0
+    hub = model.node("hub", a * x)
+    model.rigid_body("rod", hub, 0.3, J if planar else (J, J, J))
+    model.attach("end", (a + L) * x, hub)
+    model.point_mass("ball", "end", m)
+    model.revolute(hub, {"z": z, "y": y, "planar": 0.0}[axis])
+    spin = W if planar else W * z
+    result = equilibrium(model, 1, spin=spin)
+    found = modes(result, spin)
+    radius = a + L if axis == "y" else a
+    assert found.omega == pytest.approx([W * np.sqrt(m * L * radius / (J + m * L**2))])
+    # the shape in global axes: the ball moves across the link, the hub does not
+    shape = found.shape("end.position")[:, 0]
+    assert np.abs(shape @ (z if axis == "y" else y)) == pytest.approx(np.linalg.norm(shape))
+    assert np.abs(found.shape("hub.position")).max() == 0.0
+    turn = found.shape("hub.rotation")[:, 0]
+    assert np.linalg.norm(shape) == pytest.approx(L * np.linalg.norm(turn))
+    if not planar:
+        assert np.cross(turn, L * x) == pytest.approx(shape)
+
+
+def test_shapes_by_names():
+    """A cantilever moves across its axis; its tip turns by 1.3765 of deflection over length."""
+    model = clamped()
+    model.rigid_bodies.clear()
+    found = vibrations(Simulation(model, 0.01), 3)
+    along = model.nodes["tip"].point / np.linalg.norm(model.nodes["tip"].point)
+    tip, turn = found.shape("tip.position"), found.shape("tip.rotation")
+    assert tip.shape == (3, 3) and found.shape("beam.modes").shape == (2, 3)
+    assert np.abs(along @ tip[:, :2]).max() < 1e-6 * np.linalg.norm(tip[:, 0])
+    expected = 1.3765 * np.cross(along, tip[:, 0])
+    assert turn[:, 0] == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
+    offset = model.nodes["side"].point - model.nodes["tip"].point
+    side = tip + np.cross(turn, offset, axisa=0).T
+    assert found.shape("side.position") == pytest.approx(side)
 
 
 def test_matrices_do_not_depend_on_where_space_points():

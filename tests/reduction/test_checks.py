@@ -16,7 +16,8 @@ SECTION = Section(9.0, 6.75, 6.75, 11.387, 2.1e6, 0.3, 7.8e-3)
 @pytest.fixture(scope="module")
 def body():
     model = straight_beam([0, 0, 0], [100, 80, 60], SECTION, 10)
-    return craig_bampton(model, {0: "full", 10: "full"}, 2)
+    # imported matrices come without constants of inertia, which belong to one mass
+    return replace(craig_bampton(model, {0: "full", 10: "full"}, 2), invariants=None)
 
 
 def changed(matrix, *entries):

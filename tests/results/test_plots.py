@@ -1,12 +1,15 @@
 """Pictures: what is drawn, by node and by kind of motion."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from sebody import InputError, simulate
 from sebody.results import plots as plot
-from sebody.scenes import box, hinged_beam, spherical_beam_strong
+from sebody.results.skeleton import lines_of, neighbours
+from sebody.scenes import box, heavy_top, hinged_beam, spherical_beam_strong, squeezer
 
 
 @pytest.fixture
@@ -52,6 +55,58 @@ def test_base_without_rotation(tmp_path, drawn):
     result = simulate(scene.model, scene.h, 10 * scene.h)
     plot.save_picture(result, tmp_path / "box.png", scene.base, scene.tip)
     assert drawn[0].axes[0].get_title(loc="left") == "velocity of the tip"
+
+
+def test_bodies_are_drawn_where_they_are(tmp_path, drawn):
+    """Not a line from base to tip: the squeezer has no body there."""
+    scene = squeezer.build()
+    result = simulate(scene.model, scene.h, 5 * scene.h)
+    plot.save_picture(result, tmp_path / "squeezer.png", scene.base, scene.tip)
+    start = next(line for line in drawn[0].axes[1].lines if line.get_label().endswith("start"))
+    # drawn one after the other, with a gap before each
+    ends = start.get_xydata()[1:].reshape(-1, 3, 2)[:, :2].round(12).tolist()
+    bodies = {"crank": ["pin"], "pin": ["point"], "frame": ["spring end", "frame end"],
+              "lower arm": ["lower elbow"], "lower rod": ["lower end"],
+              "upper arm": ["upper elbow"], "upper rod": ["upper end"]}
+    points = {name: node.point.round(12).tolist() for name, node in scene.model.nodes.items()}
+    expected = [[points[one], points[other]] for one, others in bodies.items() for other in others]
+    assert sorted(ends) == sorted(expected)
+
+
+def test_nodes_of_a_body_are_joined_to_their_neighbours():
+    model = box.build().model
+    points = {name: node.point for name, node in model.nodes.items()}
+    along = [np.flatnonzero(points[one] != points[other]).tolist()
+             for one, other in lines_of(model)]
+    assert sorted(along) == [[0]] * 4 + [[1]] * 4 + [[2]] * 4
+    divided = hinged_beam.build(modes=0, elements=4, bodies=4).model
+    assert lines_of(divided) == [("base", "beam 1"), ("beam 1", "beam 2"), ("beam 2", "beam 3"),
+                                 ("beam 3", "tip")]
+
+
+@pytest.mark.parametrize("turn", [0.3, 1.2])
+def test_relative_neighbours_do_not_depend_on_the_axes(turn):
+    c, s = np.cos(turn), np.sin(turn)
+    R = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    cube = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)], dtype=float)
+    assert neighbours(1e-3 * cube @ R.T + 5.0) == [
+        (i, j) for i in range(8) for j in range(i + 1, 8) if bin(i ^ j).count("1") == 1]
+
+
+def test_labels_of_ticks_do_not_collide(tmp_path, drawn):
+    """In space, and in a plane with long numbers."""
+    for scene, steps in ((heavy_top.build(), 2000), (squeezer.build(), 500)):
+        result = simulate(scene.model, scene.h, steps * scene.h)
+        plot.save_picture(result, tmp_path / "a.png", scene.base, scene.tip)
+        axes = drawn[-1].axes[1]
+        renderer = drawn[-1].canvas.get_renderer()
+        for name in "xyz"[:2 if axes.name == "rectilinear" else 3]:
+            axis = getattr(axes, f"{name}axis")
+            low, high = sorted(axis.get_view_interval())
+            boxes = [tick.label1.get_window_extent(renderer) for tick in axis.get_major_ticks()
+                     if low <= tick.get_loc() <= high]
+            assert len(boxes) >= 2
+            assert not any(one.overlaps(other) for one, other in pairwise(boxes)), name
 
 
 @pytest.mark.parametrize("name, message", [

@@ -150,7 +150,8 @@ def test_a_half_node_has_no_rotation():
 
 def test_save_and_read_back(tmp_path):
     path = spatial().save(tmp_path / "out.npz")
-    with np.load(path) as saved:
+    with np.load(path) as file:
+        saved = {name: file[name] for name in file if not name.startswith("sebody/")}
         assert set(saved) == {name for name in SPATIAL
                               if not name.endswith((".acceleration", ".modes"))}
         assert all(np.array_equal(saved[name], spatial()[name]) for name in saved)
@@ -180,4 +181,5 @@ def test_a_failed_run_is_saved(tmp_path):
     kept = caught.value.result
     with np.load(kept.save(tmp_path / "kept.npz")) as saved:
         assert saved["t"].size == len(kept.t) >= 10
-        assert all(np.isfinite(saved[name]).all() for name in saved)
+        assert all(np.isfinite(saved[name]).all() for name in saved
+                   if not name.startswith("sebody/"))

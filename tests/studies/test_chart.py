@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from sebody.cli.entry import main
 from sebody.studies import chart
@@ -55,6 +56,39 @@ def test_reference_is_kept_and_knows_its_error(tmp_path, monkeypatch):
     distance = np.linalg.norm(first.values - better.values) / np.linalg.norm(better.values)
     assert distance < first.error < 20 * distance
     assert better.error < first.error / 5
+
+
+def test_a_reference_is_computed_where_none_can_be_kept(tmp_path, monkeypatch):
+    """A damaged file counts as absent; without a folder that can be written a run goes on."""
+    monkeypatch.setattr(reference_module, "history", lambda *a: np.ones((4, 2)))
+    reference("planar-hinged-beam", tmp_path)
+    file, = tmp_path.iterdir()
+    for content in (b"", b"garbage", file.read_bytes()[:100]):
+        file.write_bytes(content)
+        assert np.array_equal(reference("planar-hinged-beam", tmp_path).values, np.ones((4, 2)))
+        with np.load(file) as written:
+            assert written["error"] == 0.0
+    with pytest.warns(RuntimeWarning, match="the reference is computed again next time: "):
+        found = reference("planar-hinged-beam", file / "no folder")
+    assert np.array_equal(found.values, np.ones((4, 2)))
+
+
+@pytest.mark.parametrize("label", ["1 beam", "1 body with a name that is as long as a line"])
+def test_names_begin_right_of_the_axis(tmp_path, monkeypatch, label):
+    figures, save = [], Figure.savefig
+
+    def keep(figure, *arguments, **options):
+        figures.append(figure)
+        save(figure, *arguments, **options)
+    monkeypatch.setattr(Figure, "savefig", keep)
+    points = [replace(POINT, label=label, cost=10.0**-k, error=10.0**(k - 6)) for k in (2, 3, 4)]
+    chart.draw("hinged-beam", points, points[::-1], 1e-5, tmp_path / "chart.png")
+    figures[0].draw_without_rendering()         # at its own resolution, not that of the file
+    axes, = figures[0].axes
+    names = [text for text in axes.texts if text.get_text() == label]
+    assert len(names) == 3
+    for name in names:
+        assert name.get_window_extent().x0 > axes.get_window_extent().x0
 
 
 def test_chart_writes_table_and_picture(tmp_path, monkeypatch, capsys):

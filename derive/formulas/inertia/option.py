@@ -11,14 +11,30 @@ from typing import NamedTuple
 import sympy as sp
 
 from sebody.derive.formulas.elastic import conjugate_to
+from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.kinematics import unknown_rules
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.steps import Product, Stage, cross
+from sebody.derive.symbolic.linearize import Linearizer
+from sebody.derive.symbolic.steps import Product, Stage, Step, cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 from sebody.kernels.layout import InertiaTraits
 
 PRODUCTS = (Product("momentum, p = Mbar ydot", "M", "yd", "p"),
             Product("inertia force, pd = Mbar yddot", "M", "ydd", "pd"))
+
+
+class Local(NamedTuple):
+    """Steps between the local displacements of the nodes and the forces conjugate to them."""
+
+    motion: tuple[Step, ...]        # local velocities and accelerations, that of the frame
+    forces: tuple[Step, ...]        # conjugate to y
+    share: sp.Matrix                # of a position in the force on the origin, times its weight
+    on_frame: Stage                 # forces on the origin and moment on the frame
+    energy: tuple[Step, ...]
+    prepared: tuple[Step, ...]      # of the matrix, once for all columns
+    held: tuple[Step, ...]          # of a column: forces of changed local coordinates
+    # the rest of a column, with the differentials of what was local velocities before
+    column: Callable[[Linearizer, tuple[Step, ...]], tuple[Step, ...]]
 
 
 class Inertia(NamedTuple):
@@ -33,7 +49,8 @@ class Inertia(NamedTuple):
     spin: sp.Matrix                 # conjugate to Omega_j: material angular momentum of the node
     rules: Rules                    # differentials of its own quantities
     products: tuple[Product, ...]   # momenta and inertia forces
-    kinetic: tuple[str, str]        # rows whose product is twice the kinetic energy
+    kinetic: tuple[str, str] | None     # rows whose product is twice the kinetic energy
+    local: Callable[[Quantities, Frame], Local] | None = None   # if not by momenta of the nodes
 
 
 class InertiaOption(NamedTuple):

@@ -2,12 +2,15 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from sebody.results.plots import write_picture
 from sebody.studies.chart.cases import Point
 
 COLORS = {"frames": "#c8452d", "modes": "#2a7f62", "bodies": "#3c6fb6", "steps": "#b58a1b",
           "nonlinear beams": "#1f2a44", "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
 MOST_NAMES = 7      # of the front that are written beside their points
+EDGE = 6.0          # dots between the axis and a name
 
 
 def draw(scene: str, points: list[Point], line: list[Point], limit: float,
@@ -27,10 +30,10 @@ def draw(scene: str, points: list[Point], line: list[Point], limit: float,
     axes.step([p.cost for p in line], [p.error for p in line], where="post", color="#1f2a44",
               linewidth=0.8, zorder=1)
     every = max(1, -(-len(line) // MOST_NAMES))
-    for point in line[::every]:
-        axes.annotate(point.label, (point.cost, point.error), (-3, -4), fontsize=8, ha="right",
-                      va="top", textcoords="offset points", color="#1f2a44", zorder=4,
-                      bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
+    names = [axes.annotate(point.label, (point.cost, point.error), (-3, -4), fontsize=8, ha="right",
+                           va="top", textcoords="offset points", color="#1f2a44", zorder=4,
+                           bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8,
+                                 "pad": 0.5}) for point in line[::every]]
     axes.axhline(limit, color="#9aa5b8", linewidth=0.8, linestyle="--")
     axes.annotate("error of the reference", (1.0, limit), (-4, 3), ha="right", fontsize=7,
                   xycoords=("axes fraction", "data"), textcoords="offset points", color="#6b7485")
@@ -43,4 +46,18 @@ def draw(scene: str, points: list[Point], line: list[Point], limit: float,
     axes.set_axisbelow(True)
     axes.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0.0, 0.08))
     axes.margins(x=0.1)
+    _make_room(figure, axes, names)
     write_picture(figure, path, 130)
+
+
+def _make_room(figure, axes, names: list) -> None:
+    """Begin the axis of times so far to the left that names end on it, not across it."""
+    figure.draw_without_rendering()
+    frame = axes.get_window_extent()
+    low, high = np.log10(axes.get_xlim())
+    for name in names:
+        # of the axis, at the left of the point; in logarithms the rest of it keeps its length
+        taken = (axes.transData.transform(name.xy)[0] - name.get_window_extent().x0
+                 + EDGE) / frame.width
+        low = min(low, (np.log10(name.xy[0]) - taken * high) / (1.0 - taken))
+    axes.set_xlim(10.0**low, 10.0**high)

@@ -75,7 +75,8 @@ def _key(scene: str) -> str:
     built = builder(scene)()
     text = [built.h, built.t_end, ELEMENTS, FINER, COARSEST]
     text += [(load.name, [(k, np.asarray(v).tolist()) for k, v in load.constants.items()],
-              load.history.times, load.history.cubics) for load in built.model.loads]
+              load.history.times, load.history.pieces,
+               load.history.waves) for load in built.model.loads]
     text += [b.body.stiffness.tobytes() + b.body.mass.tobytes()
              for b in built.model.bodies.values()]
     return hashlib.sha256(repr(text).encode()).hexdigest()[:12]

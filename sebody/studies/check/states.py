@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
-from sebody.kernels.abi import Arguments, call_kernel, padded
+from sebody.kernels.abi import Arguments, call_kernel
 from sebody.kernels.layout import (
     AT_POSITIONS,
     AT_ROTATIONS,
@@ -25,6 +25,7 @@ from sebody.kernels.layout import (
     Row,
     first_mode,
     first_rotation,
+    scratch_size,
     superelement_counts,
 )
 from sebody.kernels.pipeline import compiled
@@ -66,6 +67,8 @@ class Case(NamedTuple):
     frames: NDArray
     field: NDArray = np.zeros(3)
     loads: NDArray = np.zeros(3)    # amplitude and two rates
+    slaved: int = 0             # of option C: coordinates that follow the others
+    resultants: int = 0         # and stress resultants of second order
 
     @property
     def planar(self) -> bool:
@@ -100,7 +103,8 @@ class Case(NamedTuple):
     @property
     def counts(self) -> dict[str, int]:
         """The counts that sizes of the constants are products of."""
-        return superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n)
+        return superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n,
+                                   self.slaved, self.resultants)
 
     @property
     def row(self) -> Row:
@@ -143,15 +147,21 @@ def _call(address, task, stride, width, arguments):
 
 def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Arguments:
     """Arguments of the kernel of a case for one element, results zero."""
-    n, module = case.n, case.module
+    n = case.n
     return Arguments(
         index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
         references=case.reference, frames=case.frames.copy(),
         T=np.tile(np.eye(3).ravel(), max(case.n_rotations, 1)), loads=case.loads,
         coefficients=np.array([*coefficients, *case.field], dtype=float), forces=np.zeros(n),
         matrices=np.zeros(n * n),
-        work=np.zeros(module.WORK_ROWS * padded(max(n, 9 * max(case.n_rotations, 1)))),
+        work=np.zeros(scratch(case)),
         energies=np.zeros(POWERS + 1))
+
+
+def scratch(case: Case) -> int:
+    """Scratch memory of a kernel; elements have no squares."""
+    squares = getattr(case.module, "WORK_SQUARES", 0)
+    return scratch_size(case.module.WORK_ROWS, squares, case.n, max(case.n_rotations, 1))
 
 
 def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)

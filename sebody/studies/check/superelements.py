@@ -26,6 +26,16 @@ from sebody.studies.check.definitions import (
     local_velocities,
     mean_rotation,
 )
+from sebody.studies.check.floating import (
+    FOLLOWING,
+    first_moment,
+    generic_constants,
+    is_floating,
+    kinetic,
+    stiffness,
+    strain,
+    without_stiffness,
+)
 from sebody.studies.check.states import (
     LIMIT,
     STATES,
@@ -105,6 +115,10 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
         values["C"] = damping * M @ M     # any positive matrix
     case = Case(module, n, index_row(n, npos, nrot), np.zeros(0), q, R, v, a, frame, frame.copy(),
                 gravity * random.normal(size=3))
+    if is_floating(case):
+        slaved, resultants = FOLLOWING[seed % len(FOLLOWING)]
+        case = case._replace(slaved=slaved, resultants=resultants)
+        values |= generic_constants(random, case, values)
     return with_constants(case, values | _declared(case, values, random))
 
 
@@ -132,6 +146,8 @@ def without(case: Case, what: str) -> Case:
     """The case with no stiffness and no gravity, or no inertia."""
     name = {"stiffness": "S", "inertia": "M"}[what]
     without_it = changed(case, **{name: np.zeros((case.n, case.n))})
+    if what == "stiffness" and is_floating(case):
+        without_it = changed(without_it, **without_stiffness(case))
     return without_it._replace(field=0 * case.field) if what == "stiffness" else without_it
 
 
@@ -172,15 +188,19 @@ def asymmetry(case: Case) -> float:
 
 def energies(case: Case) -> float:
     """Strain (24), kinetic energy (34) and potential against coordinates found by other means."""
-    constants, y, yd = constants_of(case), local_coordinates(case), local_velocities(case)
+    constants, y = constants_of(case), local_coordinates(case)
     computed = evaluate(case, ENERGY)[2]
-    d = case.dimension
-    moment = constants["mc"] + constants["mass_columns"].T @ y
+    d, V = case.dimension, y @ constants["S"] @ y / 2
+    if is_floating(case):
+        T, V, moment = kinetic(case), strain(case, y), first_moment(case, y)
+    else:
+        yd = local_velocities(case)
+        T = yd @ constants["M"] @ yd / 2
+        moment = constants["mc"] + constants["mass_columns"].T @ y
     x = case.q[:case.first_rotation].reshape(-1, d)
     origin, R0 = constants["alphas"] @ x, frame_rotation(case).as_matrix()[:d, :d]
     potential = -(case.field[:d] @ (constants["masses"][0] * origin + R0 @ moment))
-    return max(abs(computed[KINETIC] / (yd @ constants["M"] @ yd / 2) - 1),
-               abs(computed[STRAIN] / (y @ constants["S"] @ y / 2) - 1),
+    return max(abs(computed[KINETIC] / T - 1), abs(computed[STRAIN] / V - 1),
                abs(computed[POTENTIAL] - potential) / max(abs(potential), 1e-300))
 
 
@@ -233,7 +253,16 @@ def paper_tangent(case: Case) -> float:
     rest = case._replace(v=0 * case.v, a=0 * case.a)
     upsilon = gradient(rest, local_coordinates, 0.01)
     paper = evaluate(rest, TANGENT, (0, 0, 1, 0, 1))[1]
-    return difference(paper, upsilon.T @ constants_of(case)["S"] @ upsilon)
+    elastic = (stiffness(rest, local_coordinates(rest)) if is_floating(rest) else
+               constants_of(case)["S"])
+    return difference(paper, upsilon.T @ elastic @ upsilon)
+
+
+def power(case: Case) -> float:
+    """Power of the force on the unknowns against the rate of the energy along a path."""
+    rate = derivative(lambda t: evaluate(along_path(case, t), ENERGY)[2][
+        [KINETIC, STRAIN, POTENTIAL]].sum(), 0.003)
+    return abs(evaluate(case, RESIDUAL)[0] @ case.v / rate - 1)
 
 
 def geometric_term(case: Case) -> float:
@@ -244,6 +273,7 @@ def geometric_term(case: Case) -> float:
 
 
 EXACT_FORCE = {"force = dV/dq (30)": elastic_force, "Hamilton's force (45), (57)": inertia_force,
+               "power = rate of the energy": power,
                "K - K^T = skew(G)": asymmetry, "tangent (31)": paper_tangent}
 MODES_APART = {"modes apart": mode_coupling}
 DAMPING = {"power of damping": damping_power, "damping of rigid motion": damping_of_rigid_motion}

@@ -1,0 +1,124 @@
+"""Velocities with which bodies follow drives that have a speed at the start, without a shock.
+
+A drive that moves one node of a body at once, while the others rest, would strain the body. So of
+the velocities that fit the joints those are taken that change least in the norm of kinetic energy,
+the kinetic energy of deformation counting `STIFF` times as much: bodies move as rigid ones as far
+as joints, drives and given velocities let them. What deformation this leaves, which is more where
+light nodes pull heavy bodies, is reduced by as much again in every further pass from there.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix, diags
+
+from sebody.analysis.redundancy import least
+from sebody.assembly.numbering import Numbering, coordinates
+from sebody.engine.links import place_dependent
+from sebody.engine.state import State
+from sebody.engine.system import System
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Superelement, Triplet
+
+STIFF = 1e8
+PASSES = 3              # of a long slender beam the first leaves 1e-4, the third 1e-12
+SMALL = 1e-8            # change of a velocity, relative, that is none
+HEAVY = 1e12            # added mass, relative, that keeps velocities the user gave
+
+
+def follow_drives(model: Mechanism, system: System, numbering: Numbering, state: State,
+                  masses: csc_matrix, rates: NDArray) -> dict[str, float]:
+    """Change the free velocities so that flexible bodies follow drives that start from speed.
+
+    Returns the triplets whose velocity changed, and by how much.
+
+    Parameters
+    ----------
+    masses : (unknowns, unknowns)
+        Masses and constraints.
+    rates : (multipliers,)
+        Of the constraints; their residuals with the velocities as they are.
+    """
+    if not model.bodies or not _starting_from_speed(model, system, numbering, state):
+        return {}
+    multipliers = np.flatnonzero(system.is_multiplier)
+    demand = np.zeros(numbering.free)
+    demand[multipliers] = -rates
+    parts = [_Deformation.of(body, numbering) for body in model.bodies.values()]
+    held = np.zeros(numbering.free)
+    triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
+    for triplet in triplets:
+        if triplet.given:
+            held[coordinates(numbering, triplet)] = HEAVY * abs(masses.diagonal()).max()
+    matrix = csc_matrix(sum((p.places.T @ p.energy @ p.places for p in parts),
+                            masses + diags(held)))
+    before = state.v.copy()
+    for _ in range(PASSES):
+        pull = sum(p.places.T @ (p.energy @ state.v[p.own]) for p in parts)
+        answer = least(matrix, system, demand - pull)
+        answer[multipliers] = demand[multipliers] = 0.0
+        state.v[:numbering.free] += answer
+        place_dependent(system.links, state.q, state.v, state.a, state.R)
+    changes = {t.name: float(np.abs((state.v - before)[coordinates(numbering, t)]).max())
+               for t in triplets}
+    return {name: change for name, change in changes.items()
+            if change > SMALL * np.abs(state.v).max()}
+
+
+def _starting_from_speed(model: Mechanism, system: System, numbering: Numbering,
+                         state: State) -> bool:
+    ports = [*system.prescribed[:, 1], *(numbering.ports[id(c)] for c in model.constraints
+                                         if c.history is not None)]
+    return any(state.loads[3 * port + 1] != 0.0 for port in ports)
+
+
+class _Deformation(NamedTuple):
+    """The kinetic energy of deformation of a body, as a function of its velocities."""
+
+    energy: NDArray     # ``STIFF D``, D = M - M r (r^T M r)^-1 r^T M with the rigid modes r
+    places: csc_matrix  # its velocities by those of the unknowns
+    own: NDArray        # its coordinates
+
+    @classmethod
+    def of(cls, body: Superelement, numbering: Numbering) -> "_Deformation":
+        """That of a superelement."""
+        reduced = body.body
+        r = reduced.rigid_modes_about(reduced.centre_of_mass)
+        momentum = reduced.mass @ r
+        energy = reduced.mass - momentum @ np.linalg.pinv(r.T @ momentum) @ momentum.T
+        first = numbering.modes[body.name]
+        own = [c for t in (*body.positions, *body.rotations) for c in coordinates(numbering, t)]
+        own += range(first, first + reduced.modes)
+        return cls(STIFF * energy, _by_unknowns(body, numbering), np.array(own))
+
+
+def _by_unknowns(body: Superelement, numbering: Numbering) -> csc_matrix:
+    """Velocities of a body's coordinates by those of the unknowns, at the start: axes are global.
+
+    Fixed and prescribed coordinates have none; the end of a rigid link follows root and arms.
+    """
+    rows, columns, values = [], [], []
+
+    def add(row: int, triplet: Triplet, block: NDArray) -> None:
+        for i, j in np.ndindex(block.shape if triplet.solved else (0, 0)):
+            rows.append(row + i)
+            columns.append(numbering.triplets[id(triplet)] + j)
+            values.append(block[i, j])
+
+    row = 0
+    for triplet in (*body.positions, *body.rotations):
+        size = triplet.start.size
+        if triplet.root is None:
+            add(row, triplet, np.eye(size))
+        else:
+            add(row, triplet.root, np.eye(size))
+            for rotation, (*arm,) in triplet.arms:
+                add(row, rotation, np.array([[-arm[1]], [arm[0]]]) if size == 2 else
+                    np.cross(np.eye(3), arm).T)
+        row += size
+    modes, first = body.body.modes, numbering.modes[body.name]
+    rows += range(row, row + modes)
+    columns += range(first, first + modes)
+    return csc_matrix((values + [1.0] * modes, (rows, columns)),
+                      shape=(row + modes, numbering.free))

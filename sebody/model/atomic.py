@@ -1,0 +1,27 @@
+"""Builders that change a model wholly or not at all."""
+
+from collections.abc import Callable
+from copy import copy
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
+Arguments = ParamSpec("Arguments")
+Built = TypeVar("Built")
+
+
+def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
+    """A builder that leaves its model, the first argument, as it was where it raises.
+
+    What it adds is taken out again; triplets that exist are changed only when nothing more is
+    checked.
+    """
+    @wraps(build)
+    def built(model, *args, **named):
+        kept = {name: copy(value) for name, value in vars(model).items()
+                if isinstance(value, dict | list | set)}
+        try:
+            return build(model, *args, **named)
+        except BaseException:
+            vars(model).update(kept)
+            raise
+    return built

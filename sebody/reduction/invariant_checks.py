@@ -1,0 +1,110 @@
+"""Checks of the constants of option C against the reduced matrices of their body.
+
+The shapes contain the rigid motions, ``Phi y_t = E_t`` and ``Phi y_r = E_r``: all constants but K
+and J2 follow from Mbar, and K and J2 on rigid translations, too.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.reduction.checks import NEGATIVE_STIFFNESS_LIMIT, unit_scale
+from sebody.reduction.invariants import InertiaInvariants
+
+CONTRADICTION_LIMIT = 1e-6  # relative; matrices from files have some eight digits or more
+_REMEDY = "compute both from one FE model, with the same modes in the same order"
+
+
+def check_invariants(invariants: InertiaInvariants, stiffness: NDArray, mass: NDArray,
+                     rigid: NDArray, names: list[str]) -> None:
+    """Raise InputError unless the constants are of this body and its modes.
+
+    Parameters
+    ----------
+    stiffness, mass : (n, n)
+        Reduced matrices.
+    rigid : (n, 6), planar (n, 3)
+        Rigid motions about the constants' origin.
+    names : list of str
+        Of the n coordinates.
+    """
+    _check_shapes(invariants, len(names))
+    names = [*names, *(f"mode slaved {b}" for b in range(invariants.slaved))]
+    scale = unit_scale(invariants.Mbar, names)
+    n = len(mass)
+    _compare("Mbar", invariants.Mbar[:n, :n], mass, scale[:n], scale[:n], "the reduced mass")
+    for name, array in (("Q", invariants.Q), ("Ghat", invariants.Ghat)):
+        if np.abs(array - array.transpose(0, 2, 1)).max(initial=0.0) > (
+                CONTRADICTION_LIMIT * np.abs(array).max(initial=0.0)):
+            raise InputError(f"invariants.{name} is not symmetric; use a geometric stiffness that "
+                             "is the second derivative of an energy")
+    _check_rigid(invariants, rigid, scale)
+    _check_resultants(invariants, stiffness, scale[:n])
+
+
+def _check_shapes(invariants: InertiaInvariants, n: int) -> None:
+    D, r = (2, 1) if invariants.planar else (3, 3)
+    eta, e = invariants.slaved, invariants.resultants
+    N = n + eta
+    wanted = {"c0": (D,), "S1": (D, N), "J0": (r, r), "g": (r, N), "h": (r, r, N),
+              "K": (r, N, N), "J2": (r, r, N, N), "Mbar": (N, N), "Q": (eta, n, n), "lam": (e,),
+              "E": (n, e), "Ghat": (e, n, n), "origin": (D,)}
+    for name, shape in wanted.items():
+        array = getattr(invariants, name)
+        if array.shape != shape:
+            raise InputError(f"invariants.{name} has shape {array.shape}; {n} coordinates and "
+                             f"{eta} slaved ones need {shape}")
+        if not np.isfinite(array).all():
+            raise InputError(f"invariants.{name} is not finite; compute it again")
+
+
+def _check_rigid(invariants: InertiaInvariants, rigid: NDArray, scale: NDArray) -> None:
+    """What follows from Mbar on the rigid motions."""
+    D = len(invariants.c0)
+    whole = np.vstack([rigid, np.zeros((invariants.slaved, rigid.shape[1]))])
+    momenta = whole.T @ invariants.Mbar             # (S1 ; g)
+    rows = np.sqrt(np.diag(momenta @ whole))        # of unit rigid motions: kinetic energies
+    still = np.full(D, rows[:D].max())
+    turning = np.full(len(rows) - D, rows[D:].max(initial=0.0))
+    by_mass = "the reduced mass"
+    _compare("mass", np.array([[invariants.mass]]), (momenta @ whole)[:1, :1], still[:1],
+             still[:1], by_mass)
+    _compare("S1", invariants.S1, momenta[:D], still, scale, by_mass)
+    _compare("g", invariants.g, momenta[D:], turning, scale, by_mass)
+    _compare("J0", invariants.J0, momenta[D:] @ whole[:, D:], turning, turning, by_mass)
+    moments = invariants.S1 @ whole[:, D:]          # e_i . (e_k x c0)
+    arms = [_turned(k, invariants.c0) for k in range(len(invariants.J0))]
+    _compare("c0", np.array(arms).T, moments, still, turning, by_mass)
+    for k, row in enumerate(invariants.K):
+        expected = np.array([_turned(k, e) @ invariants.S1 for e in np.eye(D)])
+        _compare("K", whole[:, :D].T @ row, expected, still, scale, "S1")
+
+
+def _check_resultants(invariants: InertiaInvariants, stiffness: NDArray, scale: NDArray) -> None:
+    if not np.all(invariants.lam > 0):
+        raise InputError(f"invariants.lam has {invariants.lam.min():.3g}; give positive "
+                         "stiffnesses")
+    rest = stiffness - (invariants.E * invariants.lam) @ invariants.E.T
+    unit = np.outer(scale, scale)
+    values = np.linalg.eigvalsh(rest / unit)
+    largest = np.abs(np.linalg.eigvalsh(stiffness / unit)).max()
+    if values[0] < -NEGATIVE_STIFFNESS_LIMIT * largest:
+        raise InputError("invariants.lam and E make more stiffness than the body has (eigenvalue "
+                         f"{values[0] / largest:.2e} of the largest is left); {_REMEDY}")
+
+
+def _compare(name: str, found: NDArray, expected: NDArray, rows: NDArray, columns: NDArray,
+             other: str) -> None:
+    unit = np.outer(rows, columns)
+    defect = np.abs(found - expected) / np.where(unit > 0, unit, 1.0)
+    if defect.max(initial=0.0) > CONTRADICTION_LIMIT:
+        place = tuple(int(i) for i in np.unravel_index(np.argmax(defect), defect.shape))
+        raise InputError(f"invariants.{name} contradicts {other}: {found[place]:.6g} in place of "
+                         f"{expected[place]:.6g} at {place}; {_REMEDY}")
+
+
+def _turned(axis: int, vector: NDArray) -> NDArray:
+    """``e_k x v``."""
+    if len(vector) == 2:
+        return np.array([-vector[1], vector[0]])
+    return np.cross(np.eye(3)[axis], vector)

@@ -1,0 +1,252 @@
+"""Wrong arguments of everything that builds a model."""
+
+from malformed.cases import (
+    INF,
+    NAN,
+    NO_COUNT,
+    NO_FLAG,
+    NO_NAME,
+    NO_NUMBER,
+    Right,
+    are,
+    have,
+    nodes,
+    not_negative,
+    positive,
+    vectors,
+)
+
+from sebody import Model
+from sebody.fem import Section, straight_beam
+from sebody.reduction import craig_bampton
+
+SECTION = Section(1.0, 1e-2, 1e-2, 1e-2, 1e6, 0.3, 1.0)
+POINTS = {"a": (0.0, 0.0, 0.0), "b": (1.0, 0.2, 0.0), "c": (0.0, 0.0, 0.0), "d": (0.0, 2.0, 0.0)}
+BODY = craig_bampton(straight_beam(POINTS["a"], POINTS["b"], SECTION, 2), {0: "full", 2: "full"}, 1)
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+TABLE = [(0.0, 0.0), (1.0, 2.0)]
+
+
+def spatial() -> Model:
+    """Four full nodes, one without and one with nothing but a rotation; two bodies."""
+    model = Model()
+    for name, point in POINTS.items():
+        model.node(name, point)
+    model.node("place", (3.0, 0.0, 0.0), "translation")
+    model.node("turn", (4.0, 0.0, 0.0), "rotation")
+    model.superelement("beam", BODY, ["a", "b"])
+    model.rigid_body("ball", "d", 1.0, (1.0, 1.0, 1.0))
+    return model
+
+
+def planar() -> Model:
+    """Two nodes at one point and one elsewhere."""
+    model = Model(planar=True)
+    for name in "abc":
+        model.node(name, POINTS[name][:2])
+    return model
+
+
+OTHER = spatial().nodes["a"]
+foreign = (OTHER, "node 'a' is of another model: use that of this one")
+lacks_place = ("turn", "node 'turn' has no position: make it with keeps='full'")
+lacks_turn = ("place", "node 'place' has no rotation: make it with keeps='full'")
+itself = ("a", "node 'a' is joined to itself: give two nodes")
+apart = ("b", "nodes 'a' and 'b' start apart: give both the same point")
+
+
+def axis(what: str) -> list:
+    """Wrong axes of a joint at node a."""
+    return [*vectors(f"axis of the {what} at 'a'", 3),
+            ((0.0, 0.0, 0.0), f"axis of the {what} at 'a' is zero: give its direction")]
+
+
+def names(default: str) -> list:
+    """Wrong names of a joint, load or drive."""
+    return [*[pair for pair in are(f"name of the {default}", *NO_NAME) if pair[0] is not None],
+            ("ball", f"{default} cannot be called 'ball': a rigid body has that name")]
+
+
+def histories() -> list:
+    """Wrong histories of a load."""
+    return [*have("load history has shape", [1.0, 2.0], [(0.0, 1.0, 2.0)], 3.0),
+            *have("load history", "abc", [("0", "1")], [(0, 1), (1,)], [(0.0, 1j)], {}, []),
+            *have("load history contains NaN or infinite", [(0.0, NAN)], [(0.0, INF)]),
+            *have("times of a load history must increase", [(1.0, 0.0), (0.0, 1.0)])]
+
+
+BODIES = {
+    "Model": Right(lambda m, **a: Model(**a), {"planar": False},
+                   {"planar": are("planar", *NO_FLAG, [])}),
+    "node": Right(Model.node, {"name": "new", "point": X}, {
+        "name": [*are("name of a node", *NO_NAME, also=": "),
+                 ("a", "node 'a' exists already: give every node its own name"),
+                 *[(name, f"a node cannot be called {name!r}: results have {name}.* of the model")
+                   for name in ("constraints", "energy")]],
+        "point": vectors("point of node 'new'", 3),
+        "keeps": have("node 'new' keeps", "both", None, 3, [], True),
+        "at": [*[pair for pair in nodes(foreign) if pair[0] is not None],
+               ("b", "cannot share the position of 'b'")]}),
+    "attach": Right(Model.attach, {"name": "new", "point": X, "to": "a"}, {
+        "name": are("name of a node", *NO_NAME), "point": vectors("point of node 'new'", 3),
+        "to": nodes(foreign, lacks_place, lacks_turn)}),
+    "initial_velocity": Right(Model.initial_velocity, {"node": "a", "linear": X, "angular": X}, {
+        "node": nodes(foreign, lacks_place),
+        "linear": [pair for pair in vectors("initial rate of a.position", 3)
+                   if pair[0] is not None],
+        "angular": [pair for pair in vectors("initial rate of a.rotation", 3)
+                    if pair[0] is not None]}),
+    "rigid_velocity": Right(Model.rigid_velocity, {"linear": X, "angular": Z, "about": Y}, {
+        "linear": vectors("linear velocity", 3), "angular": vectors("angular velocity", 3),
+        "about": [pair for pair in vectors("about", 3) if pair[0] is not None]}),
+    "superelement": Right(Model.superelement, {"name": "new", "body": BODY, "nodes": ["a", "b"]}, {
+        "name": [*are("name of a superelement", *NO_NAME),
+                 ("beam", "superelement 'beam' exists already")],
+        "body": are("body of superelement 'new'", None, 3, "beam", SECTION,
+                    also=": give a ReducedBody"),
+        "nodes": [*are("nodes of superelement 'new'", None, "ab", 3),
+                  *have("superelement 'new' has 2 boundary nodes and", ["a"], [], ["a", "b", "c"]),
+                  *have("superelement 'new': the nodes do not lie where", ["b", "a"], ["a", "a"]),
+                  *have("node is", [None, "b"], ["a", 3]), (["a", "x"], "node 'x' is unknown"),
+                  (["a", "place"], "node 'place' has no rotation")],
+        "frame": have("frame", "middle", None, 3, [], {}),
+        "inertia": have("inertia", "d", None, 3, []),
+        "rotation": [*are("rotation", "abc", 3j),
+                     *have("rotation", 1.0, [[1, 0], [0, 1]], [[NAN] * 3] * 3,
+                           [[2, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 0], [1, 0, 0], [0, 0, 1]])]}),
+    "frame node": Right(Model.superelement, {
+        "name": "new", "body": BODY, "nodes": ["a", "b"], "frame": "node", "frame_node": 1}, {
+            "frame_node": [*are("frame_node", *NO_COUNT),
+                           *have("cannot carry the frame", 2, -1)]}),
+    "rigid_body": Right(Model.rigid_body, {
+        "name": "new", "node": "a", "mass": 1.0, "inertia": (1.0, 2.0, 2.5), "centre": X}, {
+            "name": [*are("name of a body", *NO_NAME), ("ball", "body 'ball' exists already"),
+                     ("beam", "body 'beam' exists already")],
+            "node": nodes(foreign, lacks_place, lacks_turn), "mass": positive("mass of 'new'"),
+            "inertia": [*have("inertia of 'new'", "123", None, 1.0, (1.0, 2.0), (1, 1, NAN),
+                              (1j, 1, 1), ("1", "1", "1"), [[1.0, 0], [0, 1.0]]),
+                        *have("inertia of 'new' has the principal moments", (1.0, 1.0, 3.0),
+                              (-1.0, 1.0, 1.0)),
+                        ([[1, 1, 0], [0, 1, 0], [0, 0, 1]], "inertia of 'new' is not symmetric")],
+            "centre": [pair for pair in vectors("centre of 'new'", 3) if pair[0] is not None]}),
+    "point_mass": Right(Model.point_mass, {"name": "new", "node": "a", "mass": 1.0}, {
+        "name": are("name of a body", *NO_NAME), "node": nodes(foreign, lacks_place),
+        "mass": positive("mass of 'new'")}),
+    "beam": Right(Model.beam, {"name": "new", "ends": ("a", "d"), "section": SECTION,
+                               "elements": 4, "bodies": 2, "modes": 1, "damping": 0.1}, {
+        "name": are("name of a beam", *NO_NAME),
+        "ends": [*are("ends of beam 'new'", None, "ad", 3, ["a"], ["a", "b", "c"]),
+                 *have("node", ["a", None], ["a", "far"]),
+                 (["a", "c"], "both ends at the same point"),
+                 (["a", "place"], "node 'place' has no rotation")],
+        "section": have("section", None, 3, "IPE 200", BODY),
+        "elements": [*are("elements", *NO_COUNT, 0, -2),
+                     (3, "3 elements cannot be divided among 2 bodies: give a multiple")],
+        "bodies": [pair for pair in have("elements cannot be divided among", *NO_COUNT, 0, 3, -1)
+                   if pair[0] is not None],
+        "modes": [*are("modes", *NO_COUNT), *have("modes is", -1, 1000)],
+        "up": [pair for pair in vectors("up", 3) if pair[0] is not None] + [
+            (Y, "lies along a beam")],
+        "damping": not_negative("beam 'new': damping"),
+        "frame": have("frame", "middle", None), "inertia": have("inertia", "z")}),
+    "element": Right(Model.element, {"name": "ball"}, {
+        "name": have("is unknown", "bal", "", None, 3, [])}),
+}
+
+REVOLUTE = {"node": nodes(foreign, lacks_place), "axis": axis("revolute joint"),
+            "to": [pair for pair in nodes(foreign, itself, apart) if pair[0] is not None],
+            "explicit": are("explicit of the revolute joint", *NO_FLAG),
+            "name": names("revolute at a")}
+JOINTS = {
+    "fix": Right(Model.fix, {"node": "a", "what": "both"}, {
+        "node": nodes(foreign, lacks_place, lacks_turn),
+        "what": have("cannot fix", "all", None, 3, [], True)}),
+    "revolute": Right(Model.revolute, {"node": "a", "axis": Z, "to": "c"}, REVOLUTE),
+    "universal": Right(Model.universal, {"node": "a", "axis": X, "other": Z, "to": "c"}, {
+        "axis": axis("universal joint"),
+        "other": [*axis("universal joint"), (X, "its axes enclose 0 degrees")],
+        "to": [itself, apart], "explicit": are("explicit of the universal joint", "yes")}),
+    "cylindrical": Right(Model.cylindrical, {"node": "a", "axis": Z, "to": "c"}, {
+        "node": nodes(lacks_turn), "axis": axis("cylindrical joint"),
+        "to": [itself, ("b", "cylindrical: node 'b' is off the axis through 'a'")],
+        "name": names("cylindrical at a")}),
+    "prismatic": Right(Model.prismatic, {"node": "a", "axis": Z, "to": "c"}, {
+        "axis": axis("prismatic joint"), "to": [itself, ("b", "node 'b' is off the axis")]}),
+    "slider": Right(Model.slider, {"node": "a", "axis": Z, "to": "c"}, {
+        "node": nodes(lacks_place), "axis": axis("slider"), "to": [itself, lacks_turn]}),
+    "planar_joint": Right(Model.planar_joint, {"node": "a", "normal": Z, "to": "c"}, {
+        "normal": axis("planar joint"), "to": [itself, lacks_turn]}),
+    "spherical": Right(Model.spherical, {"node": "a", "to": "c"}, {
+        "node": nodes(lacks_place), "to": [itself, apart],
+        "explicit": are("explicit of the spherical joint", *NO_FLAG)}),
+    "weld": Right(Model.weld, {"node": "a", "to": "c"}, {
+        "node": nodes(lacks_place, lacks_turn), "to": [itself, apart],
+        "explicit": are("explicit of the weld", *NO_FLAG), "name": names("weld at a")}),
+    "distance": Right(Model.distance, {"node": "a", "to": "b"}, {
+        "node": nodes(lacks_place),
+        "to": nodes(itself, ("c", "distance between 'a' and 'c' is zero")),
+        "name": names("distance at a")}),
+}
+LOADS = {
+    "force": Right(Model.force, {"node": "a", "direction": X, "amplitude": TABLE}, {
+        "node": nodes(foreign, lacks_place), "direction": vectors("force on a.position", 3),
+        "amplitude": histories(), "follower": are("follower", *NO_FLAG),
+        "name": names("force on a.position")}),
+    "torque": Right(Model.torque, {"node": "a", "direction": X, "amplitude": TABLE}, {
+        "node": nodes(foreign, lacks_turn), "direction": vectors("torque on a.rotation", 3),
+        "amplitude": histories(), "follower": are("follower", *NO_FLAG)}),
+    "mode_force": Right(Model.mode_force, {
+        "body": "beam", "mode": 0, "factor": 1.0, "amplitude": TABLE}, {
+            "body": have("superelement", "ball", None, 3, [], BODY),
+            "mode": [*are("mode of superelement 'beam'", *NO_COUNT),
+                     *have("superelement 'beam' has no mode", 1, -1)],
+            "factor": are("force on mode 0 of 'beam'", *NO_NUMBER), "amplitude": histories()[:4]}),
+    "user_force": Right(Model.user_force, {
+        "name": "new", "nodes": ["a"], "function": lambda t, x, v, force: None}, {
+            "name": are("name of a user force", *NO_NAME),
+            "nodes": [*are("nodes of user force 'new'", None, 3, "a"), ([], "has no nodes"),
+                      *have("node", [None], ["far"], ["turn"])],
+            "function": have("user force 'new' cannot be compiled", None, 3, "sin", lambda t: t)}),
+    "gravity": Right(Model.gravity, {"field": Z}, {"field": vectors("gravity", 3)}),
+    "spring": Right(Model.spring, {"node": "a", "to": "b", "stiffness": 1.0}, {
+        "node": nodes(lacks_place),
+        "to": nodes(itself, ("c", "nodes 'a' and 'c' start together")),
+        "stiffness": not_negative("spring: stiffness"), "damping": not_negative("spring: damping"),
+        "length": [pair for pair in not_negative("spring: length") if pair[0] is not None],
+        "cubic": not_negative("spring: cubic"), "name": names("spring at a")}),
+    "torsion_spring": Right(Model.torsion_spring, {"node": "a", "stiffness": 1.0, "to": "c"}, {
+        "stiffness": not_negative("torsion spring: stiffness"), "axis": axis("torsion spring"),
+        "rest": are("torsion spring at 'a': rest", *NO_NUMBER), "to": [itself, lacks_turn]}),
+    "bushing": Right(Model.bushing, {"node": "a", "to": "c", "stiffness": 1.0}, {
+        **{name: [pair for pair in are(
+            f"bushing at 'a' has a coefficient that is negative or no number: {name}",
+            "1", None, 1j, NAN, -1.0, (1.0, 2.0), (1.0, 1.0, -1.0), ("1", "1", "1"))]
+           for name in ("stiffness", "damping", "turning_stiffness", "turning_damping")},
+        "to": [itself, apart]}),
+    "drive_angle": Right(Model.drive_angle, {"node": "a", "motion": TABLE, "to": "c"}, {
+        "node": nodes(lacks_turn), "axis": axis("drive"),
+        "motion": have("motion of a drive", None, "abc", [(0.0, NAN)], [(1, 0), (0, 1)]),
+        "to": [itself, lacks_turn]}),
+    "drive_slide": Right(Model.drive_slide, {"node": "a", "motion": TABLE, "axis": Z, "to": "c"}, {
+        "axis": axis("drive"), "motion": have("motion of a drive", None, "abc", [(0.0, "1")])}),
+    "move": Right(Model.move, {"node": "a", "direction": X, "motion": TABLE}, {
+        "node": nodes(foreign, lacks_place),
+        "direction": [*vectors("motion of a.position", 3),
+                      ((0.0, 0.0, 0.0), "motion of a.position has the direction")],
+        "motion": have("motion of a drive", None, "abc", [(0.0, NAN)], []),
+        "what": have("cannot move", "both", None, 3, [])}),
+}
+FLAT = {
+    "planar node": Right(Model.node, {"name": "new", "point": (1.0, 2.0)},
+                         {"point": vectors("point of node 'new'", 2)}),
+    "planar torque": Right(Model.torque, {"node": "a", "direction": 1.0}, {
+        "direction": are("torque on a.rotation", "1", None, True, 1j, NAN, (1.0, 2.0),
+                         also=": give 1 finite number")}),
+    "planar body": Right(Model.rigid_body, {
+        "name": "new", "node": "a", "mass": 1.0, "inertia": 1.0}, {
+            "inertia": are("inertia of 'new'", *NO_NUMBER, -1.0, (1.0, 1.0, 1.0))}),
+    "planar gravity": Right(Model.gravity, {"field": (0.0, 1.0)}, {"field": vectors("gravity", 2)}),
+    "planar beam": Right(Model.beam, {"name": "new", "ends": ("a", "b"), "section": SECTION,
+                                      "elements": 1}, {
+        "up": have("beam 'new': up is for beams in space", (0.0, 1.0), X)}),
+}

@@ -1,0 +1,51 @@
+"""Builders of a model refuse wrong arguments in words, and change nothing then."""
+
+import pytest
+from malformed import model_cases
+from malformed.cases import alike, listed
+
+from sebody import InputError, Model
+
+SPATIAL = model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
+
+
+def described(model: Model) -> list:
+    """All that a builder may change."""
+    parts = [sorted(model.own_names), dict(model.default_names), model.gravity_field]
+    parts += [[one.name for one in group] for group in (
+        model.nodes.values(), model.bodies.values(), model.rigid_bodies.values(), model.joints,
+        model.loads, model.grounds)]
+    parts.append([id(one) for one in model.connections])
+    for triplet in model.triplets():
+        parts.append([triplet.name, triplet.fixed, triplet.given, id(triplet.root), triplet.rate,
+                      len(triplet.arms), [motion.name for motion in triplet.motions]])
+    return parts
+
+
+def refuse(model, right, argument, value, said):
+    before = described(model)
+    with pytest.raises(InputError) as caught:
+        right.function(model, **{**right.arguments, argument: value})
+    assert said in str(caught.value)
+    assert alike(described(model), before), "the refused call has changed the model"
+
+
+@pytest.mark.parametrize("right, argument, value, said", listed(SPATIAL))
+def test_in_space(right, argument, value, said):
+    refuse(model_cases.spatial(), right, argument, value, said)
+
+
+@pytest.mark.parametrize("right, argument, value, said", listed(model_cases.FLAT))
+def test_in_a_plane(right, argument, value, said):
+    refuse(model_cases.planar(), right, argument, value, said)
+
+
+@pytest.mark.parametrize("name", SPATIAL)
+def test_the_corrected_call_is_accepted(name):
+    """In a notebook, say: after all refused ones, on the same model."""
+    right, model = SPATIAL[name], model_cases.spatial()
+    for argument, wrong in right.wrong.items():
+        for value, _ in wrong:
+            with pytest.raises(InputError):
+                right.function(model, **{**right.arguments, argument: value})
+    right.function(model, **right.arguments)

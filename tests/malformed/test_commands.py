@@ -1,0 +1,132 @@
+"""Commands refuse what they cannot use: one line on standard error, exit code 2, no file."""
+
+import pytest
+
+from sebody.cli.entry import main
+
+BEAM = ("run", "hinged-beam")
+LONG = "x" * 300
+
+REFUSED = [
+    ((), "COMMAND"), (("fly",), "invalid choice: 'fly'"), (("--fast",), "COMMAND"),
+    (("run",), "required: SCENE"), (("run", ""), "scene '' is unknown"),
+    (("run", "beam"), "scene 'beam' is unknown: there are"),
+    (("run", "../hinged_beam"), "is unknown: there are"), (("run", "1"), "scene '1' is unknown"),
+    (("run", "none.py"), "none.py cannot be read"), (("run", "folder.py"), "folder.py"),
+    (("run", "broken.py"), "broken.py"), (("run", "empty.py"), "empty.py"),
+    (("run", "hinged-beam", "chain"), "unrecognized arguments: chain"),
+    ((*BEAM, "--fast"), "unrecognized arguments: --fast"),
+    *(((*BEAM, option, value), f"argument {option}: invalid") for option in (
+        "--t-end", "--step", "--accuracy", "--rho") for value in ("soon", "", "1,0", "1e", "0x1")),
+    *(((*BEAM, option, value), f"argument {option}: invalid int") for option in (
+        "--index", "--every") for value in ("two", "2.5", "")),
+    *(((*BEAM, option), f"argument {option}: expected one argument") for option in (
+        "--t-end", "--step", "--accuracy", "--rho", "--index", "--every", "--output", "--plot",
+        "--save", "--resume", "--set")),
+    ((*BEAM, "--t-end", "nan"), "the end time is nan: give a number >= 0"),
+    ((*BEAM, "--t-end", "inf"), "the end time is inf: give a number >= 0"),
+    ((*BEAM, "--t-end", "-1"), "the end time is -1.0: give a number >= 0"),
+    ((*BEAM, "--t-end", "1e12"), "that is 1e+14 steps of 0.01, give an earlier time"),
+    ((*BEAM, "--t-end", "1e300"), "steps of 0.01, give an earlier time"),
+    ((*BEAM, "--t-end", "0.1", "--step", "1000"), "cannot run to t_end = 0.1 from t = 0: the step"),
+    *(((*BEAM, "--step", value), f"the time step is {float(value)}: give a positive number")
+      for value in ("0", "-0.01", "nan", "inf")),
+    ((*BEAM, "--step", "1e-300"), "steps of 1e-300, give an earlier time or a longer step"),
+    ((*BEAM, "--step", "1e-12"), "steps of 1e-12, give an earlier time or a longer step"),
+    ((*BEAM, "--accuracy", "1e-30"), "give at least 1e-09, below which shorter steps"),
+    *(((*BEAM, "--accuracy", value), f"tolerance relative is {float(value)}: give a number >= 0")
+      for value in ("-1", "nan", "inf")),
+    ((*BEAM, "--accuracy", "0"), "the tolerance allows no error"),
+    *(((*BEAM, "--rho", value), f"rho is {float(value)}: use a spectral radius")
+      for value in ("2", "-0.1", "nan", "inf")),
+    *(((*BEAM, "--index", value), f"index is {value}: use 3, or 2") for value in ("0", "1", "4")),
+    *(((*BEAM, "--every", value), f"output_every is {value}: give a whole number of steps")
+      for value in ("0", "-3")),
+    ((*BEAM, "--accuracy", "1e-3", "--save", "a.npz"), "leave out --save and --resume"),
+    ((*BEAM, "--accuracy", "1e-3", "--every", "2"), "in place of --every"),
+    ((*BEAM, "--resume", "a.npz", "--step", "0.1"), "leave out --step"),
+    ((*BEAM, "--resume", "none.npz"), "restart file none.npz does not exist"),
+    ((*BEAM, "--resume", "folder.npz"), "folder.npz is a folder"),
+    ((*BEAM, "--resume", "broken.npz"), "is no restart file"),
+    ((*BEAM, "--resume", "broken.txt"), "must end in .npz"),
+    ((*BEAM, "--output", "a.npz", "--save", "a.npz"), "are the same file, a.npz"),
+    *(((*BEAM, option, path), said) for option, end in (
+        ("--output", ".npz"), ("--save", ".npz"), ("--plot", ".png")) for path, said in (
+            (f"a{end}.txt", f"must end in {end}"), (f"none/a{end}", "folder none of the"),
+            (f"folder{end}", f"folder{end} is a folder"), (LONG + end, "cannot be a file"),
+            (f"broken.npz/a{end}", "does not exist"))),
+    *(((*BEAM, "--set", change), f"cannot read --set {change}") for change in ("modes", "")),
+    ((*BEAM, "--set", "colour=red"), "has no parameter 'colour': there are frame="),
+    ((*BEAM, "--set", "=3"), "has no parameter ''"),
+    *(((*BEAM, "--set", f"modes={value}"), f"parameter modes is {value!r}: give a value of type")
+      for value in ("2.5", "two", "", "[1]", "None", "True")),
+    ((*BEAM, "--set", "modes=-1"), "modes is -1"), ((*BEAM, "--set", "modes=999"), "modes is 999"),
+    ((*BEAM, "--set", "elements=0"), "elements is 0"),
+    ((*BEAM, "--set", "bodies=0"), "bodies is 0"),
+    ((*BEAM, "--set", "bodies=3"), "20 elements cannot be divided among 3 bodies"),
+    ((*BEAM, "--set", "frame=middle"), "frame 'middle' is unknown"),
+    ((*BEAM, "--set", "frame="), "frame '' is unknown"),
+    ((*BEAM, "--set", "inertia=z"), "inertia 'z' is unknown"),
+    ((*BEAM, "--set", "frame=node", "--set", "frame_node=7"), "cannot carry the frame"),
+    *((("run", scene, "--set", "layout=tiny"), "layout 'tiny' is unknown: use 'small' or 'full'")
+      for scene in ("box", "right-angle-frame", "shaft")),
+    (("run", "shaft", "--set", "elements=5"), "half the number of elements is 2.5"),
+    (("run", "spin-up", "--set", "case=fast"), "case is 'fast': use kane or simo"),
+    (("run", "chain", "--set", "links=0"), "links is 0: give a whole number >= 1"),
+    (("run", "four-bar", "--set", "loops=-1"), "loops is -1: give a whole number >= 1"),
+    (("run", "torque-free-body", "--set", "inertia=(1, 1, 9)"), "has the principal moments"),
+    (("run", "torque-free-body", "--set", "inertia=(1, 1)"), "inertia of 'body'"),
+    (("run", "torque-free-body", "--set", "spin=(1, 'a', 0)"), "initial rate of centre.rotation"),
+    (("run", "spherical-beam-strong", "--set", "F0=nan"), "parameter F0 is 'nan'"),
+    (("run", "spherical-beam-strong", "--set", "F0=1e999"), "force on tip.position is"),
+    (("list", "beam"), "scene 'beam' is unknown"), (("list", "none.py"), "none.py cannot be read"),
+    (("list", "box", "chain"), "unrecognized arguments: chain"),
+    (("list", "--all"), "unrecognized arguments: --all"),
+    (("check", "nothing"), "kernel 'nothing' is unknown: there are"),
+    (("check", ""), "kernel '' is unknown"), (("check", "--all"), "unrecognized arguments"),
+    (("bench", "beam"), "there is no benchmark of scene 'beam': use"),
+    (("bench", ""), "there is no benchmark of scene ''"),
+    (("bench", "--csv"), "unrecognized arguments"),
+    (("chart",), "required: SCENE"), (("chart", "beam"), "there is no chart of scene 'beam'"),
+    (("chart", "hinged-beam", "--output", "a.txt"), "picture a.txt must end in .png"),
+    (("chart", "hinged-beam", "--output", "none/a.png"), "folder none of the picture"),
+    (("chart", "hinged-beam", "--output", "folder.png"), "folder.png is a folder"),
+    (("chart", "hinged-beam", "--csv", "none/a.csv"), "folder none of the table does not exist"),
+    (("chart", "hinged-beam", "--csv", "folder.npz"), "folder.npz is a folder"),
+    (("atlas", "nowhere"), "the atlas has no case 'nowhere': there are"),
+    (("atlas", ""), "the atlas has no case ''"),
+    (("atlas", "--output", "a.gif"), "picture a.gif must end in .png"),
+    (("atlas", "--output", LONG + ".png"), "cannot be a file"),
+    (("warm", "now"), "unrecognized arguments: now"),
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Folders with the names of files, and files that are none."""
+    found = tmp_path_factory.mktemp("commands")
+    for name in ("folder.npz", "folder.png", "folder.py"):
+        (found / name).mkdir()
+    for name in ("broken.npz", "broken.txt"):
+        (found / name).write_text("not zip")
+    (found / "broken.py").write_text("def build(:\n")
+    (found / "empty.py").write_text("build = 3\n")
+    return found
+
+
+@pytest.mark.parametrize("arguments, said", REFUSED, ids=lambda value: " ".join(value)[:60]
+                         if isinstance(value, tuple) else "")
+def test_refused(arguments, said, folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    before = sorted(folder.rglob("*"))
+    try:
+        code = main(arguments)
+    except SystemExit as refused:       # by argparse
+        code = refused.code
+    printed = capsys.readouterr()
+    assert code == 2
+    assert said in printed.err
+    *usage, last = printed.err.strip().splitlines()
+    assert last.startswith("error: ") or usage and ": error: " in last
+    assert "Traceback" not in printed.err
+    assert sorted(folder.rglob("*")) == before
