@@ -232,9 +232,12 @@ class Simulation:
 
     def result(self) -> Result:
         """The results computed so far."""
-        return Result(self.model, self.numbering, self.system, self.state,
-                      np.concatenate(self.rows), self.seconds, self.failure, self.start,
-                      tuple(self.watch.messages))
+        found = Result(self.model, self.numbering, self.system, self.state,
+                       np.concatenate(self.rows), self.seconds, self.failure, self.start)
+        if found.steps:
+            self.watch.judge(found)
+        found.warnings = tuple(self.watch.messages)
+        return found
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
         """The given scheme, or by default one that suits the steps and the constraints."""
