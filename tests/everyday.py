@@ -116,23 +116,24 @@ def carriage(place: Place) -> Model:
     return model
 
 
-def rockers(place: Place, count: int) -> Model:
+def rockers(place: Place, count: int, along: ArrayLike = (0.0, 1.0, 0.0)) -> Model:
     """Parallel rockers of length 1 side by side, their ends hinged to one coupler."""
     model = hung(place)
     axis = place.turned((0.0, 0.0, 1.0))
-    begin, end = (0.0, 1.0, 0.0), (count - 1.0, 1.0, 0.0)
+    begin, end = along, np.add(along, (count - 1.0, 0.0, 0.0))
     numbers = place.order(range(count))
     for k in numbers:
-        model.node(f"ground {k}", place.point((k, 0.0, 0.0)))
-        rod(model, place, f"rocker {k}", f"ground {k}", (k, 0.0, 0.0), (k, 1.0, 0.0))
-        model.attach(f"B{k}", place.point((k, 1.0, 0.0)), f"ground {k}")
+        foot = np.array((k, 0.0, 0.0))
+        model.node(f"ground {k}", place.point(foot))
+        rod(model, place, f"rocker {k}", f"ground {k}", foot, foot + along)
+        model.attach(f"B{k}", place.point(foot + along), f"ground {k}")
         model.revolute(f"ground {k}", axis=axis)
     first, *others = numbers
-    model.node("coupler", place.point((first, 1.0, 0.0)), at=f"B{first}")
+    model.node("coupler", place.point(np.add(along, (first, 0.0, 0.0))), at=f"B{first}")
     rod(model, place, "coupler", "coupler", begin, end)
     model.revolute(f"B{first}", axis=axis, to="coupler")
     for k in others:
-        model.attach(f"C{k}", place.point((k, 1.0, 0.0)), "coupler")
+        model.attach(f"C{k}", place.point(np.add(along, (k, 0.0, 0.0))), "coupler")
         model.revolute(f"C{k}", axis=axis, to=f"B{k}", explicit=True)
     model.initial_velocity(f"ground {first}", angular=place.turned((0.0, 0.0, -1.0)))
     return model
@@ -187,15 +188,15 @@ def box(place: Place) -> Model:
     return model
 
 
-def double_pendulum(place: Place) -> Model:
-    """Two slender rods on parallel revolutes: no inertia about their own axes."""
+def double_pendulum(place: Place, axial: float = 0.0) -> Model:
+    """Two slender rods on parallel revolutes: no inertia about their own axes, or little."""
     model = hung(place)
     axis = place.turned((0.0, 0.0, 1.0))
     model.node("upper", place.point((0.0, 0.0, 0.0)))
-    rod(model, place, "upper", "upper", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    rod(model, place, "upper", "upper", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), axial)
     model.attach("elbow", place.point((1.0, 0.0, 0.0)), "upper")
     model.node("lower", place.point((1.0, 0.0, 0.0)), at="elbow")
-    rod(model, place, "lower", "lower", (1.0, 0.0, 0.0), (2.0, 0.0, 0.0))
+    rod(model, place, "lower", "lower", (1.0, 0.0, 0.0), (2.0, 0.0, 0.0), axial)
     model.attach("tip", place.point((2.0, 0.0, 0.0)), "lower")
     model.revolute("upper", axis=axis)
     model.revolute("elbow", axis=axis, to="lower")

@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import splu
 
 from sebody.analysis.evaluation import assembled
-from sebody.analysis.sparse import SINGULAR
+from sebody.analysis.sparse import SINGULAR, factors
 from sebody.engine.relaxation import PROJECTIONS, RELAXATION, relax
 from sebody.engine.state import RELAXED, State
 from sebody.engine.system import System
@@ -42,8 +41,8 @@ class RowExchanges:
         scale = diags(self.state.scale[:self.system.diagonal.size])
         matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
         try:
-            self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
-        except RuntimeError:        # a pivot is exactly zero
+            self._factors = factors(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
+        except RuntimeError:
             self._factors = None
             return False
         pivots = np.abs(self._factors.U.diagonal())

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import splu
+from scipy.sparse.csgraph import structural_rank
+from scipy.sparse.linalg import SuperLU, splu
 
 from sebody.engine.relaxation import LIGHT
 from sebody.engine.system import System
@@ -17,6 +18,22 @@ SUSPICIOUS = 1e-6   # pivot below which constraints are looked into, relative to
 RELAXATION = 1e-8   # of regularized matrices as in the engine, but never of an older state
 ATTEMPTS = 20       # refinements: each leaves 2 RELAXATION / s of a part of strength s
 SETTLED = 1e-15     # change of the last refinement, relative to the solution
+
+
+def factors(matrix: csc_matrix, **options: object) -> SuperLU:
+    """Factors by SuperLU with its options.
+
+    Raises
+    ------
+    RuntimeError
+        A pivot is exactly zero. Of a matrix whose pattern is singular SuperLU would read beyond its
+        arrays; one with a stored diagonal, zeros included, is not.
+    """
+    n = matrix.shape[0]
+    stored = np.count_nonzero(matrix.indices == np.repeat(np.arange(n), np.diff(matrix.indptr)))
+    if stored < n and structural_rank(matrix) < n:
+        raise RuntimeError("the pattern is singular")
+    return splu(matrix, **options)
 
 
 class _Dense:
@@ -36,7 +53,7 @@ class _Sparse:
     """Factors of a large one; pivots in the order of elimination."""
 
     def __init__(self, matrix: csc_matrix):
-        self._factors = splu(matrix)
+        self._factors = factors(matrix)
         self.solve = self._factors.solve
 
     @cached_property
