@@ -8,7 +8,7 @@ from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import matrix
 from sebody.analysis.thresholds import BALANCE, CUT, DRIFT, EXCITED, PERIOD
 from sebody.engine.evaluate import to_body_axes
-from sebody.engine.state import CUTS, STEPS
+from sebody.engine.state import ADAPTIVE, CUTS, STEPS
 from sebody.kernels.layout import ENERGIES, RECORD_T
 from sebody.model.parts import Element
 from sebody.results.energy_balance import energy_balance
@@ -21,7 +21,12 @@ NO_MOTION = 1e-9    # of all energies: kinetic energy of a model at rest
 
 
 def remarks(run: Recording) -> dict[str, str]:
-    """Warnings by key; `run` has its rows from the start on."""
+    """Warnings by key; `run` has its rows from the start on.
+
+    A run that failed has said why, and one with a tolerance keeps to it: only their cuts count.
+    """
+    if run.failure or run.state.control[ADAPTIVE]:
+        return _steps(run)
     counts = record_counts(run.numbering)
     chosen = np.unique(np.linspace(0, len(run.rows) - 1, LOOKED_AT).astype(int))
     scratch = allocate(run.model, run.system, run.numbering, 1.0, False)    # the run may go on
@@ -94,6 +99,8 @@ def _fastest(part: Recording, row: NDArray, energy: float) -> float:
     state.v[:], state.a[:] = 0.0, 0.0
     K, M = (matrix(system, state, "a recorded state", mass=mass, damping=0.0, stiffness=stiffness,
                    constraint=stiffness).toarray() for mass, stiffness in ((0.0, 1.0), (1.0, 0.0)))
+    if not (np.isfinite(K).all() and np.isfinite(M).all()):     # a user force elsewhere
+        return 0.0
     to_body_axes(system, state.frames, acceleration, False)
     fixed = system.is_multiplier[:n] > 0.0
     moving, multipliers = np.flatnonzero(~fixed), np.flatnonzero(fixed)
