@@ -48,7 +48,7 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         **_batch_arrays(batches), J_place=places, J_entry=own_entries[kept].astype(np.int32),
         **matrix, **axes,
         is_multiplier=_multipliers(model, numbering), rotation_at=_rotation_starts(numbering),
-        summands=table,
+        summands=table, routines=np.zeros(1, dtype=np.int64),
         dimension=np.array([model.dimension]), magnitude=_magnitude(model, numbering),
         **port_arrays(numbering.histories, numbering.prescribed),
         links=with_entries(links, linked_entries), relaxed=np.zeros(1, dtype=np.int64),

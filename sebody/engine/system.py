@@ -74,6 +74,7 @@ class System(Arrays):
     links               rigid links
     relaxed             (1,) 1 where constraints are redundant
     damped              (1,) 1 where a superelement has structural damping
+    routines            (1,) address of `refactorize`, see `sebody.engine.routines`
     ==================  ============================================================================
     """
 
@@ -117,3 +118,4 @@ class System(Arrays):
     links: Links
     relaxed: NDArray
     damped: NDArray
+    routines: NDArray
