@@ -25,5 +25,6 @@ def main(build: Callable[[], Scene]) -> None:
 
     scene = build()
     result = simulate(scene.model, scene.h, scene.t_end)
+    picture = save_picture(result, f"{scene.name}.png", scene.base, scene.tip)
     print(result.summary())
-    print("picture:", save_picture(result, f"{scene.name}.png", scene.base, scene.tip))
+    print("picture:", picture)

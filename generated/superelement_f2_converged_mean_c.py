@@ -77,7 +77,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
+ROOM = "b0d6c56a80e5"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -183,7 +183,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         lam = at(followers, slaving*padded(free))
         E = at(lam, resultants)
         Ghat = at(E, resultants*padded(free))
-        filled = int(full[0])
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -877,8 +876,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # stiffness
                 add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
                 # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), free,
-                                slaved, hn)
+                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep),
+                                free, slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]
@@ -891,8 +890,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # the same
                 add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
                 # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free, resultants,
-                                hn)
+                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free,
+                                resultants, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
@@ -991,8 +990,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t198 = row_h_xz + 2*row_j_xz
                 t199 = row_h_yz + 2*row_j_yz
                 Lv[N*deep + i] = -Om0_x*(row_h_xx + 2*row_j_xx) - Om0_y*t197 - Om0_z*t198 + row_w_x
-                Lv[(N + 1)*deep + i] = -Om0_x*t197 - Om0_y*(row_h_yy + 2*row_j_yy) - Om0_z*t199 + row_w_y
-                Lv[(N + 2)*deep + i] = -Om0_x*t198 - Om0_y*t199 - Om0_z*(row_h_zz + 2*row_j_zz) + row_w_z
+                Lv[(N + 1)*deep + i] = (-Om0_x*t197 - Om0_y*(row_h_yy + 2*row_j_yy) - Om0_z*t199 +
+                    row_w_y)
+                Lv[(N + 2)*deep + i] = (-Om0_x*t198 - Om0_y*t199 - Om0_z*(row_h_zz + 2*row_j_zz) +
+                    row_w_z)
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z

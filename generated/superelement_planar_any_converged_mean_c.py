@@ -77,7 +77,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
+ROOM = "b0d6c56a80e5"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -184,7 +184,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         lam = at(followers, slaving*padded(free))
         E = at(lam, resultants)
         Ghat = at(E, resultants*padded(free))
-        filled = int(full[0])
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -538,8 +537,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # stiffness
                 add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
                 # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), free,
-                                slaved, hn)
+                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep),
+                                free, slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]
@@ -552,8 +551,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # the same
                 add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
                 # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free, resultants,
-                                hn)
+                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free,
+                                resultants, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y = zdd[N], zdd[N + 1]

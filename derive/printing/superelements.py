@@ -27,7 +27,7 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     tangent = printer.lines(kernel.tangent)
     return templates.SUPERELEMENT.format(
         **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
-        filled=templates.FILLED * (layout.modes is None),
+        filled=templates.FILLED * any(", filled)" in line for line in [*residual, *tangent]),
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
         reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows) + sum(TALL[name] for name in uses.tall),

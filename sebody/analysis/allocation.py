@@ -61,6 +61,8 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         error_weights=zeros(total), expansion=zeros(_expansion_size(system)),
         matrix=zeros(system.rows.size + 1), scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
+        relaxation=zeros(total), pulls=zeros(system.pulls.size), projected=zeros(total),
+        pulled=zeros(total),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R

@@ -51,9 +51,14 @@ def matrix(system: System, state: State, what: str, *, mass: float, damping: flo
 
 
 def assembled(system: System, state: State) -> csc_matrix:
-    """The matrix in `State.matrix` as a sparse one, without padding."""
+    """The matrix in `State.matrix` as a sparse one, without padding.
+
+    Zeros are left out except on the diagonal, see `sebody.analysis.sparse.factors`.
+    """
     n, entries = system.diagonal.size, state.matrix[:-1]
-    kept = np.flatnonzero((entries != 0.0) & (system.rows < n))
+    stored = entries != 0.0
+    stored[system.diagonal] = True
+    kept = np.flatnonzero(stored & (system.rows < n))
     kept = kept[np.lexsort((system.rows[kept], system.columns[kept]))]
     starts = np.searchsorted(system.columns[kept], np.arange(n + 1)).astype(np.int32)
     # in SciPy's own order: sorting it out takes SciPy three times as long

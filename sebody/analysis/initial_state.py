@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from sebody.analysis.evaluation import evaluate, matrix
-from sebody.analysis.redundancy import Solver, least
+from sebody.analysis.redundancy import Solver, least, part_sizes
 from sebody.analysis.rigid_start import follow_drives
 from sebody.analysis.user_faults import fault
 from sebody.assembly.numbering import Numbering, coordinates
@@ -49,7 +49,8 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     residuals = state.residual[multipliers]
     _check(residuals, np.abs(state.q).max(), "position", multipliers, numbering,
            "start from a state the joints allow")
-    solver = Solver(masses, numbering, multipliers)
+    system.inertias[:numbering.free] = part_sizes(masses, system)
+    solver = Solver(masses, system, numbering)
     changed = follow_drives(model, system, numbering, state, masses,
                             _rates(system, state, multipliers))
     changed |= _fit_velocities(model, system, numbering, state, masses, multipliers)
@@ -86,8 +87,7 @@ def acceleration_rates(system: System, numbering: Numbering, state: State, dt: f
     set_loads(system, state.loads, dt)
     move_prescribed(system, state)
     update_rotations(system, state)
-    multipliers = np.flatnonzero(system.is_multiplier)
-    _accelerate(system, numbering, state, Solver(_masses(system, state), numbering, multipliers))
+    _accelerate(system, numbering, state, Solver(_masses(system, state), system, numbering))
     later = state.a.copy()
     state.now[:], state.loads[:] = kept, loads
     rates = (later - state.a) / dt
@@ -132,7 +132,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     demand = np.zeros(numbering.free)
     demand[multipliers] = -rates
     answer = np.zeros(numbering.total)
-    answer[:numbering.free] = least(weighted, demand, numbering)
+    answer[:numbering.free] = least(weighted, system, demand)
     answer[multipliers] = 0.0
     to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer

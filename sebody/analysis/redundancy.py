@@ -2,31 +2,45 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import qr
 from scipy.sparse import csc_matrix
 
-from sebody.analysis.sparse import Scaled
+from sebody.analysis.sparse import Relaxed, Scaled
 from sebody.assembly.numbering import Numbering
+from sebody.engine.matrix import THIN
+from sebody.engine.state import State
+from sebody.engine.system import System
 from sebody.errors import InputError
 
-LARGEST = 3000          # unknowns up to which singular systems are analysed by dense algebra
+WEAK = 1e-6             # pivot of a redundant constraint; of another one, its strength
+CONTRADICTION = 1e-7    # residual that contradicting constraints leave, relative to the largest
+MASSLESS = 1e-13        # inertia of a motion that has none, relative to that of its body
+SHARED = 0.1            # residual of a constraint that has part in a contradiction, of the largest
+PROBES = 8              # iterations after which the motion with the least inertia is left
+HALF = 0.5              # of such a motion, `Relaxed.unmoved` leaves all; of others little
 
 
-def least(matrix: csc_matrix, demand: NDArray, numbering: Numbering) -> NDArray:
-    """Solution, that of least norm where the matrix is singular.
+def least(matrix: csc_matrix, system: System, demand: NDArray) -> NDArray:
+    """Solution, that of least norm where the matrix is singular."""
+    direct = Scaled(matrix)
+    if direct.regular:
+        return direct.solve(demand)
+    return Relaxed(matrix, part_sizes(matrix, system), system).least(demand)[0]
 
-    Raises
-    ------
-    InputError
-        A singular matrix of too many unknowns.
+
+def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
+    """Largest diagonal entry of every unknown's position or rotation, (n,).
+
+    Where these are zero, a typical one of the model by the magnitudes of coordinates.
     """
-    system = Scaled(matrix)
-    if system.regular:
-        return system.solve(demand)
-    if numbering.free > LARGEST:
-        raise InputError("the constraints are redundant and too many to be sorted out: remove "
-                         "redundant joints")
-    return system.least(demand)[0]
+    n = matrix.shape[0]
+    diagonal, part, magnitude = np.abs(matrix.diagonal()), system.part[:n], system.magnitude[:n]
+    found = np.zeros(n)
+    np.maximum.at(found, part, diagonal)
+    found = found[part]
+    typical = (diagonal * magnitude**2).max()
+    empty = found == 0.0
+    found[empty] = typical / np.where(magnitude[empty] > 0.0, magnitude[empty], 1.0)**2
+    return found
 
 
 class Solver:
@@ -36,26 +50,27 @@ class Solver:
     ----------
     matrix : (n, n)
         Masses and constraints.
-    multipliers : (m,)
-        Which unknowns are multipliers.
 
     Attributes
     ----------
     redundant : tuple of str
-        Joints with constraints that others contain.
+        Joints with constraints that those numbered before them contain.
 
     Raises
     ------
     InputError
-        Something without mass can move, a joint acts on nothing, or the system is singular and too
-        large to be looked into.
+        Something without mass can move.
     """
 
-    def __init__(self, matrix: csc_matrix, numbering: Numbering, multipliers: NDArray):
+    def __init__(self, matrix: csc_matrix, system: System, numbering: Numbering):
         self.system, self.names = Scaled(matrix), numbering.names
         self.redundant: tuple[str, ...] = ()
-        if not self.system.regular:
-            self._sort_out(multipliers)
+        self.relaxed: Relaxed | None = None
+        if self.system.suspicious:
+            system.thin[:matrix.shape[0]] = thin_parts(matrix, system)
+            self.relaxed = Relaxed(matrix, part_sizes(matrix, system), system)
+            self._check_mass(system)
+            self._find_redundant(system)
 
     def __call__(self, residual: NDArray) -> NDArray:
         """Accelerations and multipliers, of least norm where these are not unique.
@@ -65,52 +80,66 @@ class Solver:
         InputError
             Constraints that contradict each other.
         """
-        if self.system.regular:
+        if not self.redundant:
             return self.system.solve(residual)
-        answer, left = self.system.least(residual)
-        if left.max() > 1e-7 * max(np.abs(self.system.scale * residual).max(), 1e-300):
+        answer, left = self.relaxed.least(residual)
+        if left.max() > CONTRADICTION * max(np.abs(self.relaxed.scale * residual).max(), 1e-300):
             raise InputError(f"the constraints contradict each other at "
                              f"{self.names[int(np.argmax(left))]}: they demand different "
                              "accelerations of the same thing; remove a joint or a drive")
         return answer
 
-    def _sort_out(self, multipliers: NDArray) -> None:
-        """Find redundant constraints, which allow a solution, and missing mass, which does not."""
-        names, weakest = self.names, self.system.weakest
-        if len(self.system.scale) > LARGEST:
-            raise InputError(f"the constraints or the mass are singular at "
-                             f"{'an unknown' if weakest is None else names[weakest]}: remove "
-                             "redundant joints, give every body mass")
-        whole = self.system.matrix.toarray()
-        kept = np.ones(len(whole), dtype=bool)
-        kept[multipliers] = False
-        constraints = whole[multipliers][:, kept]
-        rank, self.redundant = self._redundant(constraints, multipliers)
-        free = np.linalg.svd(constraints)[2][rank:] if rank else np.eye(kept.sum())
-        self._check_mass(free, whole[kept][:, kept], np.flatnonzero(kept))
+    def _find_redundant(self, system: System) -> None:
+        """Joints with constraints whose pivots are those of the regularization."""
+        weak = np.flatnonzero((self.relaxed.pivots < WEAK) & multiplying(system))
+        self.redundant = tuple(dict.fromkeys(self.names[k].partition(" of ")[2] for k in weak))
 
-    def _redundant(self, constraints: NDArray, multipliers: NDArray
-                   ) -> tuple[int, tuple[str, ...]]:
-        """Rank of the constraints, and the joints whose constraints do not increase the rank."""
-        if not multipliers.size:
-            return 0, ()
-        names, lengths = self.names, np.linalg.norm(constraints, axis=1)
-        for k in np.flatnonzero(lengths == 0.0):
-            raise InputError(f"{names[multipliers[k]]} acts on nothing that can move: remove "
-                             "the joint or free a node")
-        R, order = qr(constraints.T / lengths, mode="r", pivoting=True)
-        diagonal = np.abs(np.diag(R))
-        rank = int((diagonal > 1e-9 * diagonal[0]).sum())
-        return rank, tuple(dict.fromkeys(names[multipliers[k]].partition(" of ")[2]
-                                         for k in order[rank:]))
-
-    def _check_mass(self, free: NDArray, mass: NDArray, unknowns: NDArray) -> None:
+    def _check_mass(self, system: System) -> None:
         """Refuse a motion that the constraints leave free and that has no mass."""
-        if not len(free):
-            return
-        mass = free @ mass @ free.T
-        values, modes = np.linalg.eigh((mass + mass.T) / 2)
-        if values[0] < 1e-12 * values[-1]:
-            name = self.names[unknowns[np.argmax(np.abs(modes[:, 0] @ free))]]
+        moving = ~multiplying(system)
+        probe = np.where(moving, np.random.default_rng(0).normal(size=moving.size), 0.0)
+        for _ in range(PROBES):
+            probe /= np.linalg.norm(probe)
+            probe = np.where(moving, self.relaxed.unmoved(probe), 0.0)
+            if not probe.any():
+                return
+        shape = self.relaxed.scale * probe / np.linalg.norm(probe)
+        if np.linalg.norm(probe) > HALF and shape @ (self.relaxed.matrix @ shape) < MASSLESS:
+            name = self.names[int(np.argmax(np.abs(probe)))]
             raise InputError(f"the mass is singular at {name}: nothing with mass moves with it; "
                              "give it a mass, fix it, or leave it out")
+
+
+def contradiction(system: System, state: State, numbering: Numbering) -> str:
+    """What a failed step cannot meet: constraints, or a force on something without mass."""
+    n = system.diagonal.size
+    left = np.abs(state.scale[:n] * (state.residual[:n] + state.constraint_residuals[:n]))
+    worst = int(np.argmax(left))
+    if not multiplying(system)[worst]:
+        return (f"a force acts on {numbering.names[worst]}, with which nothing that has mass "
+                "moves: give it a mass or fix it")
+    parties = np.flatnonzero((left > SHARED * left.max()) & multiplying(system))
+    joints = dict.fromkeys(numbering.names[k].partition(" of ")[2] for k in parties)
+    return (f"the constraints of {', '.join(joints)} contradict each other: no motion meets them "
+            "all; remove one, or give the drives motions that fit")
+
+
+def thin_parts(matrix: csc_matrix, system: System) -> NDArray:
+    """Sizes of the positions and rotations with nearly no inertia along an axis, zeros else."""
+    n = matrix.shape[0]
+    part, inertias = system.part[:n], system.inertias[:n]
+    blocks = np.tile(np.eye(3), (n, 1, 1))
+    entries = matrix.tocoo()
+    own = (part[entries.row] == part[entries.col]) & ~multiplying(system)[entries.row]
+    row, column, value = entries.row[own], entries.col[own], entries.data[own]
+    first = part[row]
+    diagonal = np.arange(n) - part
+    blocks[part, diagonal, diagonal] = 0.0
+    np.add.at(blocks, (first, row - first, column - first), value / inertias[first])
+    least = np.linalg.eigvalsh(blocks)[:, 0]
+    return np.where((least[part] < THIN) & ~multiplying(system), inertias, 0.0)
+
+
+def multiplying(system: System) -> NDArray:
+    """Which unknowns are multipliers, (n,) of bool."""
+    return system.is_multiplier[:system.diagonal.size] > 0.0

@@ -72,7 +72,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
     run.rows = [arrays["rows"]]
     run.seconds = settings["seconds"]
     if run.state.control[PIVOTED]:
-        run.factorize()
+        run.exchanges.factorize()
     return run
 
 

@@ -56,7 +56,7 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
     before = state.v.copy()
     for _ in range(PASSES):
         pull = sum(p.places.T @ (p.energy @ state.v[p.own]) for p in parts)
-        answer = least(matrix, demand - pull, numbering)
+        answer = least(matrix, system, demand - pull)
         answer[multipliers] = demand[multipliers] = 0.0
         state.v[:numbering.free] += answer
         place_dependent(system.links, state.q, state.v, state.a, state.R)

@@ -5,17 +5,16 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import splu
 
 from sebody import inputs
 from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
-from sebody.analysis.evaluation import assembled
 from sebody.analysis.first_run import prepare
 from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
 from sebody.analysis.pulses import unseen
+from sebody.analysis.redundancy import contradiction
+from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
@@ -31,6 +30,7 @@ from sebody.engine.state import (
     FACTORED,
     FAILED,
     FINEST,
+    GAP,
     GRID,
     LARGEST_ERROR,
     PHASE,
@@ -105,7 +105,7 @@ class Simulation:
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
         self.seconds = 0.0
         self.failure = ""
-        self._factors = None
+        self.exchanges = RowExchanges(self.system, self.state)
         user_faults.forget(model)
         self.start: Start = start(model, self.system, self.numbering, self.state)
         self.tolerance = tolerance
@@ -226,19 +226,20 @@ class Simulation:
 
     def _serve(self) -> None:
         """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
-        phase, n = self.state.control[PHASE], self.numbering.free
+        phase = self.state.control[PHASE]
         if phase == FACTORED:
-            self.factorize()
+            self.exchanges.factorize()
         elif phase in (PROJECTED, SOLVED):
-            scale = self.state.scale[:n]
-            self.state.correction[:n] = scale * self._factors.solve(
-                scale * self.state.residual[:n])
+            self.exchanges.solve()
 
     def result(self) -> Result:
         """The results computed so far."""
-        return Result(self.model, self.numbering, self.system, self.state,
-                      np.concatenate(self.rows), self.seconds, self.failure, self.start,
-                      tuple(self.watch.messages))
+        found = Result(self.model, self.numbering, self.system, self.state,
+                       np.concatenate(self.rows), self.seconds, self.failure, self.start)
+        if found.steps:
+            self.watch.judge(found)
+        found.warnings = tuple(self.watch.messages)
+        return found
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
         """The given scheme, or by default one that suits the steps and the constraints."""
@@ -271,15 +272,13 @@ class Simulation:
         state.aux[:] += (scheme.alpha_m - scheme.alpha_f) * h * acceleration_rates(
             self.system, self.numbering, state, 1e-3 * h)
 
-    def factorize(self) -> None:
-        """Factorize with row exchanges, where elimination by blocks met a small pivot."""
-        scale = diags(self.state.scale[:self.numbering.free])
-        matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
-        self._factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.01)
-
     def _explain(self) -> str:
         if fault := user_faults.fault(self.model, self.time):
             return f"stopped at t = {self.time:.6g}: {fault}; results up to there are kept"
+        if self.state.control[REASON] == GAP:
+            return (f"stopped at t = {self.time:.6g}: "
+                    f"{contradiction(self.system, self.state, self.numbering)}; results up to "
+                    "there are kept")
         reason = REASONS[int(self.state.control[REASON])]
         shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
         remedy = "a larger tolerance" if self.tolerance else "a smaller step"

@@ -5,11 +5,35 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf, dgetrs
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
+from scipy.sparse import csc_matrix, diags
+from scipy.sparse.csgraph import structural_rank
+from scipy.sparse.linalg import SuperLU, splu
+
+from sebody.engine.relaxation import LIGHT
+from sebody.engine.system import System
 
 SMALL = 100         # unknowns up to which LAPACK takes less time than SciPy to call SuperLU
 SINGULAR = 1e-13    # smallest pivot of a regular matrix, relative to the largest
+SUSPICIOUS = 1e-6   # pivot below which constraints are looked into, relative to the largest
+RELAXATION = 1e-8   # of regularized matrices as in the engine, but never of an older state
+ATTEMPTS = 20       # refinements: each leaves 2 RELAXATION / s of a part of strength s
+SETTLED = 1e-15     # change of the last refinement, relative to the solution
+
+
+def factors(matrix: csc_matrix, **options: object) -> SuperLU:
+    """Factors by SuperLU with its options.
+
+    Raises
+    ------
+    RuntimeError
+        A pivot is exactly zero. Of a matrix whose pattern is singular SuperLU would read beyond its
+        arrays; one with a stored diagonal, zeros included, is not.
+    """
+    n = matrix.shape[0]
+    stored = np.count_nonzero(matrix.indices == np.repeat(np.arange(n), np.diff(matrix.indptr)))
+    if stored < n and structural_rank(matrix) < n:
+        raise RuntimeError("the pattern is singular")
+    return splu(matrix, **options)
 
 
 class _Dense:
@@ -29,7 +53,7 @@ class _Sparse:
     """Factors of a large one; pivots in the order of elimination."""
 
     def __init__(self, matrix: csc_matrix):
-        self._factors = splu(matrix)
+        self._factors = factors(matrix)
         self.solve = self._factors.solve
 
     @cached_property
@@ -69,10 +93,18 @@ class Scaled:
     @cached_property
     def regular(self) -> bool:
         """Whether no pivot is too small to be trusted."""
+        return self._pivots_above(SINGULAR)
+
+    @cached_property
+    def suspicious(self) -> bool:
+        """Whether a pivot is so small that constraints may be redundant."""
+        return not self._pivots_above(SUSPICIOUS)
+
+    def _pivots_above(self, share: float) -> bool:
         if self.factors is None:
             return False
         pivots = self.factors.pivots
-        return bool(pivots.min() >= SINGULAR * pivots.max())
+        return bool(pivots.min() >= share * pivots.max())
 
     @property
     def weakest(self) -> int | None:
@@ -90,3 +122,58 @@ class Scaled:
         demand = self.scale * right
         answer = np.linalg.lstsq(self.matrix.toarray(), demand, rcond=1e-11)[0]
         return self.scale * answer, np.abs(self.matrix @ answer - demand)
+
+
+class Relaxed:
+    """A singular matrix of masses and constraints, by regularized factors.
+
+    See `sebody.engine.relaxation`. The system tells which unknowns are multipliers, which belong
+    together and which bodies are thin.
+
+    Parameters
+    ----------
+    matrix : (n, n)
+    sizes : (n,)
+        Of the matrix at every position and rotation; not read at multipliers.
+    system : System
+    """
+
+    def __init__(self, matrix: csc_matrix, sizes: NDArray, system: System):
+        n = len(sizes)
+        self.matrix, sizes, part = csc_matrix(matrix), sizes.copy(), system.part[:n]
+        multipliers = np.flatnonzero(system.is_multiplier[:n])
+        held = 1.0 / sizes
+        held[multipliers] = 0.0
+        largest = np.zeros(n)
+        np.maximum.at(largest, part[multipliers], (self.matrix.power(2) @ held)[multipliers])
+        sizes[multipliers] = largest[part[multipliers]]
+        sizes[sizes == 0.0] = 1.0
+        self.scale = 1.0 / np.sqrt(sizes)
+        self.relaxation = LIGHT * system.thin[:n]
+        self.relaxation[multipliers] = -RELAXATION * sizes[multipliers]
+        scaled = diags(self.scale) @ (self.matrix + diags(self.relaxation)) @ diags(self.scale)
+        self.factors = splu(csc_matrix(scaled), permc_spec="NATURAL", diag_pivot_thresh=0.0,
+                            options={"SymmetricMode": True})
+
+    @property
+    def pivots(self) -> NDArray:
+        """Pivots of the scaled matrix: of a redundant constraint RELAXATION."""
+        return np.abs(self.factors.U.diagonal())
+
+    def unmoved(self, vector: NDArray) -> NDArray:
+        """The part of a vector, in scaled unknowns, on which the matrix does not act."""
+        return self.factors.solve(self.scale**2 * self.relaxation * vector)
+
+    def least(self, right: NDArray) -> tuple[NDArray, NDArray]:
+        """Solution of least norm, and the scaled residuals that remain."""
+        answer = np.zeros(len(right))
+        for _ in range(ATTEMPTS):
+            found = self._solve(right - self.matrix @ answer)
+            found -= self._solve(self.relaxation * found)
+            answer += found
+            if np.abs(found / self.scale).max() <= SETTLED * np.abs(answer / self.scale).max():
+                break
+        return answer, np.abs(self.scale * (right - self.matrix @ answer))
+
+    def _solve(self, right: NDArray) -> NDArray:
+        return self.scale * self.factors.solve(self.scale * right)

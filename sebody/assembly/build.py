@@ -30,7 +30,8 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         raise InputError("the model has no body: add one with model.superelement(...) or "
                          "model.rigid_body(...)")
     numbering = number(model)
-    if numbering.free == 0:
+    is_multiplier = _multipliers(model, numbering)
+    if is_multiplier[:numbering.free].all():
         raise InputError("every node of the model is fixed: nothing is left to move, free one")
     batches = make_batches(model, numbering)
     axes = body_axes(model, numbering, batches)
@@ -47,9 +48,12 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     system = System(
         **_batch_arrays(batches), J_place=places, J_entry=own_entries[kept].astype(np.int32),
         **matrix, **axes,
-        is_multiplier=_multipliers(model, numbering), rotation_at=_rotation_starts(numbering),
-        summands=table, routines=np.zeros(1, dtype=np.int64),
-        dimension=np.array([model.dimension]), magnitude=_magnitude(model, numbering),
+        is_multiplier=is_multiplier, pulls=_pulls(matrix, is_multiplier, numbering.free),
+        rotation_at=_rotation_starts(numbering), summands=table,
+        routines=np.zeros(1, dtype=np.int64),
+        dimension=np.array([model.dimension]), part=_parts(model, numbering),
+        inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
+        magnitude=_magnitude(model, numbering),
         **port_arrays(numbering.histories, numbering.prescribed),
         links=with_entries(links, linked_entries), relaxed=np.zeros(1, dtype=np.int64),
         damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
@@ -92,6 +96,27 @@ def _multipliers(model: Mechanism, numbering: Numbering) -> NDArray:
     for equation in model.constraints:
         first = numbering.multipliers[id(equation)]
         found[first:first + equation.multipliers] = 1.0
+    return found
+
+
+def _pulls(matrix: dict[str, NDArray], is_multiplier: NDArray, free: int) -> NDArray:
+    """Entries in rows of coordinates and columns of multipliers."""
+    moving, pulling = is_multiplier == 0.0, is_multiplier > 0.0
+    moving[free:] = pulling[free:] = False
+    return np.flatnonzero(moving[matrix["rows"]] & pulling[matrix["columns"]])
+
+
+def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
+    """First coordinate of the position, rotation or equation each coordinate belongs to."""
+    found = np.arange(numbering.total)
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                own = stretch(numbering, triplet)
+                found[own] = own.start
+    for equation in model.constraints:
+        first = numbering.multipliers[id(equation)]
+        found[first:first + equation.multipliers] = first
     return found
 
 

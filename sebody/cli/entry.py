@@ -4,6 +4,7 @@ import argparse
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Sequence
 
 from sebody.cli import atlas, bench, chart, check, interrupts, listing, run, warm
@@ -28,7 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     try:
         try:
-            with interrupts.watched():
+            with interrupts.watched(), warnings.catch_warnings():
+                warnings.showwarning = _warn
                 return _run(arguments)
         finally:
             sys.stdout.flush()          # a closed pipe or full disk may show only here
@@ -50,6 +52,11 @@ def _run(arguments: Sequence[str] | None) -> int:
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return interrupts.exit_code() or interrupts.ENDED_BY + signal.SIGINT
+
+
+def _warn(message: Warning | str, *where: object) -> None:
+    """Show a warning as a line, without the place in the program it comes from."""
+    print(f"warning: {message}", file=sys.stderr)
 
 
 def _mute(code: int) -> int:

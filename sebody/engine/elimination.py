@@ -10,13 +10,13 @@ of the blocks; free slots have ones on the diagonal.
 """
 
 
-from sebody.kernels.abi import at
+from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import subtract_block_times, subtract_product
 from sebody.kernels.layout import LANES
 from sebody.kernels.pipeline import compiled
 
 BLOCK = LANES * LANES
-SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
+SMALL_PIVOT = 1e-11     # relative to the scaled matrix, whose diagonal is one
 
 
 @compiled
@@ -94,3 +94,18 @@ def substitute(across, starts, rows, diagonal, factors, x):
             y[i] = inverse[i] * a + inverse[4 + i] * b + inverse[8 + i] * c + inverse[12 + i] * d
         for p in range(starts[j], diagonal[j]):
             subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), y)
+
+
+@compiled
+def solve(system, state, right, x):
+    """Solve for all unknowns with the factors in `State.matrix`; `x` may be `right`."""
+    n, unknowns, slots = (system.diagonal.size, pointer_to(system.slot_unknowns),
+                          pointer_to(state.solution))
+    for slot in range(system.slot_unknowns.size):
+        slots[slot] = right[unknowns[slot]] if unknowns[slot] < n else 0.0
+    substitute(system.block_diagonal.size, pointer_to(system.block_starts),
+               pointer_to(system.block_rows), pointer_to(system.block_diagonal),
+               pointer_to(state.matrix), slots)
+    for slot in range(system.slot_unknowns.size):
+        if unknowns[slot] < n:
+            x[unknowns[slot]] = slots[slot]

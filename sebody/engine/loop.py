@@ -29,6 +29,7 @@ from sebody.engine.state import (
     FACTORED,
     FAILED,
     FRESH,
+    GAP,
     GIVE_UP,
     GRID,
     INACCURATE,
@@ -36,6 +37,7 @@ from sebody.engine.state import (
     ITERATION,
     KEPT,
     LAST_NORM,
+    LEAVES_GAP,
     NEW_MATRIX,
     NO_REASON,
     NOT_FINITE,
@@ -159,11 +161,11 @@ def _conclude(system, state, record, scheme, verdict):
         control[PHASE] = BEGIN
     elif verdict == NEW_MATRIX:
         want_matrix(system, state)
-    elif verdict == GIVE_UP:
+    elif verdict == GIVE_UP or verdict == LEAVES_GAP:
         if not np.isfinite(clock[LAST_NORM]):
             return NOT_FINITE
         if control[FRESH] > 0:
-            return SLOW
+            return SLOW if verdict == GIVE_UP else GAP
         back(state)         # perhaps because of the old matrix: repeat the step with a new one
     return NO_REASON
 

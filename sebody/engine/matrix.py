@@ -4,14 +4,24 @@ import numpy as np
 
 from sebody.engine import elimination
 from sebody.engine.links import add_expanded, add_second_order
-from sebody.engine.state import EVALUATED, FLOOR, PIVOTED
+from sebody.engine.relaxation import (
+    EXCHANGED,
+    RELAXATION,
+    WEAKEST,
+    project,
+    project_inverse,
+    relax,
+    spread,
+)
+from sebody.engine.state import EVALUATED, FLOOR, PIVOTED, RELAXED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
-from sebody.kernels.layout import C_STIFFNESS
+from sebody.kernels.layout import C_MASS, C_STIFFNESS
 from sebody.kernels.pipeline import compiled
 
 SUMMAND = 7             # numbers of an element in System.summands
-RELAXATION = 1e-7       # regularizes redundant constraints, in the scaled iteration matrix alone
+ROUNDING = 8.0 * 2.2e-16        # left of a position by rounding, relative to its magnitude
+THIN = 1e-6             # smallest moment of inertia that scales its axis, relative to the largest
 
 
 @compiled
@@ -87,11 +97,10 @@ def _rotate_block(block, dimension, J, frames):
 @compiled
 def equilibrate(system, state):
     """Scale the matrix to a unit diagonal and unit constraint rows: free of units and of h."""
-    n = system.diagonal.size
+    n, mass = system.diagonal.size, state.coefficients[C_MASS]
     for i in range(n):
-        diagonal = abs(state.matrix[system.diagonal[i]])
-        state.scale[i] = 0.0 if system.is_multiplier[i] > 0.0 else (
-            1.0 / np.sqrt(diagonal) if diagonal > 0.0 else 1.0)
+        diagonal = max(abs(state.matrix[system.diagonal[i]]), THIN * mass * system.inertias[i])
+        state.scale[i] = 0.0 if system.is_multiplier[i] > 0.0 else 1.0 / np.sqrt(diagonal)
     sums = state.correction
     sums[:] = 0.0
     for k in range(system.rows.size):
@@ -106,24 +115,11 @@ def equilibrate(system, state):
         state.weight[i] = 1.0 / state.scale[i]
         size = system.magnitude[i] * state.weight[i]
         floor += size * size
-    state.clock[FLOOR] = 8.0 * 2.2e-16 * np.sqrt(floor)     # left by rounding of positions
+    state.clock[FLOOR] = ROUNDING * np.sqrt(floor)      # left by rounding of positions
 
 
 @compiled
-def relax(system, state):
-    """Make a matrix with redundant constraints regular.
-
-    Residuals of redundant constraints are consistent, so the regularized system has a solution,
-    with multipliers of least norm. The iteration goes on until the constraints hold: regularization
-    changes its convergence, not its result.
-    """
-    for i in range(system.diagonal.size):
-        if system.is_multiplier[i] > 0.0:
-            state.matrix[system.diagonal[i]] -= RELAXATION * state.weight[i] * state.weight[i]
-
-
-@compiled
-def invert_dense(system, state, n):
+def invert_dense(system, state, n, relaxed, wanted):
     """Invert a small matrix, by columns, scales included; False if it is singular."""
     dense = np.empty((n, n))
     size = inverse_size = 0.0
@@ -140,8 +136,19 @@ def invert_dense(system, state, n):
     for j in range(n):
         for i in range(n):
             inverse_size += abs(inverse[j, i])
+    if not size * inverse_size < 1e16 * n:
+        return False
+    if relaxed:
+        if wanted == EVALUATED:
+            spread(system, state, inverse, True)
+        project_inverse(system, state, inverse, n)
+    for j in range(n):
+        if (not relaxed and system.is_multiplier[j] > 0.0
+                and WEAKEST * abs(inverse[j, j]) > 1.0):
+            return False
+        for i in range(n):
             state.inverse[j, i] = state.scale[i] * inverse[j, i] * state.scale[j]
-    return size * inverse_size < 1e16 * n
+    return True
 
 
 @compiled
@@ -156,10 +163,15 @@ def refactorize(system, state, wanted, dense):
     sum_matrices(system, state, state.forces)
     if wanted == EVALUATED:
         equilibrate(system, state)
-    if relaxed:
-        relax(system, state)
+    state.control[RELAXED] = 0
     if dense:
-        return invert_dense(system, state, system.diagonal.size)
+        n = system.diagonal.size
+        if not relaxed and invert_dense(system, state, n, False, wanted):
+            return True
+        relax(system, state, EXCHANGED)
+        return invert_dense(system, state, n, True, wanted)
+    if relaxed:
+        relax(system, state, RELAXATION)
     done = elimination.eliminate(
         system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
         pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
@@ -168,7 +180,9 @@ def refactorize(system, state, wanted, dense):
     if not done:
         sum_matrices(system, state, state.forces)
         if relaxed:
-            relax(system, state)
+            relax(system, state, RELAXATION)
+    elif relaxed and wanted == EVALUATED:
+        spread(system, state, state.inverse, False)
     return True
 
 
@@ -180,18 +194,6 @@ def solve(system, state, dense):
         columns_times(pointer_to(state.inverse), pointer_to(state.residual),
                       pointer_to(state.correction), n, n)
     else:
-        _substitute(system, state)
-
-
-@compiled
-def _substitute(system, state):
-    n, unknowns, x = (system.diagonal.size, pointer_to(system.slot_unknowns),
-                      pointer_to(state.solution))
-    for slot in range(system.slot_unknowns.size):
-        x[slot] = state.residual[unknowns[slot]] if unknowns[slot] < n else 0.0
-    elimination.substitute(system.block_diagonal.size, pointer_to(system.block_starts),
-                           pointer_to(system.block_rows), pointer_to(system.block_diagonal),
-                           pointer_to(state.matrix), x)
-    for slot in range(system.slot_unknowns.size):
-        if unknowns[slot] < n:
-            state.correction[unknowns[slot]] = x[slot]
+        elimination.solve(system, state, state.residual, state.correction)
+        if state.control[RELAXED] == 1:
+            project(system, state)

@@ -6,6 +6,8 @@ The factorized matrix is kept in body axes and reused until slow convergence ask
 import numpy as np
 
 from sebody.engine.evaluate import to_body_axes, update_rotations
+from sebody.engine.matrix import ROUNDING
+from sebody.engine.relaxation import relaxed_norms
 from sebody.engine.state import (
     ACCELERATION_NORM,
     AGE,
@@ -26,8 +28,10 @@ from sebody.engine.state import (
     ITERATIONS,
     KEPT,
     LAST_NORM,
+    LEAVES_GAP,
     MATRICES,
     NEW_MATRIX,
+    RELAXED,
     ROTATED,
     SECANT,
     SPAN,
@@ -49,6 +53,7 @@ OLDEST = 3000           # steps with the same element matrices: see `watch_age`
 POOR = 0.3              # a contraction rate above this asks for a new matrix at once
 MOST_MATRICES = 4       # factorizations in a step
 ACCELERATION_TOLERANCE = 100.0  # tolerance relative to accelerations, over that of the increment
+WIDEST_GAP = 1e-5       # between what joints demand, relative to the extent of the model
 QUICK = 0.05            # a contraction rate below this needs no acceleration by mixing
 
 
@@ -56,11 +61,13 @@ QUICK = 0.05            # a contraction rate below this needs no acceleration by
 def apply_correction(system, state, scheme, mixed):
     """Subtract the solved correction; returns the verdict on the step, CONVERGED to GIVE_UP."""
     n = system.diagonal.size
-    norm, size, accelerations = _norms(system, state, n)
+    relaxed = state.control[RELAXED] == 1
+    norm, size, accelerations = (relaxed_norms(system, state, n) if relaxed else
+                                 _norms(system, state, n))
     if not np.isfinite(norm):
         state.clock[LAST_NORM] = norm
         return GIVE_UP
-    left_norm = accelerate(state, n, norm) if mixed else norm
+    left_norm = accelerate(system, state, n, norm) if mixed else norm
     _subtract(system, state, scheme, n)
     accelerations = max(
         scheme.beta * state.clock[CURRENT_STEP] * state.clock[CURRENT_STEP] * accelerations,
@@ -68,7 +75,27 @@ def apply_correction(system, state, scheme, mixed):
     target = min(scheme.tolerance * size,
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock[FLOOR]
     state.clock[ACCELERATION_NORM], state.clock[TARGET] = accelerations, target
-    return _verdict(system, state, norm, left_norm, target)
+    verdict = _verdict(system, state, norm, left_norm, target)
+    ended = verdict == CONVERGED or verdict == GIVE_UP
+    if ended and relaxed and leaves_gap(system, state, norm, scheme.stabilized):
+        return LEAVES_GAP
+    return verdict
+
+
+@compiled
+def leaves_gap(system, state, norm, stabilized):
+    """Whether a residual is left that the corrections of a regularized matrix cannot remove.
+
+    That of the iterate before the last correction is at most the correction times the matrix, whose
+    scaled entries are at most one.
+    """
+    n, left = system.diagonal.size, 0.0
+    for i in range(n):
+        residual = state.residual[i]
+        if stabilized:
+            residual += state.constraint_residuals[i]
+        left += residual * residual * state.scale[i] * state.scale[i]
+    return np.sqrt(left) > n * norm + WIDEST_GAP / ROUNDING * state.clock[FLOOR]
 
 
 @compiled(forceinline=True)
@@ -133,16 +160,20 @@ def _verdict(system, state, norm, left_norm, target):
 
 
 @compiled
-def accelerate(state, n, norm):
+def accelerate(system, state, n, norm):
     """Anderson mixing with the last correction; returns the norm of the mixed correction.
 
     With matrices of the predicted state the error of a taut chain that rotates decays slowly in
-    one direction, which mixing with one correction removes.
+    one direction, which mixing with one correction removes. The multipliers of a regularized
+    matrix are too uncertain to be asked.
     """
     correction, last, change = state.correction, state.last_correction, state.last_change
     along = square = mix = 0.0
+    relaxed = state.control[RELAXED] == 1
     if state.control[SECANT] == 1 and norm > QUICK * state.clock[LAST_NORM]:
         for i in range(n):
+            if relaxed and system.is_multiplier[i] > 0.0:
+                continue
             w = state.weight[i]
             difference = (correction[i] - last[i]) * w
             along += difference * correction[i] * w

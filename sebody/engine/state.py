@@ -16,16 +16,18 @@ BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)
 # what an iteration needs: the factors as they are; factors of a matrix in which the bodies' old
 # element matrices are rotated with them and all others are new; or of new element matrices only
 KEPT, ROTATED, EVALUATED = range(3)
-CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP = range(4)        # verdicts on a step after a correction
+CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after a correction
 # why a step failed: answers of kernels keep their numbers, further reasons follow
 NO_REASON = OK
-NOT_FINITE, SLOW, INACCURATE = range(max(HALF_TURN, NO_FRAME) + 1, max(HALF_TURN, NO_FRAME) + 4)
+NOT_FINITE, SLOW, INACCURATE, GAP = range(max(HALF_TURN, NO_FRAME) + 1,
+                                          max(HALF_TURN, NO_FRAME) + 5)
 REASONS = {
     HALF_TURN: "a node is rotated by nearly half a turn against its body's frame",
     NO_FRAME: "the search for a body's frame did not end",
     NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
     SLOW: "Newton's iteration did not converge",
     INACCURATE: "the error of a step is above the tolerance",
+    GAP: "what the constraints demand cannot be met",
 }
 FINEST = 4096           # largest number of equal parts that a grid step is cut into
 
@@ -100,6 +102,9 @@ class State(Arrays):
     scale                 (N, padded) of the unknowns: the scaled matrix has a unit diagonal
     weight                (N,) one over `scale`: norms of corrections are weighted by these
     inverse               (n, padded n) inverse of a small matrix, scales included, by columns
+    relaxation            (N,) diagonal R of a regularized matrix, see `sebody.engine.relaxation`
+    pulls                 entries `System.pulls` of the matrix, before elimination
+    projected, pulled     (N,) scratch memory of projections
     column                scratch memory of the elimination for a column of blocks
     --------------------  --------------------------------------------------------------------------
     counters
@@ -149,6 +154,10 @@ class State(Arrays):
     scale: NDArray
     weight: NDArray
     inverse: NDArray
+    relaxation: NDArray
+    pulls: NDArray
+    projected: NDArray
+    pulled: NDArray
     column: NDArray
     work: NDArray
     energy: NDArray
@@ -226,8 +235,9 @@ CLOCKS = TARGET + 1
  HELD,                  # steps since the step length changed
  REJECTED,              # steps repeated because of their error
  SECANT,                # 1 where the last correction belongs to this step and its matrix
- ) = range(22)
-CONTROLS = SECANT + 1
+ RELAXED,               # 1 where the matrix is regularized
+ ) = range(23)
+CONTROLS = RELAXED + 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,6 +38,7 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     rows, columns       of every stored entry
     diagonal            (n,) entry on the diagonal of each unknown
+    pulls               entries in columns of multipliers, without their diagonal
     padding             entries with ones: the diagonal of free slots
     block_starts        pattern of the blocks, see `sebody.engine.elimination`; empty for a small
     block_rows          matrix, as the next ones
@@ -49,6 +50,11 @@ class System(Arrays):
     is_multiplier       (N, padded) 1.0 for multipliers
     rotation_at         (r,) first coordinate of each rotation
     dimension           (1,) coordinates of a position
+    part                (N,) first coordinate of the position or rotation, or first multiplier of
+                        the equation, that each belongs to
+    inertias            (N,) largest mass or moment of inertia of that position or rotation at the
+                        start, which sets it
+    thin                (N,) the same where about some axis there is nearly none, zero elsewhere
     magnitude           (N,) size of each coordinate: for the rounding floor and for tolerances
     rotated             (k, 2) positions not solved for in global axes: first unknown, axes
     rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
@@ -72,7 +78,7 @@ class System(Arrays):
     others
     ------------------------------------------------------------------------------------------------
     links               rigid links
-    relaxed             (1,) 1 where constraints are redundant
+    relaxed             (1,) 1 where constraints are redundant or something without mass can move
     damped              (1,) 1 where a superelement has structural damping
     routines            (1,) address of `refactorize`, see `sebody.engine.routines`
     ==================  ============================================================================
@@ -95,6 +101,7 @@ class System(Arrays):
     rows: NDArray
     columns: NDArray
     diagonal: NDArray
+    pulls: NDArray
     padding: NDArray
     block_starts: NDArray
     block_rows: NDArray
@@ -107,6 +114,9 @@ class System(Arrays):
     summands: NDArray
     linked: NDArray
     dimension: NDArray
+    part: NDArray
+    inertias: NDArray
+    thin: NDArray
     magnitude: NDArray
     table_at: NDArray
     table_times: NDArray

@@ -21,19 +21,23 @@ def history_at(times, pieces, first, last, t, out, at):
     i = first
     while i < last and times[i + 1] <= t:
         i += 1
-    x, c = t - times[i], pieces[i]
-    if x < 0.0:
-        x = 0.0
-    value, rate, second = c[POLYNOMIAL - 1], 0.0, 0.0
-    for k in range(POLYNOMIAL - 2, -1, -1):         # Horner's scheme
-        second = second * x + 2.0 * rate
-        rate = rate * x + value
-        value = value * x + c[k]
-    if c[AMPLITUDE] != 0.0:
-        w, angle = c[OMEGA], c[OMEGA] * x + c[PHASE]
-        wave = c[AMPLITUDE] * np.sin(angle)
-        value += wave
-        rate += c[AMPLITUDE] * w * np.cos(angle)
-        second -= w * w * wave
-    before = 1.0 if t >= times[first] else 0.0
-    out[at], out[at + 1], out[at + 2] = value, before * rate, before * second
+    x = max(t - times[i], 0.0)
+    a, b, c, d, e, f = (pieces[i, 0], pieces[i, 1], pieces[i, 2], pieces[i, 3], pieces[i, 4],
+                        pieces[i, 5])
+    out[at] = a + x * (b + x * (c + x * (d + x * (e + x * f))))
+    out[at + 1] = b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e + x * 5.0 * f)))
+    out[at + 2] = 2.0 * c + x * (6.0 * d + x * (12.0 * e + x * 20.0 * f))
+    if pieces[i, AMPLITUDE] != 0.0:
+        _add_harmonic(pieces, i, x, out, at)
+    if t < times[first]:
+        out[at + 1], out[at + 2] = 0.0, 0.0
+
+
+@compiled
+def _add_harmonic(pieces, i, x, out, at):
+    w = pieces[i, OMEGA]
+    angle = w * x + pieces[i, PHASE]
+    wave = pieces[i, AMPLITUDE] * np.sin(angle)
+    out[at] += wave
+    out[at + 1] += pieces[i, AMPLITUDE] * w * np.cos(angle)
+    out[at + 2] -= w * w * wave

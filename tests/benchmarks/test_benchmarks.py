@@ -62,3 +62,13 @@ def test_orders_of_creation_are_compared(monkeypatch, capsys):
     (graph, rows), = json.loads(capsys.readouterr().out).items()
     assert graph == "tree" and len(rows) == 2 + bench.RANDOM
     assert all(row["microseconds"] > 0.0 and row["entries"] > 0 for row in rows.values())
+
+
+def test_everyday_mechanisms_run_in_every_place(monkeypatch, capsys):
+    bench = imported("bench_everyday")
+    monkeypatch.setattr(bench, "T_END", 0.1)
+    monkeypatch.setattr(bench, "MODELS", {"door": bench.MODELS["door"]})
+    bench.main(["--json"], times=1)
+    found = json.loads(capsys.readouterr().out)["door"]
+    assert list(found) == list(bench.PLACES)
+    assert all(one["microseconds"] > 0.0 and one["cuts"] == 0 for one in found.values())

@@ -6,10 +6,12 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 
 import numpy as np
 import pytest
 
+from sebody import InputError
 from sebody.cli import interrupts, progress, run
 from sebody.cli.entry import main
 from sebody.scenes import hinged_beam
@@ -54,8 +56,9 @@ def test_a_process_ends_soon_after_a_signal(tmp_path, capsys):
             "sys.exit(entry.main(sys.argv[1:]))")
     process = subprocess.Popen([sys.executable, "-c", code, *LONG, *files(tmp_path)],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    while process.stdout.readline() != "\n":        # the name of the scene may come first
-        pass
+    for line in process.stdout:
+        if line == "\n":        # not the name of the scene, which may come first
+            break
     began = time.perf_counter()
     process.terminate()
     _, err = process.communicate(timeout=60)
@@ -87,6 +90,15 @@ def test_a_failing_run_saves_its_state(tmp_path, capsys, monkeypatch):
     assert main(["run", "struck", "--t-end", "1", "--resume", str(state)]) == 1
     assert all(text.startswith("error: stopped at t = 0.1007") for text in
                (err, capsys.readouterr().err))      # it stops at the same place, or a step later
+
+
+def test_warnings_are_lines_without_a_place_in_the_program(capsys, monkeypatch):
+    def build_scene(name, changes):
+        warnings.warn("code cannot be kept", RuntimeWarning, stacklevel=1)
+        raise InputError("no such scene")
+    monkeypatch.setattr(run, "build_scene", build_scene)
+    assert main(["run", "hinged-beam"]) == 2
+    assert capsys.readouterr().err == "warning: code cannot be kept\nerror: no such scene\n"
 
 
 def closed_pipe():

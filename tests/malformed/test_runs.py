@@ -9,8 +9,11 @@ from malformed.run_cases import Shared
 from sebody import InputError
 from sebody.analysis import save_state
 
+ALL = run_cases.PROFILES | run_cases.RUNS | run_cases.FILES
 
-@pytest.mark.parametrize("right, argument, value, said", listed(run_cases.RUNS))
+
+@pytest.mark.parametrize("right, argument, value, said",
+                         listed(run_cases.PROFILES | run_cases.RUNS))
 def test_refused(right, argument, value, said):
     with pytest.raises(InputError) as caught:
         right.function(**{**right.arguments, argument: value})
@@ -42,8 +45,8 @@ def test_files_are_refused(right, argument, value, said, folder, monkeypatch):
     assert {path.name for path in folder.iterdir()} == before
 
 
-@pytest.mark.parametrize("name", run_cases.RUNS | run_cases.FILES)
+@pytest.mark.parametrize("name", ALL)
 def test_the_right_call_is_accepted(name, folder, monkeypatch, tmp_path):
-    right = (run_cases.RUNS | run_cases.FILES)[name]
+    right = ALL[name]
     monkeypatch.chdir(folder if name == "resume" else tmp_path)
     right.function(**right.arguments)

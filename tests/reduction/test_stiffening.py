@@ -308,14 +308,23 @@ def test_turning_a_body_makes_no_resultants():
         assert turned_resultants(body).max() < 1e-9
 
 
+def counts(body):
+    return body.invariants.slaved, body.invariants.resultants
+
+
 def test_what_does_not_stiffen_is_left_out():
-    """Slender beams: in a plane tension alone, in space bending and twist of each other, too."""
-    flat = craig_bampton(planar_beam([2, 1], [2.6, 1.8], SLENDER, 12), {0: "full", 12: "full"}, 4)
-    assert (flat.invariants.slaved, flat.invariants.resultants) == (2, 1)
-    deep = cantilever().invariants
-    assert (deep.slaved, deep.resultants) == (6, 6)
-    one = cantilever(modes=0, elements=1).invariants
-    assert one.slaved == 0      # nothing inside that could move
+    """Load modes and resultants: tension alone in compact straight beams, all in frames."""
+    flat = planar_beam([2, 1], [2.6, 1.8], SLENDER, 12)
+    assert counts(craig_bampton(flat, {0: "full", 12: "full"}, 4)) == (2, 1)
+    assert counts(cantilever()) == (2, 1)
+    # stiff in one plane: its bending twists the beam, as in lateral buckling
+    assert counts(cantilever(replace(SLENDER, bending_y=10.0))) == (4, 3)
+    points = [[1, 2, -1], [3, 5, 5], [4, 0, 2]]
+    elbow = frame(points, [(0, 1), (2, 1)], SLENDER, 6)
+    slaved, resultants = counts(craig_bampton(elbow, {0: "full", 1: "full", 2: "full"}, 2))
+    assert slaved >= 9 and resultants == 12
+    # nothing inside that could move
+    assert cantilever(modes=0, elements=1).invariants.slaved == 0
 
 
 def test_units_and_order_change_nothing():

@@ -25,6 +25,7 @@ from sebody.kernels.layout import (
     Row,
     first_mode,
     first_rotation,
+    floating_counts,
     scratch_size,
     superelement_counts,
 )
@@ -103,8 +104,9 @@ class Case(NamedTuple):
     @property
     def counts(self) -> dict[str, int]:
         """The counts that sizes of the constants are products of."""
-        return superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n,
-                                   self.slaved, self.resultants)
+        return superelement_counts(
+            self.n_positions, self.n_rotations, self.planar, self.n) | floating_counts(
+            self.planar, self.n, self.slaved, self.resultants)
 
     @property
     def row(self) -> Row:

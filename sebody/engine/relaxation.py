@@ -1,0 +1,164 @@
+"""Redundant constraints and motions without mass: regularized factors, projected corrections.
+
+With redundant constraints the iteration matrix M is singular, and a residual has parts that no
+correction removes: rounding, or a small misfit of the joints. The factors are those of
+``A = M + R`` with the diagonal R, positive at coordinates, negative at multipliers, and ``RELAXED``
+times the matrix in size; a matrix of this kind has factors in any order (Vanderbei 1995). The
+correction is
+
+    z = A^-1 M A^-1 r = (I - A^-1 R) A^-1 r.
+
+Where M acts with the strength s relative to R / RELAXED, this is the solution times
+``(s / (s + RELAXED))^2``: all of it where s is far above RELAXED, nothing where s is rounding. So
+no rank is decided upon, multipliers get no part that exerts no force, and the motion does not
+depend on R. R has one size for all coordinates of a position or rotation and for all multipliers of
+an equation, so it does not depend on the directions of axes.
+"""
+
+import numpy as np
+
+from sebody.engine import elimination
+from sebody.engine.state import RELAXED
+from sebody.kernels.layout import C_MASS
+from sebody.kernels.pipeline import compiled
+
+RELAXATION = 1e-8       # of R at multipliers, for elimination without row exchanges
+EXCHANGED = 1e-10       # the same for inverses, which rounding spoils less
+LIGHT = 1e-4            # of R at thin bodies, relative to their largest moment of inertia
+WEAKEST = 1e-7          # strength of constraints below which a small matrix is regularized
+PROJECTIONS = 2         # of corrections: rounding over RELAXATION to this power is left
+
+
+@compiled
+def relax(system, state, relaxation):
+    """Add R to the iteration matrix."""
+    for k in range(system.pulls.size):
+        state.pulls[k] = state.matrix[system.pulls[k]]
+    _set_relaxation(system, state, relaxation)
+    for i in range(system.diagonal.size):
+        state.matrix[system.diagonal[i]] += state.relaxation[i]
+    state.control[RELAXED] = 1
+
+
+@compiled
+def _set_relaxation(system, state, relaxation):
+    """R from the masses and from the rows of the constraints, in units of the matrix."""
+    n, size, R = system.diagonal.size, state.projected, state.relaxation
+    mass = state.coefficients[C_MASS]
+    for i in range(n):
+        size[i] = R[i] = 0.0
+    for i in range(n):
+        part = system.part[i]
+        if system.is_multiplier[i] == 0.0:
+            size[part] = max(size[part], abs(state.matrix[system.diagonal[i]]),
+                             mass * system.inertias[i])
+    for k in range(system.rows.size):
+        i, j = system.rows[k], system.columns[k]
+        if i < n and j < n and system.is_multiplier[i] > 0.0 and system.is_multiplier[j] == 0.0:
+            R[i] += state.matrix[k] * state.matrix[k] / size[system.part[j]]
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            size[system.part[i]] = max(size[system.part[i]], R[i])
+    for i in range(n):
+        if system.is_multiplier[i] == 0.0:
+            R[i] = LIGHT * mass * system.thin[i]
+        else:
+            strength = size[system.part[i]]
+            strength = strength if strength > 0.0 else 1.0
+            R[i] = -relaxation * strength
+            state.weight[i] = np.sqrt(strength)
+            state.scale[i] = 1.0 / state.weight[i]
+
+
+@compiled
+def project_inverse(system, state, inverse, n):
+    """Project the scaled inverse of A, transposed, in place."""
+    R, result, row = np.zeros((n, n)), inverse.copy(), np.empty(n)
+    for k in range(n):
+        for j in range(n):
+            R[k, j] = (state.relaxation[k] * system.is_multiplier[k] * state.scale[k]
+                       * state.scale[k] * inverse[k, j])
+    for _ in range(PROJECTIONS):
+        for i in range(n):
+            row[:] = result[i]
+            for k in range(n):
+                for j in range(n):
+                    result[i, j] -= row[k] * R[k, j]
+    inverse[:] = result
+
+
+@compiled
+def project(system, state):
+    """Project the correction that was solved for by blocks."""
+    n = system.diagonal.size
+    for _ in range(PROJECTIONS):
+        for i in range(n):
+            state.projected[i] = (state.relaxation[i] * system.is_multiplier[i]
+                                  * state.correction[i])
+        elimination.solve(system, state, state.projected, state.projected)
+        for i in range(n):
+            state.correction[i] -= state.projected[i]
+
+
+@compiled
+def spread(system, state, inverse, dense):
+    """Take from the multipliers the part that exerts no force: what is left is of least norm.
+
+    That part grows as the constraints turn. It is what ``A^-1 R`` leaves as it is; of all other
+    parts that leaves ``RELAXATION / s``, so it is applied more than once.
+    """
+    n, part = system.diagonal.size, state.projected
+    for i in range(n):
+        part[i] = state.q[i] * system.is_multiplier[i]
+    for _ in range(PROJECTIONS):
+        for i in range(n):
+            part[i] *= state.relaxation[i] * system.is_multiplier[i]
+        if dense:
+            _times_inverse(state, inverse, part, n)
+        else:
+            elimination.solve(system, state, part, part)
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            state.q[i] -= part[i]
+            state.dq[i] -= part[i]
+
+
+@compiled
+def _times_inverse(state, inverse, x, n):
+    """Multiply by a matrix whose scaled transpose is given."""
+    right = np.empty(n)
+    for i in range(n):
+        right[i] = state.scale[i] * x[i]
+    for i in range(n):
+        total = 0.0
+        for j in range(n):
+            total += inverse[j, i] * right[j]
+        x[i] = state.scale[i] * total
+
+
+@compiled
+def relaxed_norms(system, state, n):
+    """Norms of a correction by a regularized matrix, of the increment and of the accelerations.
+
+    Of multipliers count their forces, divided by the scales of the matrix as corrections of
+    coordinates are: a part that exerts little force may be as uncertain as the force allows.
+    """
+    change, force = state.projected, state.pulled
+    norm = size = accelerations = 0.0
+    for i in range(n):
+        change[i] = force[i] = 0.0
+    for k in range(system.pulls.size):
+        i, j = system.rows[system.pulls[k]], system.columns[system.pulls[k]]
+        change[i] += state.pulls[k] * state.correction[j]
+        force[i] += state.pulls[k] * state.q[j]
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            continue
+        f, g = change[i] * state.scale[i], force[i] * state.scale[i]
+        w = state.weight[i]
+        d, s, x, z = (state.correction[i] * w, state.shift[i] * w, state.dq[i] * w,
+                      state.a[i] * w)
+        norm += d * d + s * s + f * f
+        size += x * x + g * g
+        accelerations += z * z
+    return np.sqrt(norm), np.sqrt(size), np.sqrt(accelerations)
