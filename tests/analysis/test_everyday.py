@@ -28,7 +28,7 @@ ABOUT_X = np.array([[1, 0, 0], [0, np.cos(THIRTY), -np.sin(THIRTY)],
                     [0, np.sin(THIRTY), np.cos(THIRTY)]])
 PLACES = {"about x": Place(ABOUT_X), "turned": Place.at_random(1),
           "mm, t, backwards": Place.at_random(2, length=1e3, mass=1e-3, backwards=True)}
-FLAT = {"four-bar": 0.68, "parallelogram": 0.68}    # when all bars lie on one line, or shortly before
+FLAT = {"four-bar": 0.68, "parallelogram": 0.68}  # bars lie on one line soon after
 EVERYDAY = pytest.mark.parametrize("name", MODELS)
 
 
@@ -117,7 +117,7 @@ def test_general_position(name, place):
     # where all bars of a loop lie on one line, rounding is divided by a strength that passes zero:
     # what is left is below the error of the step, which `test_motion_and_balance` bounds
     assert apart.max() < 1e-3
-    assert result.cuts == 0 and result.iterations_per_step < 4.1
+    assert result.cuts == 0 and result.iterations_per_step <= 4.0
     assert result["constraints.position"].max() < 1e-9 * place.length
     assert result.energy_balance() == pytest.approx(one.energy_balance(), rel=0.05, abs=1e-9)
 
