@@ -20,6 +20,7 @@ from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
+from sebody.engine.routines import refactorize_address
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
@@ -113,6 +114,7 @@ class Simulation:
         if self.scheme.stabilized:
             self._offset_accelerations()
         self.state.aux_old[:] = self.state.aux
+        self.system.routines[0] = refactorize_address(self.system, self.state)
         first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
         write_record(self.state, first)

@@ -69,7 +69,7 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
                         ("modes", reduced.modes, kernel.N_MODES)))
     if kernel.PLANAR != reduced.planar:
         wrong.append(f"it is {'planar' if reduced.planar else 'spatial'} and the kernel is not")
-    if kernel.DAMPED != (reduced.damping is not None):
+    if kernel.DAMPED not in (None, reduced.damping is not None):
         wrong.append(f"it has {'no' if kernel.DAMPED else 'a'} damping matrix and the kernel reads "
                      f"{'one' if kernel.DAMPED else 'none'}")
     if INERTIA_OPTIONS[kernel.INERTIA].field and reduced.invariants.slaved > MOST_SLAVED:
@@ -131,7 +131,8 @@ def counts_of(body: Superelement) -> Counts:
     if not INERTIA_OPTIONS[body.inertia].field:
         return counts
     return counts | floating_counts(reduced.planar, _width(body), reduced.invariants.slaved,
-                                    reduced.invariants.resultants)
+                                    reduced.invariants.resultants,
+                                    reduced.damping is not None)
 
 
 def _width(body: Superelement) -> int:

@@ -24,7 +24,7 @@ from sebody.kernels.pipeline import compiled
 
 RELAXATION = 1e-8       # of R at multipliers, for elimination without row exchanges
 EXCHANGED = 1e-10       # the same for inverses, which rounding spoils less
-LIGHT = 1e-4            # of R at thin bodies, relative to their largest moment of inertia
+LIGHT = 1e-3            # of R at thin bodies, relative to their largest moment of inertia
 WEAKEST = 1e-7          # strength of constraints below which a small matrix is regularized
 PROJECTIONS = 2         # of corrections: rounding over RELAXATION to this power is left
 

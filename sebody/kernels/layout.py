@@ -266,14 +266,15 @@ def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: 
             "n": unknowns}
 
 
-def floating_counts(planar: bool, unknowns: int, slaved: int, resultants: int) -> dict[str, int]:
+def floating_counts(planar: bool, unknowns: int, slaved: int, resultants: int,
+                    damped: bool = False) -> dict[str, int]:
     """The further counts of option C."""
     axes = axes_of(planar)
     free = unknowns - (axes["lines"] - axes["pairs"])
     N = free + slaved
     return axes | {"free": free, "N": N, "resultants": resultants,
                    "quadratic": axes["blocks"] * N, "slaving": slaved * free,
-                   "stressing": resultants * free}
+                   "stressing": resultants * free, "damped": free * damped}
 
 
 def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: int) -> int:
