@@ -49,7 +49,7 @@ def build(bodies: int = 1, modes: int = 5, elements: int = ELEMENTS,
                                     lambda t: -SPEED**2 * sin(SPEED * t)))
     model.rigid_velocity((0.0, RADIUS * SPEED), -SPEED * RADIUS / LENGTH, about=(RADIUS, 0.0))
     return Scene("slider-crank", "slider-crank with a flexible rod", model, h=2e-5,
-                 t_end=0.08377580409572781, base="pin", tip="slider")
+                 t_end=0.08378, base="pin", tip="slider")
 
 
 if __name__ == "__main__":
