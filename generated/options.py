@@ -43,7 +43,7 @@ INERTIA_OPTIONS = {
         material=True,
         field=True,
         constants=(
-            Part("sizes", (2,), "slaved coordinates, resultants of second order"),
+            Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
             Part("kept", ("free",), "local coordinates that determine the others in the frame"),
             Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
             Part("J0", ("pairs",), "moments of inertia at rest"),
@@ -53,6 +53,7 @@ INERTIA_OPTIONS = {
                  "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
             Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
             Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
+            Part("Cz", ("free", "damped"), "reduced damping", columns=True),
             Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
             Part("lam", ("resultants",), "eigenvalues of the resultants"),
             Part("E", ("free", "resultants"), "their eigenvectors", columns=True),

@@ -25,6 +25,7 @@ from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
+    AT_PORT,
     C_DAMPING,
     C_GEO,
     C_MASS,
@@ -37,6 +38,7 @@ from sebody.kernels.layout import (
     MOMENTUM,
     OK,
     POTENTIAL,
+    POWERS,
     STRAIN,
     SUPERELEMENT_CONSTANTS,
     TANGENT,
@@ -53,16 +55,16 @@ N_POSITIONS = 2
 N_ROTATIONS = 2
 ROTATIONS = 6      # first rotation among the local coordinates
 MODES = 12          # first internal mode
-DAMPED = False        # has structural damping
+DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 117
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (508, 168, 750, 17),
+OPERATIONS = {"residual": (508, 168, 750, 18),
               "column": (75, 228, 2420, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
-    Part("sizes", (2,), "slaved coordinates, resultants of second order"),
+    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
     Part("kept", ("free",), "local coordinates that determine the others in the frame"),
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
@@ -72,12 +74,13 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
          "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
     Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
     Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
+    Part("Cz", ("free", "damped"), "reduced damping", columns=True),
     Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
+ROOM = "e380eed2a239"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -166,12 +169,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         full = at(mc, 3)
         masses = at(full, 1)
         sizes = at(masses, 1)
-        slaved, resultants = int(sizes[0]), int(sizes[1])
+        slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])
         free = n - 6
         N = free + slaved
         quadratic, slaving = 12*N, slaved*free
         hn, hN, deep = padded(free), padded(N), padded(N + 6)
-        kept = at(sizes, 2)
+        kept = at(sizes, 3)
         c0 = at(kept, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
@@ -179,11 +182,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         quadratics = at(moment_rows, N*padded(12))
         Mz = at(quadratics, quadratic*padded(N))
         Sz = at(Mz, N*padded(N))
-        followers = at(Sz, free*padded(free))
+        Cz = at(Sz, free*padded(free))
+        followers = at(Cz, damped*padded(free))
         lam = at(followers, slaving*padded(free))
         E = at(lam, resultants)
         Ghat = at(E, resultants*padded(free))
-        filled = int(full[0])
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -616,6 +619,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         add_block_times(Mz, zdd, local, N, N, hN)
         # elastic force, Sbar y
         add_block_times(Sz, z, local, free, free, hn)
+        # damping force, Cbar ydot
+        add_block_times(Cz, zd, local, free, damped, hn)
         # Ghat_e y, all e
         block_times(Ghat, z, Gy, resultants*hn, free, resultants*hn)
         # E_e . y
@@ -773,6 +778,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             block_times(Sz, z, moved, free, free, hn)
             # twice its energy
             rows_times(moved, z, at(squares, 1), free, 1, hn)
+            # damping force, Cbar ydot
+            block_times(Cz, zd, moved, free, damped, hn)
+            # its power
+            rows_times(moved, zd, at(squares, 2), free, 1, hn)
             # energies, momentum and its moment about the origin
             mass = masses[0]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -818,6 +827,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             energies[MOMENT] += H_x
             energies[MOMENT + 1] += H_y
             energies[MOMENT + 2] += H_z
+            if damped > 0:
+                energies[POWERS + index[first + AT_PORT]] = -squares[2]
         if task == TANGENT:
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
@@ -877,8 +888,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # stiffness
                 add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
                 # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), free,
-                                slaved, hn)
+                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep),
+                                free, slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]
@@ -891,8 +902,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # the same
                 add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
                 # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free, resultants,
-                                hn)
+                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free,
+                                resultants, hn)
+            # structural damping
+            for j in range(damped):
+                # a column
+                add_block_times(at(Cz, j*hn), ones, at(Lv, j*deep), free, 1, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
@@ -991,8 +1006,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t198 = row_h_xz + 2*row_j_xz
                 t199 = row_h_yz + 2*row_j_yz
                 Lv[N*deep + i] = -Om0_x*(row_h_xx + 2*row_j_xx) - Om0_y*t197 - Om0_z*t198 + row_w_x
-                Lv[(N + 1)*deep + i] = -Om0_x*t197 - Om0_y*(row_h_yy + 2*row_j_yy) - Om0_z*t199 + row_w_y
-                Lv[(N + 2)*deep + i] = -Om0_x*t198 - Om0_y*t199 - Om0_z*(row_h_zz + 2*row_j_zz) + row_w_z
+                Lv[(N + 1)*deep + i] = (-Om0_x*t197 - Om0_y*(row_h_yy + 2*row_j_yy) - Om0_z*t199 +
+                    row_w_y)
+                Lv[(N + 2)*deep + i] = (-Om0_x*t198 - Om0_y*t199 - Om0_z*(row_h_zz + 2*row_j_zz) +
+                    row_w_z)
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z

@@ -24,6 +24,7 @@ from sebody.kernels.frame_search import planar_fit, planar_relative_angles
 from sebody.kernels.layout import (
     AT_CONSTANTS,
     AT_FRAME,
+    AT_PORT,
     AT_POSITIONS,
     AT_ROTATIONS,
     C_DAMPING,
@@ -38,6 +39,7 @@ from sebody.kernels.layout import (
     MOMENTUM,
     OK,
     POTENTIAL,
+    POWERS,
     STRAIN,
     SUPERELEMENT_CONSTANTS,
     TANGENT,
@@ -53,16 +55,16 @@ N_POSITIONS = None
 N_ROTATIONS = None
 ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
-DAMPED = False        # has structural damping
+DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
 WORK_ROWS = 114
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (451, 120, 3, 6),
+OPERATIONS = {"residual": (451, 120, 3, 7),
               "column": (10, 168, 4, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
-    Part("sizes", (2,), "slaved coordinates, resultants of second order"),
+    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
     Part("kept", ("free",), "local coordinates that determine the others in the frame"),
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
@@ -72,12 +74,13 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
          "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
     Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
     Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
+    Part("Cz", ("free", "damped"), "reduced damping", columns=True),
     Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "b3464662f13e"     # hash of sebody/kernels, which this file was made for
+ROOM = "e380eed2a239"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -167,12 +170,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         full = at(mc, 2)
         masses = at(full, 1)
         sizes = at(masses, 1)
-        slaved, resultants = int(sizes[0]), int(sizes[1])
+        slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])
         free = n - 3
         N = free + slaved
         quadratic, slaving = 3*N, slaved*free
         hn, hN, deep = padded(free), padded(N), padded(N + 3)
-        kept = at(sizes, 2)
+        kept = at(sizes, 3)
         c0 = at(kept, free)
         J0 = at(c0, 2)
         moment_columns = at(J0, 1)
@@ -180,11 +183,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         quadratics = at(moment_rows, N*padded(4))
         Mz = at(quadratics, quadratic*padded(N))
         Sz = at(Mz, N*padded(N))
-        followers = at(Sz, free*padded(free))
+        Cz = at(Sz, free*padded(free))
+        followers = at(Cz, damped*padded(free))
         lam = at(followers, slaving*padded(free))
         E = at(lam, resultants)
         Ghat = at(E, resultants*padded(free))
-        filled = int(full[0])
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -406,6 +409,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         add_block_times(Mz, zdd, local, N, N, hN)
         # elastic force, Sbar y
         add_block_times(Sz, z, local, free, free, hn)
+        # damping force, Cbar ydot
+        add_block_times(Cz, zd, local, free, damped, hn)
         # Ghat_e y, all e
         block_times(Ghat, z, Gy, resultants*hn, free, resultants*hn)
         # E_e . y
@@ -507,6 +512,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             block_times(Sz, z, moved, free, free, hn)
             # twice its energy
             rows_times(moved, z, at(squares, 1), free, 1, hn)
+            # damping force, Cbar ydot
+            block_times(Cz, zd, moved, free, damped, hn)
+            # its power
+            rows_times(moved, zd, at(squares, 2), free, 1, hn)
             # energies, momentum and its moment about the origin
             mass = masses[0]
             gamma_x, gamma_y = gamma[0], gamma[1]
@@ -534,6 +543,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             energies[MOMENTUM] += P_x
             energies[MOMENTUM + 1] += P_y
             energies[MOMENT + 2] += H_z
+            if damped > 0:
+                energies[POWERS + index[first + AT_PORT]] = -squares[2]
         if task == TANGENT:
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
@@ -569,8 +580,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # stiffness
                 add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
                 # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep), free,
-                                slaved, hn)
+                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep),
+                                free, slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]
@@ -583,8 +594,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # the same
                 add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
                 # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free, resultants,
-                                hn)
+                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free,
+                                resultants, hn)
+            # structural damping
+            for j in range(damped):
+                # a column
+                add_block_times(at(Cz, j*hn), ones, at(Lv, j*deep), free, 1, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y = zdd[N], zdd[N + 1]

@@ -103,15 +103,18 @@ def fits(layout: Layout, frame: FrameTraits) -> bool:
             and (frame.planar or not layout.planar))
 
 
-def check_inertia(frame: str, inertia: str, frames: Mapping[str, FrameTraits],
+def check_inertia(layout: Layout, frame: str, inertia: str, frames: Mapping[str, FrameTraits],
                   options: Mapping[str, InertiaTraits]) -> None:
     """Refuse a frame that depends on the last step where rates of the frame are needed.
 
     Raises
     ------
     LayoutError
-        With the frames that the option can have.
+        With the frames that the option can have, or because all its kernels are damped.
     """
+    if options[inertia].field and layout.damped:
+        raise LayoutError(f"layout {layout.name}: kernels of inertia option {inertia!r} take "
+                          "damped bodies, too: leave out the d")
     if options[inertia].field and frames[frame].incremental:
         others = " or ".join(repr(name) for name, other in frames.items() if not other.incremental)
         raise LayoutError(f"inertia option {inertia!r} needs the exact rates of a frame that "

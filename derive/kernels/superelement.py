@@ -101,7 +101,7 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
         If the layout cannot carry the frame, or the inertia option cannot have it.
     """
     check_frame(layout, frame, frame_traits())
-    check_inertia(frame, inertia, frame_traits(), inertia_traits())
+    check_inertia(layout, frame, inertia, frame_traits(), inertia_traits())
     options = FRAMES[frame], INERTIA_OPTIONS[inertia]
     formulas = node_formulas(layout.planar, *options)
     return Superelement(layout, frame, inertia, options, formulas,

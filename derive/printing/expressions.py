@@ -56,25 +56,12 @@ def indented(lines: Iterable[str], levels: int) -> str:
     return "\n".join(_broken(pad + line) for line in lines)
 
 
-def _broken_call(line: str) -> str:
-    """A long call over several lines, its arguments one under the other."""
-    opening = line.index("(") + 1
-    rows, row = [], line[:opening]
-    for word in line[opening:].split(" "):
-        if len(row) + len(word) + 1 > WIDTH:
-            rows.append(row.rstrip())
-            row = " " * opening
-        row += word + " "
-    return "\n".join([*rows, row.rstrip()])
-
-
 def _broken(line: str) -> str:
     """A long assignment in parentheses over several lines; other lines are left alone."""
     operator = " = " if " = " in line else " += "
     head, _, tail = line.partition(operator)
-    if len(line) > WIDTH and not tail and line.endswith(")"):
-        return _broken_call(line)
-    if len(line) <= WIDTH or line.lstrip().startswith("#") or not tail or "(" in head:
+    if len(line) <= WIDTH or line.lstrip().startswith("#") or not tail or (
+            head.count("(") != head.count(")")):
         return line
     indent = len(line) - len(line.lstrip())
     rows, row = [], head + operator + "("

@@ -41,6 +41,7 @@ def chain(parts: tuple[Part, ...], planar: bool) -> list[str]:
 def _counts(known: Counts) -> list[str]:
     """Counts of option C: slaved coordinates, resultants, and what follows from them."""
     motions = known["lines"] - known["pairs"]
-    return ["slaved, resultants = int(sizes[0]), int(sizes[1])", f"free = n - {motions}",
+    return ["slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])",
+            f"free = n - {motions}",
             "N = free + slaved", f"quadratic, slaving = {known['blocks']}*N, slaved*free",
             f"hn, hN, deep = padded(free), padded(N), padded(N + {motions})"]

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable
 from functools import cache
+from textwrap import wrap
 
 import sympy as sp
 
@@ -28,6 +29,7 @@ from sebody.derive.symbolic.steps import (
 )
 
 LOOPS = {"position": ("i", "i3", "N_POSITIONS"), "rotation": ("j", "j3", "N_ROTATIONS")}
+CALL_WIDTH = 76     # inside the loops of a kernel, so that lines keep to the width
 SINGLE = {"mode": ("k", "range(MODES, n)"), "coordinate": ("i", "range(n)"),
           "shape": ("i", "range(N)"), "slaved": ("b", "range(slaved)"),
           "resultant": ("e", "range(resultants)")}
@@ -183,7 +185,9 @@ class StepPrinter:
 
     def _call(self, step: Call) -> list[str]:
         self.products += step.products
-        return [f"{step.function}({', '.join(step.arguments)})"]
+        head = f"{step.function}("
+        return wrap(f"{head}{', '.join(step.arguments)})", CALL_WIDTH, break_long_words=False,
+                    subsequent_indent=" " * len(head))
 
     def _repeat(self, step: Repeat) -> list[str]:
         return [f"for {step.index} in range({step.count}):", *nested(self.lines(step.steps))]

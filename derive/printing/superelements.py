@@ -22,12 +22,13 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     residual = printer.lines(kernel.residual)
     in_residual = _counted(printer)
     energy = [*printer.lines(kernel.energy), *templates.ENERGY_OUTPUTS[planar]]
+    energy += templates.FRICTION_FIELD * kernel.options[1].traits.field
     prepared = printer.lines(kernel.prepared)
     printer.operations, printer.products = Counter(), 0
     tangent = printer.lines(kernel.tangent)
     return templates.SUPERELEMENT.format(
         **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
-        filled=templates.FILLED * (layout.modes is None),
+        filled=templates.FILLED * any(", filled)" in line for line in [*residual, *tangent]),
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
         reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows) + sum(TALL[name] for name in uses.tall),
@@ -46,7 +47,8 @@ def _head(kernel: Superelement) -> dict[str, object]:
             "planar": layout.planar, "positions": layout.positions,
             "rotations": layout.rotations, "nodes": _nodes(layout),
             "first_rotation": layout.first_rotation,
-            "first_mode": layout.first_mode, "damped": layout.damped, "n_modes": layout.modes,
+            "first_mode": layout.first_mode, "n_modes": layout.modes,
+            "damped": None if inertia.traits.field else layout.damped,
             "space": "motion in a plane" if layout.planar else "motion in space",
             "modes": "any number of" if layout.modes is None else layout.modes,
             "version": templates.VERSION, "sympy": sympy.__version__,
@@ -67,6 +69,7 @@ def _names(kernel: Superelement, uses: Resources) -> set[str]:
     names = {*templates.SUPERELEMENT_NAMES, *(product_name(name, kernel.layout)
                                               for name in uses.calls)}
     names |= set(templates.DAMPING_NAMES) if kernel.layout.damped else set()
+    names |= {"AT_PORT", "POWERS"} if kernel.options[1].traits.field else set()
     names |= set(templates.GENERAL_NAMES) if kernel.layout.nodes is None else set()
     return names | ({"Part"} if kernel.declared else set())
 
@@ -98,8 +101,8 @@ def _sums(kernel: Superelement) -> str:
     """Energies that are sums over the coordinates, where they are."""
     factors, damped = kernel.formulas.inertia.kinetic, kernel.layout.damped
     lines = [line.format(*factors) for line in templates.SUMS] if factors else []
-    friction = templates.FRICTION if factors else templates.FRICTION_ALONE
-    return indented([*lines, *(friction * damped)], 3) + "\n" * bool(lines or damped)
+    friction = templates.FRICTION * damped if factors else ()
+    return indented([*lines, *friction], 3) + "\n" * bool(lines)
 
 
 def _prepared(lines: list[str]) -> str:

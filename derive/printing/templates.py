@@ -30,7 +30,7 @@ N_POSITIONS = {positions}
 N_ROTATIONS = {rotations}
 ROTATIONS = {first_rotation}      # first rotation among the local coordinates
 MODES = {first_mode}          # first internal mode
-DAMPED = {damped}        # has structural damping
+DAMPED = {damped}        # has structural damping, None where a body tells
 N_MODES = {n_modes}        # their number, None where it is read at run time
 WORK_ROWS = {work_rows}
 WORK_SQUARES = {work_squares}
@@ -98,7 +98,11 @@ FRICTION = (
     "    lost -= eta[i]*friction[i]",
     "energies[POWERS + index[first + AT_PORT]] = lost",
 )
-FRICTION_ALONE = tuple(line for line in FRICTION if "strain" not in line)
+# of option C, where a body tells whether it is damped
+FRICTION_FIELD = (
+    "if damped > 0:",
+    "    energies[POWERS + index[first + AT_PORT]] = -squares[2]",
+)
 
 FILLED = "        filled = int(full[0])\n"
 REFERENCE = "        reference = at(references, 9*index[first + AT_FRAME])\n"

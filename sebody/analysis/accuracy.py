@@ -1,5 +1,6 @@
 """Runs within a tolerance of the whole run: steps are refined until two runs agree."""
 
+import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -9,7 +10,7 @@ from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.numbering import rotational
 from sebody.engine.state import Scheme
-from sebody.errors import Interrupted, SimulationError
+from sebody.errors import Interrupted, LimitWarning, SimulationError
 from sebody.model.model import Model
 from sebody.results.result import Result
 
@@ -61,7 +62,9 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     while True:
         local = Tolerance(*(share * value for value in wanted))
         try:
-            now = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
+            with warnings.catch_warnings():     # what is wrong with a coarse run need not stay
+                warnings.simplefilter("ignore", LimitWarning)
+                now = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
         except KeyboardInterrupt as stop:
             if before is None:
                 raise
@@ -76,6 +79,8 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
         differences.append(difference(now, before, wanted))
         now.error = differences[-1] / max((now.steps / before.steps)**2 - 1.0, 1.0)
         if now.error <= 1.0:
+            for message in now.warnings:
+                warnings.warn(message, LimitWarning, stacklevel=2)
             return now
         if len(differences) > 2 and differences[-1] > HOPELESS * differences[-3]:
             raise SimulationError(

@@ -44,13 +44,11 @@ class Part(NamedTuple):
     after: tuple[str, ...] = ()     # parts it calls, or takes most of
 
 
-# those that take long, then what they are parts of; the loop itself waits for all of them
+# those that take long, then what they are parts of; the loop itself waits for those before it
 PARTS = {
-    "sums": Part(matrix.sum_matrices, "system state vector"),
     "forces": Part(evaluate.assemble, "whole whole system state vector"),
     "output": Part(step_control.write_between, "system state record whole"),
     "correction": Part(newton.apply_correction, "system state scheme flag"),
-    "matrix": Part(matrix.refactorize, "system state whole flag", ("sums",)),
     "evaluation": Part(loop._evaluate, "system state scheme whole flag", ("forces",)),
     "conclusion": Part(loop._conclude, "system state record scheme whole"),
     "solution": Part(matrix.solve, "system state flag"),
@@ -59,6 +57,8 @@ PARTS = {
 }
 PARTS["loop"] = Part(loop.advance, "system state record scheme whole whole flag", tuple(PARTS))
 PARTS |= {
+    "sums": Part(matrix.sum_matrices, "system state vector"),
+    "matrix": Part(matrix.refactorize, "system state whole flag", ("sums",)),
     "constraints": Part(postprocessing._evaluate_constraints, "system state table table",
                         ("forces",)),
     "powers": Part(evaluate.set_powers, "system state", ("forces",)),

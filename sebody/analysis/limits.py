@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from sebody import inputs
+from sebody.analysis.quality import remarks
+from sebody.analysis.thresholds import FLAT, LINEAR
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
 from sebody.kernels.layout import RECORD
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
-from sebody.results.recording import record_counts
+from sebody.results.recording import Recording, record_counts
 
-LINEAR = 0.3            # rad, local rotation up to which stiffness is linear, see README
 STATES = 3000           # states of bodies that are checked in a piece of a run
 FEWEST, MOST = 10, 200  # bounds of the recorded states these are taken from
-FLAT = 1e-3             # smallest ratio of the spreads of nodes that define a frame
 
 
 class Watch:
@@ -78,6 +78,11 @@ class Watch:
             for k in np.flatnonzero(speeds.max(axis=0) > group.least):
                 row = int(np.argmax(speeds[:, k]))
                 self._compare(group.bodies[k], spins[row, k], speeds[row, k])
+
+    def judge(self, run: Recording) -> None:
+        """Compare energies, steps, vibrations and constraints of a whole run with their limits."""
+        for key, message in remarks(run).items():
+            self.say(key, message)
 
     def _compare(self, body: Superelement, spin: NDArray, speed: float) -> None:
         if f"spin {body.name}" in self._said:

@@ -10,6 +10,7 @@ from scipy.sparse import csc_matrix
 from sebody import inputs
 from sebody.analysis import user_faults
 from sebody.analysis.evaluation import matrix
+from sebody.analysis.limits import Watch
 from sebody.analysis.shapes import Shapes
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.turning import Spin, motion, of_levers, summed
@@ -85,6 +86,8 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
                     "of an equilibrium")
     steady = Spin.of(run, spin)
+    watch = run.watch if isinstance(run, Simulation) else Watch()
+    watch.look(run.model, run.numbering, run.state.now[None].copy())
     user_faults.forget(run.model)
     matrices = (_turning(run, steady) if steady.rotates else
                 tuple(derivative(run, *weights) for weights in np.eye(3)))

@@ -20,6 +20,7 @@ from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
+from sebody.engine.routines import refactorize_address
 from sebody.engine.state import (
     ADAPTIVE,
     AUX_STEP,
@@ -113,6 +114,7 @@ class Simulation:
         if self.scheme.stabilized:
             self._offset_accelerations()
         self.state.aux_old[:] = self.state.aux
+        self.system.routines[0] = refactorize_address(self.system, self.state)
         first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
         write_record(self.state, first)
@@ -232,9 +234,12 @@ class Simulation:
 
     def result(self) -> Result:
         """The results computed so far."""
-        return Result(self.model, self.numbering, self.system, self.state,
-                      np.concatenate(self.rows), self.seconds, self.failure, self.start,
-                      tuple(self.watch.messages))
+        found = Result(self.model, self.numbering, self.system, self.state,
+                       np.concatenate(self.rows), self.seconds, self.failure, self.start)
+        if found.steps:
+            self.watch.judge(found)
+        found.warnings = tuple(self.watch.messages)
+        return found
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
         """The given scheme, or by default one that suits the steps and the constraints."""

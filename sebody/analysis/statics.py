@@ -77,7 +77,12 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
                        "buckle there, or a mechanism is free to move; use more steps or supports")
             if did := user_faults.fault(model, -np.inf):
                 message = f"no equilibrium was found above {share:.4g} of the load: {did}"
-            raise SimulationError(message, run.result())
+            raise SimulationError(message, _result(run))
+    return _result(run)
+
+
+def _result(run: Simulation) -> Result:
+    run.watch.look(run.model, run.numbering, np.concatenate(run.rows))
     return run.result()
 
 

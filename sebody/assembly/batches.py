@@ -155,8 +155,9 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     if not INERTIA_OPTIONS[body.inertia].field:
         return values
     conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts_of(body), values)
+    values.pop("C", None)
     return values | floating_constants(reduced.invariants.about(origin), reduced.stiffness,
-                                       conditions)
+                                       conditions, reduced.damping)
 
 
 def _filled(body: Superelement) -> int:

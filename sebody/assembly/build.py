@@ -50,6 +50,7 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         **matrix, **axes,
         is_multiplier=is_multiplier, pulls=_pulls(matrix, is_multiplier, numbering.free),
         rotation_at=_rotation_starts(numbering), summands=table,
+        routines=np.zeros(1, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),

@@ -14,10 +14,12 @@ from sebody.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import (
     INDEX,
+    MOST_SLAVED,
     ContractError,
     Counts,
     Row,
     first_mode,
+    floating_counts,
     superelement_counts,
 )
 from sebody.model.parts import Element, Superelement
@@ -67,9 +69,12 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
                         ("modes", reduced.modes, kernel.N_MODES)))
     if kernel.PLANAR != reduced.planar:
         wrong.append(f"it is {'planar' if reduced.planar else 'spatial'} and the kernel is not")
-    if kernel.DAMPED != (reduced.damping is not None):
+    if kernel.DAMPED not in (None, reduced.damping is not None):
         wrong.append(f"it has {'no' if kernel.DAMPED else 'a'} damping matrix and the kernel reads "
                      f"{'one' if kernel.DAMPED else 'none'}")
+    if INERTIA_OPTIONS[kernel.INERTIA].field and reduced.invariants.slaved > MOST_SLAVED:
+        wrong.append(f"it has {reduced.invariants.slaved} slaved coordinates and the kernel memory "
+                     f"for {MOST_SLAVED}")
     if wrong:
         raise _misfit(body.name, kernel, wrong)
 
@@ -121,10 +126,13 @@ def positions_of(element: Element) -> int:
 def counts_of(body: Superelement) -> Counts:
     """The counts that sizes of a superelement's rows are products of."""
     reduced = body.body
-    extra = reduced.invariants if INERTIA_OPTIONS[body.inertia].field else None
-    return superelement_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
-                               reduced.planar, _width(body), extra.slaved if extra else 0,
-                               extra.resultants if extra else 0)
+    counts = superelement_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
+                                 reduced.planar, _width(body))
+    if not INERTIA_OPTIONS[body.inertia].field:
+        return counts
+    return counts | floating_counts(reduced.planar, _width(body), reduced.invariants.slaved,
+                                    reduced.invariants.resultants,
+                                    reduced.damping is not None)
 
 
 def _width(body: Superelement) -> int:

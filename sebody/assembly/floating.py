@@ -11,7 +11,8 @@ from sebody.reduction.invariants import InertiaInvariants
 
 
 def floating_constants(invariants: InertiaInvariants, stiffness: NDArray,
-                       conditions: NDArray) -> dict[str, ArrayLike]:
+                       conditions: NDArray, damping: NDArray | None = None
+                       ) -> dict[str, ArrayLike]:
     """Values by name.
 
     Parameters
@@ -22,20 +23,24 @@ def floating_constants(invariants: InertiaInvariants, stiffness: NDArray,
         Reduced stiffness.
     conditions : (k, n)
         What the local coordinates obey in the frame, see `frame_conditions`.
+    damping : (n, n), optional
+        Reduced damping.
     """
     kept, basis = determining(conditions)
-    return packed(_restricted(invariants, basis), basis.T @ stiffness @ basis, kept)
+    return packed(_restricted(invariants, basis), basis.T @ stiffness @ basis, kept,
+                  None if damping is None else basis.T @ damping @ basis)
 
 
-def packed(invariants: InertiaInvariants, stiffness: NDArray, kept: ArrayLike
-           ) -> dict[str, ArrayLike]:
+def packed(invariants: InertiaInvariants, stiffness: NDArray, kept: ArrayLike,
+           damping: NDArray | None = None) -> dict[str, ArrayLike]:
     """Values by name, of integrals and a stiffness of the `kept` coordinates alone."""
     i, free = invariants, len(stiffness)
     pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)) if len(i.J0) == 3 else ((0, 0),)
     moments = np.vstack([i.S1, i.g, *(i.h[r, c] + i.h[c, r] for r, c in pairs)])
     across = i.K.transpose(0, 2, 1)
     blocks = [*(i.J2[pair] for pair in pairs), *across, *(across - i.K)]
-    return {"sizes": [i.slaved, i.resultants], "kept": kept, "c0": i.c0,
+    Cz = np.zeros((free, 0)) if damping is None else damping
+    return {"sizes": [i.slaved, i.resultants, Cz.shape[1]], "Cz": Cz, "kept": kept, "c0": i.c0,
             "J0": [i.J0[pair] for pair in pairs], "moment_columns": moments.T,
             "moment_rows": moments, "quadratics": _by_columns(blocks, len(i.Mbar)), "Mz": i.Mbar,
             "Sz": stiffness, "followers": _by_columns(i.Q, free), "lam": i.lam, "E": i.E,

@@ -58,6 +58,8 @@ def run(options: argparse.Namespace) -> int:
     sys.stdout.flush()
     for message in outcome.errors:
         print(f"error: {message}", file=sys.stderr)
+    for message in outcome.result.warnings:
+        print(f"warning: {message}", file=sys.stderr)
     return interrupts.exit_code() or int(bool(outcome.errors))
 
 
@@ -74,7 +76,7 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
     They are written before anything is printed: whoever reads may stop reading.
     """
-    warnings.simplefilter("ignore", LimitWarning)   # the summary prints them
+    warnings.simplefilter("ignore", LimitWarning)   # they are printed after the summary
     t_end = _t_end(scene, options)
     simulation = None if options.accuracy is not None else _simulation(scene, options)
     bar, errors = Progress(), []

@@ -14,8 +14,9 @@ from sebody.engine.evaluate import (
     take_rates,
     to_body_axes,
 )
-from sebody.engine.matrix import refactorize, solve
+from sebody.engine.matrix import solve
 from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
+from sebody.engine.routines import call_refactorize
 from sebody.engine.state import (
     ADAPTIVE,
     BEGIN,
@@ -100,7 +101,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             control[PHASE] = FACTORED
             if wanted != KEPT:
                 count_matrix(state, wanted)
-                if not refactorize(system, state, wanted, dense):
+                if not call_refactorize(system.routines[0], system, state, wanted, dense):
                     reason = np.int64(NOT_FINITE)
                     continue
                 if control[PIVOTED] == 1:

@@ -80,6 +80,7 @@ class System(Arrays):
     links               rigid links
     relaxed             (1,) 1 where constraints are redundant or something without mass can move
     damped              (1,) 1 where a superelement has structural damping
+    routines            (1,) address of `refactorize`, see `sebody.engine.routines`
     ==================  ============================================================================
     """
 
@@ -127,3 +128,4 @@ class System(Arrays):
     links: Links
     relaxed: NDArray
     damped: NDArray
+    routines: NDArray

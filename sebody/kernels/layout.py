@@ -259,15 +259,22 @@ MARGIN = MOST_SLAVED + 6    # what scratch rows of option C have beyond n: these
 DAMPING_CONSTANTS = (Part("C", ("n", "n"), "reduced damping", columns=True),)
 
 
-def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int,
-                        slaved: int = 0, resultants: int = 0) -> dict[str, int]:
+def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int
+                        ) -> dict[str, int]:
     """The counts that sizes of a superelement's rows are products of."""
+    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, "D": 2 if planar else 3,
+            "n": unknowns}
+
+
+def floating_counts(planar: bool, unknowns: int, slaved: int, resultants: int,
+                    damped: bool = False) -> dict[str, int]:
+    """The further counts of option C."""
     axes = axes_of(planar)
     free = unknowns - (axes["lines"] - axes["pairs"])
     N = free + slaved
-    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, **axes, "n": unknowns,
-            "free": free, "N": N, "resultants": resultants, "quadratic": axes["blocks"] * N,
-            "slaving": slaved * free, "stressing": resultants * free}
+    return axes | {"free": free, "N": N, "resultants": resultants,
+                   "quadratic": axes["blocks"] * N, "slaving": slaved * free,
+                   "stressing": resultants * free, "damped": free * damped}
 
 
 def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: int) -> int:

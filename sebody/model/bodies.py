@@ -15,6 +15,7 @@ from sebody.model.frames import (
     check_invariants,
     check_options,
     frame_weights,
+    needs_damped_kernel,
 )
 from sebody.model.inputs import known, refuse_taken, triplet, vector
 from sebody.model.mechanism import Mechanism
@@ -63,7 +64,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable
     alpha, alpha_r = frame_weights(name, placed, frame, frame_node)
     layout = layout_name(placed.keeps, placed.planar)
     kernel = superelement_kernel_name(layout, FRAMES[frame].kernel, inertia, placed.modes,
-                                      placed.damping is not None)
+                                      needs_damped_kernel(placed, inertia))
     model.bodies[name] = Superelement(name, placed, nodes, frame, inertia, layout, alpha, alpha_r,
                                       kernel, np.zeros(placed.modes))
     model.own_names.add(name)

@@ -6,11 +6,12 @@ of `math` and NumPy.
 
 import math
 from collections.abc import Callable
-from types import CellType, CodeType, FunctionType, ModuleType
+from types import FunctionType, ModuleType
 
 import numpy as np
 
 from sebody.errors import InputError
+from sebody.model.functions import rebuilt
 
 # names of NumPy that SymPy has others for; all others are the same in both
 NAMES = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2",
@@ -32,7 +33,7 @@ def rates_of(function: Callable[[float], float], what: str
 
     t = sympy.Symbol("t", real=True)
     try:
-        value = sympy.sympify(_symbolic(getattr(function, "py_func", function), {})(t))
+        value = sympy.sympify(_symbolic(getattr(function, "py_func", function))(t))
         rates = [sympy.diff(value, t, k) for k in (1, 2)]
         if not value.free_symbols <= {t} or any(
                 rate.has(sympy.Derivative, sympy.Subs, sympy.DiracDelta) for rate in rates):
@@ -55,36 +56,18 @@ class _Symbols:
         return getattr(sympy, NAMES.get(name, name))
 
 
-def _symbolic(function: FunctionType, made: dict[int, FunctionType]) -> FunctionType:
+def _symbolic(function: FunctionType) -> FunctionType:
     """A copy of a function whose mathematics is SymPy's, of the functions it calls, too."""
-    if id(function) in made:
-        return made[id(function)]
-    names = _names(function.__code__)
-    inner = dict(function.__globals__)
-    copy = FunctionType(function.__code__, inner, function.__name__, function.__defaults__,
-                        tuple(CellType() for _ in function.__closure__ or ()))
-    copy.__kwdefaults__ = function.__kwdefaults__
-    made[id(function)] = copy
-    for name in names & inner.keys():
-        inner[name] = _replaced(inner[name], made)
-    for cell, own in zip(copy.__closure__ or (), function.__closure__ or (), strict=True):
-        cell.cell_contents = _replaced(own.cell_contents, made)
-    return copy
+    return rebuilt(function, _replaced)
 
 
-def _names(code: CodeType) -> set[str]:
-    """Global names that a function uses, those of functions within it included."""
-    inner = (c for c in code.co_consts if isinstance(c, CodeType))
-    return set(code.co_names).union(*map(_names, inner))
-
-
-def _replaced(value: object, made: dict[int, FunctionType]) -> object:
+def _replaced(value: object) -> object:
     """SymPy's counterpart of a module or function; everything else as it is."""
     if isinstance(value, ModuleType):
         return _Symbols() if value in (math, np) else value
     value = getattr(value, "py_func", value)        # of what Numba has compiled
     if isinstance(value, FunctionType):
-        return _symbolic(value, made)
+        return _symbolic(value)
     name = getattr(value, "__name__", "")
     if callable(value) and value in (getattr(math, name, None), getattr(np, name, None)):
         return getattr(_Symbols(), name)

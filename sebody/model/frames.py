@@ -51,6 +51,11 @@ def check_invariants(name: str, body: ReducedBody, inertia: str) -> None:
                          "model, or use inertia='b'")
 
 
+def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
+    """Whether the body is damped and the kernels of its option are not for both kinds."""
+    return body.damping is not None and not options.INERTIA_OPTIONS[inertia].field
+
+
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:
     """Refuse a frame that the kept triplets cannot define."""
     traits = FRAMES[frame].traits

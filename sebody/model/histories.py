@@ -17,6 +17,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.user_functions import UserFunction, compile_history
 from sebody.model.derivatives import rates_of
+from sebody.model.functions import with_compiled_helpers
 
 LOAD, MOTION = "load history", "motion of a drive"
 SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
@@ -131,7 +132,7 @@ def history(source: Source) -> History:
     if _is_function_with_rates(source):
         source = source[0]
     if callable(source):
-        return History(functions=(compile_history(source, LOAD),))
+        return History(functions=(_compiled(source, LOAD),))
     times, values = table(source, LOAD)
     slopes = np.append(np.diff(values) / np.diff(times), 0.0)
     bends = np.diff(slopes, prepend=0.0) != 0.0
@@ -150,7 +151,7 @@ def with_corners(function: Callable[[float], float], corners: Sequence[float]) -
     remedy = f"corners are {inputs.shown(corners)}: give a list of times"
     times = np.unique(inputs.vector(corners, "corners", remedy=remedy))
     inputs.function(function, "function", "give a function of time")
-    return History(functions=(compile_history(function, LOAD),), corners=tuple(times.tolist()))
+    return History(functions=(_compiled(function, LOAD),), corners=tuple(times.tolist()))
 
 
 def clock() -> History:
@@ -177,14 +178,14 @@ def motion(source: Source) -> History:
     if isinstance(source, History):
         if len(source.functions) == 1:
             value = source.functions[0]
-            rates = (compile_history(f, MOTION) for f in rates_of(value.function, MOTION))
+            rates = (_compiled(f, MOTION) for f in rates_of(value.function, MOTION))
             source = replace(source, functions=(value, *rates))
         _refuse_jumps(source)
         return source.from_zero()
     if callable(source):
         source = (source, *rates_of(source, MOTION))
     if _is_function_with_rates(source):
-        functions = tuple(compile_history(f, MOTION) for f in source)
+        functions = tuple(_compiled(f, MOTION) for f in source)
         _check_rates(functions)
         return History(functions=functions).from_zero()
     times, values = table(source, MOTION)
@@ -238,6 +239,10 @@ def same_waves(parts: Sequence[History]) -> tuple[tuple[float, float, float], ..
 
 def _is_function_with_rates(source: object) -> bool:
     return isinstance(source, tuple) and len(source) == 3 and all(map(callable, source))
+
+
+def _compiled(function: Callable[[float], float], what: str) -> UserFunction:
+    return compile_history(with_compiled_helpers(function), what)
 
 
 def _less(function: Callable[[float], float], value: float) -> UserFunction:

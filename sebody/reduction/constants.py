@@ -84,11 +84,11 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, basis: NDArray, interior:
 
     scale = np.full(held, size)
     scale[:dimension * len(body.position_nodes)] = 1.0
-    rigid = np.linalg.matrix_rank(
-        body.rigid_modes_about(body.coordinates.mean(axis=0))[:held] / size)
+    rigid = body.rigid_modes_about(body.coordinates.mean(axis=0))
     loads = integrals.loads()
     loads[np.setdiff1d(np.arange(len(loads)), interior.internal)] = 0.0
     answers = interior.displacement(loads)
-    return GeometricStiffness(geometric, basis, body.stiffness, scale, rigid, integrals.largest
-                              ).stiffening(answers, loads.T @ answers,
-                                           answers.T @ (fe_model.mass @ answers))
+    return GeometricStiffness(
+        geometric, basis, body.stiffness, body.mass, scale, rigid / [
+            *[1.0] * dimension, *[size] * (rigid.shape[1] - dimension)], integrals.largest
+    ).stiffening(loads, answers, answers.T @ (fe_model.mass @ answers))

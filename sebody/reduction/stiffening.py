@@ -22,16 +22,20 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
+from scipy.linalg import block_diag, eigh
 
 from sebody.reduction.clamped import canonical_turn
 
 # Load cases with less strain energy than this part of the largest are rounding.
 _NULL = 1e-8
 _ROUNDING = 1e-10  # of a geometric stiffness that is none, relative to the largest
-# A prestress is left out if it changes no stiffness by this part when it moves the body by a tenth
-# of its size or turns it by 0.1 rad.
-_NEGLIGIBLE, _LARGEST_MOTION = 0.01, 0.1
+_REPEATED = 1e-6  # relative distance of squared periods that count as equal
+# What a prestress changes is measured in squared frequencies of the free body, when it, or the load
+# it answers, moves the body by a tenth of its size or turns it by 0.1 rad. So far a tension would
+# buckle the body. Where no other prestress changes a frequency to first order, as in straight
+# beams, whose bending and twist change one another alone, those that change less than _WEAK are
+# left out: all of them if the section is compact. In frames, plates and solids they act together.
+_WEAK, _FIRST_ORDER, _LARGEST_MOTION = 0.02, 1e-3, 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,57 +64,66 @@ class GeometricStiffness:
         G (n, n) of a displacement (n_dofs,).
     basis : (n_dofs, n)
         Shapes of the reduced coordinates.
-    stiffness : (n, n)
-        Reduced stiffness.
+    stiffness, mass : (n, n)
+        Reduced matrices.
     scale : (n_boundary,)
         Of a motion of each boundary coordinate: 1, for rotations the size of the body.
-    rigid : int
-        Number of rigid motions.
+    rigid : (n, r)
+        Rigid motions.
     largest : function
         Largest rotation, or displacement over size, of displacements (n_dofs, k).
     """
 
     def __init__(self, of: Callable[[NDArray], NDArray], basis: NDArray, stiffness: NDArray,
-                 scale: NDArray, rigid: int, largest: Callable[[NDArray], NDArray]):
+                 mass: NDArray, scale: NDArray, rigid: NDArray,
+                 largest: Callable[[NDArray], NDArray]):
         self._of, self._basis, self._largest = of, basis, largest
         self._stiffness, self._held = stiffness, len(scale)
         held = slice(0, self._held)
+        count = np.linalg.matrix_rank(rigid[held] * scale[:, None])
         values, vectors = np.linalg.eigh(stiffness[held, held] / np.outer(scale, scale))
-        self._boundary = vectors[:, rigid:] / scale[:, None] / np.sqrt(values[rigid:])
+        self._boundary = vectors[:, count:] / scale[:, None] / np.sqrt(values[count:])
         modes = 1 / np.sqrt(np.diag(stiffness)[self._held:])
         self._elastic = block_diag(self._boundary, np.diag(modes))   # orthonormal in strain energy
+        momenta = mass @ rigid
+        relative = mass - momenta @ np.linalg.pinv(rigid.T @ momenta) @ momenta.T
+        self._flexible = self._elastic.T @ relative @ self._elastic     # of the free body's mass
 
-    def stiffening(self, answers: NDArray, energies: NDArray, masses: NDArray) -> Stiffening:
+    def stiffening(self, loads: NDArray, answers: NDArray, masses: NDArray) -> Stiffening:
         """Load modes and resultants.
 
         Parameters
         ----------
-        answers : (n_dofs, k)
-            Displacements under load cases, boundary clamped.
-        energies, masses : (k, k)
-            FE stiffness and mass, projected on them.
+        loads, answers : (n_dofs, k)
+            Load cases and their displacements, boundary clamped.
+        masses : (k, k)
+            FE mass, projected on the displacements.
         """
-        values, vectors = np.linalg.eigh(energies)
+        values, vectors = np.linalg.eigh(loads.T @ answers)
         kept = values > _NULL * values.max(initial=0.0)
         orthonormal = vectors[:, kept] / np.sqrt(values[kept])
-        turn, G = self._prestresses(answers @ orthonormal)
+        moved = self._elastic @ (self._elastic.T @ (self._basis.T @ loads))
+        turn, G = self._prestresses(answers @ orthonormal,
+                                    (answers + self._basis @ moved) @ orthonormal)
         weights = orthonormal @ turn
         modal = np.einsum("ia,ij,ja->a", weights, masses, weights)
         # of unit modal mass; the strain energy kap is then 1 / modal
-        scaled = weights / np.sqrt(modal)
         Q = -G * np.sqrt(modal)[:, None, None]
 
-        turn, G = self._prestresses(self._basis[:, :self._held] @ self._boundary)
-        motions = self._boundary @ turn
-        size = self._largest(self._basis[:, :self._held] @ motions)
-        lam = 1 / size**2       # of motions d_e of largest rotation 1
-        E = np.zeros((len(self._stiffness), len(lam)))
         held = slice(0, self._held)
-        E[held] = self._stiffness[held, held] @ motions * size
-        return Stiffening(answers @ scaled, Q, lam, E, G / size[:, None, None])
+        shapes = self._basis[:, held] @ self._boundary
+        turn, G = self._prestresses(shapes, shapes)
+        size = self._largest(shapes @ turn)     # motions d_e of largest rotation 1
+        E = np.zeros((len(self._stiffness), len(size)))
+        E[held] = self._stiffness[held, held] @ self._boundary @ turn * size
+        return Stiffening(answers @ (weights / np.sqrt(modal)), Q, 1 / size**2, E,
+                          G / size[:, None, None])
 
-    def _prestresses(self, shapes: NDArray) -> tuple[NDArray, NDArray]:
-        """Turn (k, m) of orthonormal shapes (n_dofs, k) to the m that matter, and their G."""
+    def _prestresses(self, shapes: NDArray, motions: NDArray) -> tuple[NDArray, NDArray]:
+        """Turn (k, m) of orthonormal shapes (n_dofs, k) to the m that matter, and their G.
+
+        With each shape the body has the displacement (n_dofs,) of the same column of `motions`.
+        """
         size = len(self._stiffness)
         if shapes.shape[1] == 0:
             return np.zeros((0, 0)), np.zeros((0, size, size))
@@ -120,7 +133,26 @@ class GeometricStiffness:
         turn = turn[:, singular > _ROUNDING * singular.max(initial=0.0)]
         turn = turn @ canonical_turn(singular[:turn.shape[1]], shapes @ turn)
         relative = np.einsum("bf,bij->fij", turn, relative)
-        change = np.abs(np.linalg.eigvalsh(relative)).max(axis=1, initial=0.0)
-        motion = self._largest(shapes @ turn)
-        turn = turn[:, _LARGEST_MOTION * change > _NEGLIGIBLE * motion]
+        factor = _LARGEST_MOTION / self._largest(motions @ turn)
+        changes = np.array([self._changes(one) for one in factor[:, None, None] * relative])
+        tension = np.isinf(changes[:, 1])
+        if changes[~tension, 0].max(initial=0.0) < _FIRST_ORDER:
+            turn = turn[:, changes[:, 1] > _WEAK]
         return turn, np.einsum("bf,bij->fij", turn, G)
+
+    def _changes(self, relative: NDArray) -> tuple[float, float]:
+        """Largest change of a squared frequency by a stiffness over the elastic one.
+
+        To first order, and in all.
+        """
+        inverse, shapes = np.linalg.eigh(self._flexible)
+        matrix = shapes.T @ relative @ shapes
+        equal = np.abs(inverse[:, None] - inverse) <= _REPEATED * inverse[-1]
+        first = np.abs(np.linalg.eigvalsh(np.where(equal, matrix, 0.0))).max()
+        counted, most = inverse > _ROUNDING * inverse[-1], 0.0
+        for changed in (np.eye(len(matrix)) + matrix, np.eye(len(matrix)) - matrix):
+            if np.linalg.eigvalsh(changed)[0] <= _WEAK:     # it buckles, or nearly
+                return first, np.inf
+            found = eigh(np.diag(inverse), changed, eigvals_only=True)
+            most = max(most, np.abs(inverse[counted] / found[counted] - 1).max())
+        return first, most

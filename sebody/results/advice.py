@@ -15,7 +15,7 @@ def kernels_that_pay(model: Mechanism) -> dict[str, list[str]]:
     for body in model.bodies.values():
         kernel = load(body.kernel)
         if kernel.N_POSITIONS is None and len(body.body.stiffness) <= PAYS:
-            variant = layout_variant(body.layout, body.body.modes, kernel.DAMPED)
+            variant = layout_variant(body.layout, body.body.modes, bool(kernel.DAMPED))
             command = derive_command(variant, kernel.FRAME, kernel.INERTIA)
             found.setdefault(command, []).append(body.name)
     return found

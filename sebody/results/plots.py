@@ -69,6 +69,10 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     """
     inputs.instance(result, "result", Result, "give the Result of a run")
     check_picture(path)
+    for node in (base, tip):
+        if not isinstance(node, str) or node not in result.model.nodes:
+            raise InputError(f"'{node}.position' is unknown: nodes are "
+                             f"{', '.join(result.model.nodes)}")
     title, rates = _rates(result, base, tip)
 
     from matplotlib import rc_context

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
 from sebody.files import check_target, replacing
 from sebody.results.advice import kernels_that_pay
+from sebody.results.energy_balance import energy_balance
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
@@ -87,11 +88,12 @@ class Result(Recording):
         return look_up(self, name)
 
     def energy_balance(self) -> float:
-        """Largest drift of kinetic + strain + potential - work, relative to the largest energy."""
-        inner = self["energy.kinetic"] + self["energy.strain"]
-        total = inner + self["energy.potential"]
-        drift = np.abs(total - total[0] - self["energy.external_work"]).max()
-        return float(drift / max(np.abs(inner).max(), 1e-300))
+        """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
+
+        See `sebody.results.energy_balance`.
+        """
+        return energy_balance(*(self[f"energy.{name}"] for name in
+                                ("kinetic", "strain", "potential", "external_work")))
 
     @cached_property
     def advice(self) -> dict[str, list[str]]:
@@ -139,7 +141,7 @@ class Result(Recording):
             f"iterations per step  {self.iterations_per_step:.2f} "
             f"({self.matrices} iteration matrices)",
             f"time per step        {self.microseconds_per_step:.2f} us in the compiled loop",
-            f"energy balance       {self.energy_balance():.2e} of the largest energy",
+            f"energy balance       {self.energy_balance():.2e} of the energy exchanged",
             f"momentum at the end  {_vector(self['momentum'][-1])}, moment "
             f"{_vector(self['angular_momentum'][-1])}",
         ]

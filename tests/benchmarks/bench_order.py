@@ -121,7 +121,7 @@ def fill(model: Model) -> tuple[int, int]:
     """
     numbering = number(model)
     batches = make_batches(model, numbering)
-    row, column = element_places(batches.all)
+    row, column = element_places(batches.all, numbering.total)
     axes = body_axes(model, numbering, batches)
     _, linked_row, linked_column = link_arrays(model, numbering, batches.all, axes["rotated"])
     row, column, n = np.r_[row, linked_row], np.r_[column, linked_column], numbering.free

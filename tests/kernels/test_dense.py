@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from sebody.kernels.abi import pointer_to
-from sebody.kernels.dense import arrow_times
+from sebody.kernels.dense import (
+    add_block_times,
+    add_rows_times,
+    arrow_times,
+    block_times,
+    gather,
+    rows_times,
+    scatter,
+)
 from sebody.kernels.layout import LANES, padded_columns, whole_vectors
 from sebody.kernels.pipeline import compiled
 
@@ -35,3 +43,52 @@ def test_what_is_not_an_arrow_is_seen():
     A, x, out = np.ones((16, 16)), np.ones(16), np.zeros(16)
     product(padded_columns(A), x, out, 16, 12)
     assert np.all(out[12:] == 13.0)
+
+
+@compiled
+def by_block(A, x, out, rows, columns, height, add):
+    if add:
+        add_block_times(pointer_to(A), pointer_to(x), pointer_to(out), rows, columns, height)
+    else:
+        block_times(pointer_to(A), pointer_to(x), pointer_to(out), rows, columns, height)
+
+
+@compiled
+def by_rows(A, x, out, rows, columns, height, add):
+    if add:
+        add_rows_times(pointer_to(A), pointer_to(x), pointer_to(out), rows, columns, height)
+    else:
+        rows_times(pointer_to(A), pointer_to(x), pointer_to(out), rows, columns, height)
+
+
+@pytest.mark.parametrize("rows", [1, 4, 13, 32, 61])    # one, two, four, eight vectors, odd ones
+@pytest.mark.parametrize("columns", [0, 1, 3, 4, 6])
+def test_blocks_of_taller_matrices(rows, columns):
+    """``A x`` and ``A^T x`` of leading rows, set or added; columns are padded by zeros."""
+    random = np.random.default_rng(rows + 100 * columns)
+    height = whole_vectors(rows) + 8
+    A = random.normal(size=(rows, columns))
+    stored, tail = np.zeros((columns + 1, height)), whole_vectors(rows)
+    stored[:columns, :rows] = A.T
+    stored[:, tail:] = np.nan           # beyond the block
+    x, y, before = random.normal(size=columns + 1), np.zeros(tail), random.normal(size=height)
+    y[:rows] = random.normal(size=rows)
+    for add in (False, True):
+        out, sums = before.copy(), before.copy()
+        by_block(stored.ravel(), x, out, rows, columns, height, add)
+        by_rows(stored.ravel(), y, sums, rows, columns, height, add)
+        # sums of up to 62 products of numbers of size one
+        assert np.abs(out[:rows] - add * before[:rows] - A @ x[:columns]).max() < 1e-13
+        assert np.abs(sums[:columns] - add * before[:columns] - A.T @ y[:rows]).max(
+            initial=0.0) < 1e-13
+        assert np.array_equal(out[tail:], before[tail:])
+        assert np.array_equal(sums[columns:], before[columns:])
+
+
+def test_numbers_by_their_places():
+    row, kept, out = np.arange(1.0, 8.0), np.array([5.0, 0.0, 2.0]), np.full(6, 9.0)
+    gather(row, kept, out, 3, 5)
+    assert out.tolist() == [6.0, 1.0, 3.0, 0.0, 0.0, 9.0]
+    back = np.full(8, 9.0)
+    scatter(out, kept, back, 3, 7)
+    assert back.tolist() == [1.0, 0.0, 3.0, 0.0, 0.0, 6.0, 0.0, 9.0]

@@ -105,6 +105,12 @@ def test_rate_is_the_derivative_of_the_coefficient():
         assert relative(rotations.inverse_tangent_coefficients(s)[1], rate) <= TOLERANCE
 
 
+@pytest.mark.parametrize("s", [0.1, 0.24, np.nextafter(0.25, 0), 0.25, 0.26, 1.0, 5.0, 9.0])
+def test_second_derivative_of_the_coefficient(s):
+    """By differences in 50 digits; closed forms of c_8 lose one power of s more."""
+    assert relative(rotations.inverse_tangent_second(s), mpmath.diff(e, s, 2)) <= TOLERANCE
+
+
 @pytest.mark.parametrize("axis", AXES)
 @pytest.mark.parametrize("angle", ANGLES[1:])
 def test_exp_and_tangent_operator(angle, axis):

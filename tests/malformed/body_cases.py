@@ -31,6 +31,7 @@ from sebody.fem import (
 )
 from sebody.reduction import (
     ReducedBody,
+    RigidFace,
     body_weights,
     component_modes,
     craig_bampton,
@@ -69,6 +70,11 @@ def reduced(name: str, matrix) -> list:
             (changed(matrix, NAN), f"{name}[3, 4] is nan"),
             (matrix[:5], f"{name} has shape (5, 14)"),
             (changed(matrix, 1e9, (0, 9)), f"{name} is not symmetric")]
+
+
+def face(nodes: list, point: tuple = (0.0, 0.0, 0.0), keeps: str = "full") -> list:
+    """A boundary of one rigid face."""
+    return [(RigidFace(point, nodes), keeps)]
 
 
 MATERIAL = {"youngs_modulus": 1e6, "poisson_ratio": 0.3, "density": 1.0}
@@ -167,6 +173,19 @@ FE_MODELS = {
                          *have("boundary is empty", [], {})],
             "modes": [*are("modes", *NO_COUNT), *have("modes is", -1, 19)],
             "select": have("select", 1, "01", [0, 0], [3], [-1], [0.5], [None])}),
+    "RigidFace": Right(RigidFace, {"point": (0.0, 0.0, 0.0), "nodes": [0, 1]}, {
+        "point": have("point of a rigid face is", None, "abc", 3.0, (0, 0, NAN), (0, 0, 1j)),
+        "nodes": [*have("nodes of a rigid face", None, 3, "01"), ([], "a rigid face has no nodes"),
+                  *have("node of a rigid face is", [0.5], ["0"], [None], [NAN])]}),
+    "faces of a body": Right(craig_bampton, {
+        "fe_model": BEAM, "boundary": [(RigidFace((0.0, 0.0, 0.0), [0]), "full"), (4, "full")],
+        "modes": 1}, {
+            "boundary": [(face([99]), "node 99 of a rigid face unknown: the model has nodes 0"),
+                         (face([-1]), "node -1 of a rigid face unknown: the model has nodes 0"),
+                         (face([0, 0]), "boundary node 0 appears more than once"),
+                         (face([0], point=(0.0, 0.0)), "point of a rigid face is [0. 0.]"),
+                         (face([0], keeps="all"), "a rigid face keeps 'all'"),
+                         ([*face([0]), (0, "full")], "boundary node 0 appears more than once")]}),
     "component_modes": Right(component_modes, {
         "stiffness": K, "mass": M, "boundary_dofs": ENDS, "modes": 2}, {
             "stiffness": matrices("stiffness", K), "mass": [*matrices("mass", M),

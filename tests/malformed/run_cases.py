@@ -21,9 +21,15 @@ from sebody import (
     Simulation,
     Tolerance,
     generalized_alpha,
+    harmonic,
     hht,
+    piecewise,
+    ramp,
+    rest_to_rest,
     simulate,
     simulate_within,
+    spline,
+    trapezoidal,
     with_corners,
 )
 from sebody.analysis import (
@@ -104,13 +110,38 @@ ERRORS = [(Tolerance(value), f"tolerance relative is {value!r}")
 SPIN = are("spin", "1", True, 1j, NAN, (0.0, 0.0, 1.0), also=": give a number")
 NO_RUN = are("run", None, 3, "chain", also=": give a Simulation")
 
+PROFILES = {
+    "rest_to_rest": Right(rest_to_rest, {"distance": 1.0, "duration": 2.0}, {
+        "distance": are("distance", *NO_NUMBER), "duration": positive("duration"),
+        "start": are("start", *NO_NUMBER), "origin": are("origin", *NO_NUMBER[:4])}),
+    "trapezoidal": Right(trapezoidal, {"distance": 1.0, "speed": 2.0, "acceleration": 3.0}, {
+        "distance": are("distance", *NO_NUMBER, 0), "speed": positive("speed"),
+        "acceleration": positive("acceleration")}),
+    "ramp": Right(ramp, {"rate": 1.0}, {
+        "rate": are("rate", *NO_NUMBER),
+        "duration": [pair for pair in positive("duration") if pair[0] != INF]}),
+    "harmonic": Right(harmonic, {"amplitude": 1.0, "omega": 2.0}, {
+        name: are(name, *NO_NUMBER) for name in ("amplitude", "omega", "phase", "mean")}),
+    "spline": Right(spline, {"rows": [(0, 0), (1, 2), (2, 1)]}, {
+        "rows": have("table", None, 3, "abc", [], [(0, 0)], [(0, 0), (1,)], [(0, 0), (1, NAN)],
+                     [(0, 0), (1, "2")], [(1, 0), (0, 0)], [(0, 0), (0, 1)], [(0, 0), None]),
+        "rates": have("rates is", None, 1.0, "ab", (0.0, NAN), (0.0,), (0.0, 1j))}),
+    "piecewise": Right(lambda parts: piecewise(*parts), {"parts": [(0, 1.0), (1, 2.0)]}, {
+        "parts": [*have("part of a piecewise history", [3], [(0,)], [(0, "a")], [(0, None)],
+                        [(0, with_corners(lambda t: t, [1.0]))], [None]),
+                  *have("time of a part is", [("0", 1.0)], [(NAN, 1.0)], [(None, 1.0)]),
+                  *have("times of parts of a piecewise history must increase",
+                        [(1, 1.0), (0, 2.0)], [(0, 1.0), (0, 2.0)]),
+                  ([], "parts of a piecewise history are missing")]}),
+}
 RUNS = {
     "generalized_alpha": Right(generalized_alpha, {"rho": 0.9}, {
         "rho": are("rho", *NO_NUMBER, 1.5, -0.1, also=": use a spectral radius"), **SCHEME}),
     "hht": Right(hht, {"alpha": -0.05}, {
         "alpha": are("alpha", *NO_NUMBER, 0.1, -0.5, also=": HHT needs a value"), **SCHEME}),
     "with_corners": Right(with_corners, {"function": lambda t: t, "corners": [1.0]}, {
-        "function": have("load history", None, 3, "sin", np.sin, lambda a, b: a),
+        "function": [*are("function", None, 3, "sin", also=": give a function of time"),
+                     *have("load history", np.sin, lambda a, b: a)],
         "corners": have("corners are", None, "abc", 3.0, [[1.0]], [NAN], ["1"])}),
     "Simulation": Right(Simulation, {"model": Shared.model, "h": 0.1}, {
         "model": NO_MODEL, "h": STEP, "scheme": NO_SCHEME,

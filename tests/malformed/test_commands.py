@@ -4,7 +4,7 @@ import pytest
 
 from sebody.cli.entry import main
 
-BEAM = ("run", "hinged-beam")
+BEAM, BODY = ("run", "hinged-beam"), ("run", "torque-free-body")
 LONG = "x" * 300
 
 REFUSED = [
@@ -14,43 +14,43 @@ REFUSED = [
     (("run", "../hinged_beam"), "is unknown: there are"), (("run", "1"), "scene '1' is unknown"),
     (("run", "none.py"), "none.py cannot be read"), (("run", "folder.py"), "folder.py"),
     (("run", "broken.py"), "broken.py"), (("run", "empty.py"), "empty.py"),
-    (("run", "hinged-beam", "chain"), "unrecognized arguments: chain"),
-    ((*BEAM, "--fast"), "unrecognized arguments: --fast"),
-    *(((*BEAM, option, value), f"argument {option}: invalid") for option in (
+    (("run", "four-bar", "chain"), "unrecognized arguments: chain"),
+    ((*BODY, "--fast"), "unrecognized arguments: --fast"),
+    *(((*BODY, option, value), f"argument {option}: invalid") for option in (
         "--t-end", "--step", "--accuracy", "--rho") for value in ("soon", "", "1,0", "1e", "0x1")),
-    *(((*BEAM, option, value), f"argument {option}: invalid int") for option in (
+    *(((*BODY, option, value), f"argument {option}: invalid int") for option in (
         "--index", "--every") for value in ("two", "2.5", "")),
-    *(((*BEAM, option), f"argument {option}: expected one argument") for option in (
+    *(((*BODY, option), f"argument {option}: expected one argument") for option in (
         "--t-end", "--step", "--accuracy", "--rho", "--index", "--every", "--output", "--plot",
         "--save", "--resume", "--set")),
-    ((*BEAM, "--t-end", "nan"), "the end time is nan: give a number >= 0"),
-    ((*BEAM, "--t-end", "inf"), "the end time is inf: give a number >= 0"),
-    ((*BEAM, "--t-end", "-1"), "the end time is -1.0: give a number >= 0"),
-    ((*BEAM, "--t-end", "1e12"), "that is 1e+14 steps of 0.01, give an earlier time"),
-    ((*BEAM, "--t-end", "1e300"), "steps of 0.01, give an earlier time"),
-    ((*BEAM, "--t-end", "0.1", "--step", "1000"), "cannot run to t_end = 0.1 from t = 0: the step"),
-    *(((*BEAM, "--step", value), f"the time step is {float(value)}: give a positive number")
+    ((*BODY, "--t-end", "nan"), "the end time is nan: give a number >= 0"),
+    ((*BODY, "--t-end", "inf"), "the end time is inf: give a number >= 0"),
+    ((*BODY, "--t-end", "-1"), "the end time is -1.0: give a number >= 0"),
+    ((*BODY, "--t-end", "1e12"), "that is 1e+14 steps of 0.01, give an earlier time"),
+    ((*BODY, "--t-end", "1e300"), "steps of 0.01, give an earlier time"),
+    ((*BODY, "--t-end", "0.1", "--step", "1000"), "cannot run to t_end = 0.1 from t = 0: the step"),
+    *(((*BODY, "--step", value), f"the time step is {float(value)}: give a positive number")
       for value in ("0", "-0.01", "nan", "inf")),
-    ((*BEAM, "--step", "1e-300"), "steps of 1e-300, give an earlier time or a longer step"),
-    ((*BEAM, "--step", "1e-12"), "steps of 1e-12, give an earlier time or a longer step"),
-    ((*BEAM, "--accuracy", "1e-30"), "give at least 1e-09, below which shorter steps"),
-    *(((*BEAM, "--accuracy", value), f"tolerance relative is {float(value)}: give a number >= 0")
+    ((*BODY, "--step", "1e-300"), "steps of 1e-300, give an earlier time or a longer step"),
+    ((*BODY, "--step", "1e-12"), "steps of 1e-12, give an earlier time or a longer step"),
+    ((*BODY, "--accuracy", "1e-30"), "give at least 1e-09, below which shorter steps"),
+    *(((*BODY, "--accuracy", value), f"tolerance relative is {float(value)}: give a number >= 0")
       for value in ("-1", "nan", "inf")),
-    ((*BEAM, "--accuracy", "0"), "the tolerance allows no error"),
-    *(((*BEAM, "--rho", value), f"rho is {float(value)}: use a spectral radius")
+    ((*BODY, "--accuracy", "0"), "the tolerance allows no error"),
+    *(((*BODY, "--rho", value), f"rho is {float(value)}: use a spectral radius")
       for value in ("2", "-0.1", "nan", "inf")),
-    *(((*BEAM, "--index", value), f"index is {value}: use 3, or 2") for value in ("0", "1", "4")),
-    *(((*BEAM, "--every", value), f"output_every is {value}: give a whole number of steps")
+    *(((*BODY, "--index", value), f"index is {value}: use 3, or 2") for value in ("0", "1", "4")),
+    *(((*BODY, "--every", value), f"output_every is {value}: give a whole number of steps")
       for value in ("0", "-3")),
-    ((*BEAM, "--accuracy", "1e-3", "--save", "a.npz"), "leave out --save and --resume"),
-    ((*BEAM, "--accuracy", "1e-3", "--every", "2"), "in place of --every"),
-    ((*BEAM, "--resume", "a.npz", "--step", "0.1"), "leave out --step"),
-    ((*BEAM, "--resume", "none.npz"), "restart file none.npz does not exist"),
-    ((*BEAM, "--resume", "folder.npz"), "folder.npz is a folder"),
-    ((*BEAM, "--resume", "broken.npz"), "is no restart file"),
-    ((*BEAM, "--resume", "broken.txt"), "must end in .npz"),
-    ((*BEAM, "--output", "a.npz", "--save", "a.npz"), "are the same file, a.npz"),
-    *(((*BEAM, option, path), said) for option, end in (
+    ((*BODY, "--accuracy", "1e-3", "--save", "a.npz"), "leave out --save and --resume"),
+    ((*BODY, "--accuracy", "1e-3", "--every", "2"), "in place of --every"),
+    ((*BODY, "--resume", "a.npz", "--step", "0.1"), "leave out --step"),
+    ((*BODY, "--resume", "none.npz"), "restart file none.npz does not exist"),
+    ((*BODY, "--resume", "folder.npz"), "folder.npz is a folder"),
+    ((*BODY, "--resume", "broken.npz"), "is no restart file"),
+    ((*BODY, "--resume", "broken.txt"), "must end in .npz"),
+    ((*BODY, "--output", "a.npz", "--save", "a.npz"), "are the same file, a.npz"),
+    *(((*BODY, option, path), said) for option, end in (
         ("--output", ".npz"), ("--save", ".npz"), ("--plot", ".png")) for path, said in (
             (f"a{end}.txt", f"must end in {end}"), (f"none/a{end}", "folder none of the"),
             (f"folder{end}", f"folder{end} is a folder"), (LONG + end, "cannot be a file"),

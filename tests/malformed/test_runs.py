@@ -6,11 +6,15 @@ from malformed import run_cases
 from malformed.cases import listed
 from malformed.run_cases import Shared
 
-from sebody import InputError
-from sebody.analysis import save_state
+from sebody import InputError, Simulation
+from sebody.analysis import resume, save_state
+from sebody.scenes import planar_hinged_beam
+
+ALL = run_cases.PROFILES | run_cases.RUNS | run_cases.FILES
 
 
-@pytest.mark.parametrize("right, argument, value, said", listed(run_cases.RUNS))
+@pytest.mark.parametrize("right, argument, value, said",
+                         listed(run_cases.PROFILES | run_cases.RUNS))
 def test_refused(right, argument, value, said):
     with pytest.raises(InputError) as caught:
         right.function(**{**right.arguments, argument: value})
@@ -42,8 +46,19 @@ def test_files_are_refused(right, argument, value, said, folder, monkeypatch):
     assert {path.name for path in folder.iterdir()} == before
 
 
-@pytest.mark.parametrize("name", run_cases.RUNS | run_cases.FILES)
+@pytest.mark.parametrize("other", [{"frame": "node"}, {"inertia": "a"}, {"elements": 4}])
+def test_a_state_goes_on_with_its_own_superelement_only(other, tmp_path):
+    """Of another frame, inertia option or division: the unknowns are the same."""
+    right = {"modes": 0, "elements": 2}
+    build = planar_hinged_beam.build
+    path = save_state(Simulation(build(**right).model, 0.01), tmp_path / "state.npz")
+    resume(build(**right).model, path)
+    with pytest.raises(InputError, match="state.npz is of another model: build the one it was"):
+        resume(build(**right | other).model, path)
+
+
+@pytest.mark.parametrize("name", ALL)
 def test_the_right_call_is_accepted(name, folder, monkeypatch, tmp_path):
-    right = (run_cases.RUNS | run_cases.FILES)[name]
+    right = ALL[name]
     monkeypatch.chdir(folder if name == "resume" else tmp_path)
     right.function(**right.arguments)

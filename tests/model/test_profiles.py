@@ -100,8 +100,12 @@ def test_corners():
 
 
 @njit
+def square(time):
+    return time**2
+
+
 def helped(time):
-    return 0.05 * time**2
+    return 0.05 * square(time)
 
 
 def plain(time):
@@ -117,7 +121,7 @@ def test_a_plain_function_drives():
         assert drive.at(time) == pytest.approx(expected, abs=1e-12)
     inner = motion(with_corners(lambda time: scale * time, [0.5]))
     assert inner.at(0.7) == pytest.approx([2.1, 3.0, 0.0]) and inner.corners == (0.5,)
-    assert history((plain, plain, plain)).at(0.0)[0] == pytest.approx(0.3)
+    assert history((plain, plain, plain)).at(2.0)[0] == pytest.approx(plain(2.0))
 
 
 @pytest.mark.parametrize("make, message", [

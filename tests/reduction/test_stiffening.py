@@ -1,98 +1,20 @@
-"""Stiffening of one body against closed forms, from its constants alone.
-
-The body's frame is that of a boundary node, held or hinged on an axis of steady spin, so its
-energy needs no kinematics: ``L = zdot^T Mbar zdot / 2 + Omega . B(z) zdot + Omega . J(z) Omega / 2
-- V(y)`` with ``z = (y, eta(y))``.
-"""
+"""Stiffening of one body that spins, against closed forms, from its constants alone."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.linalg import eigh
-from scipy.optimize import brentq
-from scipy.special import jv
+from spinning_body import CLAMPED, SLENDER, Spinning, cantilever, roots, strip
 
-from sebody.fem import (
-    Section,
-    StiffnessSection,
-    frame,
-    hexahedral_block,
-    planar_beam,
-    straight_beam,
-)
-from sebody.reduction import RigidFace, component_modes, craig_bampton
+from sebody.fem import Section, frame, planar_beam, straight_beam
+from sebody.reduction import component_modes, craig_bampton
 
-SLENDER = StiffnessSection(axial=1e5, bending_y=1.0, bending_z=1.0, torsion=1.0, mass=1.0,
-                           inertia_x=2e-7, inertia_y=1e-7, inertia_z=1e-7)
-CLAMPED = [0, 1, 2, 6, 7, 8]    # node 0 of a beam with two full boundary nodes
 # Flap 1, flap 2 and lag 1 of a uniform cantilever that spins about its root (power series of the
 # centrifugally tensioned Euler-Bernoulli beam, times sqrt(rho A L^4 / E I))
 CANTILEVER = {3: (4.797278532, 23.32026367, 3.743511896),
               6: (7.360373019, 26.80908168, 4.263225420),
               12: (13.17015049, 37.60311233, 5.427049278)}
-
-
-def cantilever(section=SLENDER, modes=4, elements=24, select=None):
-    model = straight_beam([0, 0, 0], [1, 0, 0], section, elements)
-    return craig_bampton(model, [(0, "full"), (elements, "full")], modes, select)
-
-
-class Spinning:
-    """A body in the frame of its first node, at FE coordinates zero, which spins steadily."""
-
-    def __init__(self, body, spin, held, stiffened=True):
-        i = body.invariants.about(np.zeros(len(body.invariants.c0)))
-        n = len(body.mass)
-        self.Q, self.lam, self.E, self.Ghat = (i.Q, i.lam, i.E.T, i.Ghat)
-        if not stiffened:
-            self.Q, self.lam, self.E, self.Ghat = i.Q[:0], i.lam[:0], i.E.T[:0], i.Ghat[:0]
-        N = n + len(self.Q)
-        self.h = (i.h + i.h.transpose(1, 0, 2))[..., :N]
-        self.J2 = (i.J2 + i.J2.transpose(0, 1, 3, 2))[..., :N, :N]
-        self.K, self.g, self.S1 = i.K[:, :N, :N], i.g[:, :N], i.S1[:, :N]
-        self.M, self.J0, self.spin, self.n = i.Mbar[:N, :N], i.J0, np.asarray(spin, float), n
-        self.stiffness = body.stiffness - (self.E.T * self.lam) @ self.E
-        self.free = np.setdiff1d(np.arange(n), held)
-
-    def gradient(self, y, load, gravity):
-        """Forces and stiffness of y: elastic, centrifugal, dead loads and weight."""
-        z = np.concatenate([y, self.Q @ y @ y / 2])
-        Z = np.vstack([np.eye(self.n), self.Q @ y])
-        W = self.spin
-        force = -(np.einsum("k,l,kln->n", W, W, self.h) + np.einsum(
-            "k,l,klmn,n->m", W, W, self.J2, z)) / 2 - self.S1.T @ gravity
-        s = self.lam * (self.E @ y) + self.Ghat @ y @ y / 2
-        a = self.lam[:, None] * self.E + self.Ghat @ y
-        elastic = self.stiffness @ y + (s / self.lam) @ a
-        tangent = (self.stiffness + a.T @ (a / self.lam[:, None])
-                   + np.tensordot(s / self.lam, self.Ghat, 1)
-                   - Z.T @ np.einsum("k,l,klmn->mn", W, W, self.J2) @ Z / 2
-                   + np.tensordot(force[self.n:], self.Q, 1))
-        return Z.T @ force + elastic - load, tangent, z, Z
-
-    def equilibrium(self, load=None, gravity=None):
-        """Mass, gyroscopic matrix, stiffness of the free coordinates; z and Z."""
-        load = np.zeros(self.n) if load is None else load
-        gravity = np.zeros(len(self.S1)) if gravity is None else gravity
-        y, grid = np.zeros(self.n), np.ix_(self.free, self.free)
-        for _ in range(30):
-            force, tangent, z, Z = self.gradient(y, load, gravity)
-            step = np.linalg.solve(tangent[grid], force[self.free])
-            y[self.free] -= step
-            if np.abs(step).max() <= 1e-12 * np.abs(y).max():
-                break
-        turning = np.tensordot(self.spin, self.K.transpose(0, 2, 1) - self.K, 1)
-        return (Z.T @ self.M @ Z)[grid], (Z.T @ turning @ Z)[grid], tangent[grid], z, Z
-
-
-def roots(M, C, K):
-    """Eigenvalues of M a + C v + K x = 0 with positive imaginary parts by size; their growth."""
-    n = len(M)
-    values = np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)],
-                                         [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]]))
-    return np.sort(values.imag[values.imag > 0]), values.real.max()
 
 
 def spun(body, eta, stiffened=True):
@@ -179,95 +101,6 @@ def test_hinged_beam_at_its_spin():
     assert np.min(np.abs(hinged_frequency(more, 0.906) - 11.142)) < 2e-3
 
 
-def critical(body, low, high, held=CLAMPED, load=None, gravity=None):
-    """Factor of a load at which the lowest stiffness of the clamped body vanishes."""
-    def lowest(factor):
-        scaled = [None if a is None else factor * np.asarray(a, float) for a in (load, gravity)]
-        K = Spinning(body, np.zeros(len(body.invariants.J0)), held).equilibrium(*scaled)[2]
-        return np.linalg.eigvalsh(K)[0]
-    return brentq(lowest, low, high, xtol=1e-6)
-
-
-def at_tip(body, row):
-    load = np.zeros(len(body.mass))
-    load[row] = 1.0 if row != 3 else -1.0
-    return load
-
-
-def test_a_column_under_a_tip_load_and_its_weight():
-    """2.4674 and 7.8373 E I / L^2; elements of second order in the normal force of the weight."""
-    for modes, loads in ((4, (2.4674, 7.8373)), (0, (2.486, 7.888))):
-        body = cantilever(modes=modes, elements=48)
-        # axial flexibility of 1e-5; without modes, the prototype's numbers
-        assert_allclose(critical(body, 2.0, 3.0, load=at_tip(body, 3)), loads[0], rtol=2e-4)
-        assert_allclose(critical(body, 7.0, 9.0, gravity=[-1.0, 0, 0]), loads[1], rtol=1e-3)
-
-
-def test_a_column_in_a_plane():
-    flat = craig_bampton(planar_beam([0, 0], [1, 0], SLENDER, 24), {0: "full", 24: "full"}, 4)
-    load = np.zeros(10)
-    load[2] = -1.0
-    assert_allclose(critical(flat, 2.0, 3.0, [0, 1, 4], load), np.pi**2 / 4, rtol=1e-4)
-
-
-def with_torsion(section, elements, bending, torsion):
-    """Two-node body with lateral bending and torsion modes."""
-    model = straight_beam([0, 0, 0], [1, 0, 0], section, elements)
-    rows = np.r_[0:3, 6 * elements:6 * elements + 3, 3:6, 6 * elements + 3:6 * elements + 6]
-    modes = component_modes(model.stiffness, model.mass, rows, 3 * elements).fixed_interface
-    size = np.abs(modes.reshape(elements + 1, 6, -1)).max(axis=0)
-    kinds = np.array([size[1], size[2], 1e-3 * size[3]]).argmax(axis=0)
-    chosen = [*np.flatnonzero(kinds == 0)[:bending], *np.flatnonzero(kinds == 2)[:torsion]]
-    return craig_bampton(model, [(0, "full"), (elements, "full")], 3 * elements, sorted(chosen))
-
-
-def test_lateral_buckling():
-    """Thin cantilever: 4.0126 by a tip load, 12.854 by its weight; E I_y = 1000 E I_z."""
-    plate = replace(SLENDER, axial=1e6, bending_y=1e3, inertia_x=2e-6, inertia_y=1e-6,
-                    inertia_z=1e-6)
-    body = with_torsion(plate, 24, 4, 4)
-    tip = 2 * brentq(lambda x: jv(-1 / 4, x), 1.8, 2.4)
-    own = 6 * brentq(lambda x: jv(-1 / 6, x), 1.8, 2.4)
-    assert_allclose(critical(body, 3.5, 5.0, load=at_tip(body, 5)), tip, rtol=3e-3)
-    # the weight's own moment is in the load modes; the rest is in few modes and elements
-    assert_allclose(critical(body, 11.0, 15.0, gravity=[0, 0, -1.0]), own, rtol=5e-3)
-
-
-def strip(thickness, elements=20):
-    """Slender solid, tied to a node at each end."""
-    model = hexahedral_block([0, -thickness / 2, -1], [40, thickness, 2], (elements, 1, 2), 1e6,
-                             0.3, 1.0)
-    x = model.coordinates[:, 0]
-    ends = [RigidFace((place, 0.0, 0.0), tuple(np.flatnonzero(x == place))) for place in (0, 40)]
-    return model, ends
-
-
-def test_a_solid_buckles_as_its_fe_model_does():
-    """Against linear buckling of all DOFs, with the end kept rigid by its own nodes alone."""
-    model, ends = strip(0.3)
-    body = craig_bampton(model, [(end, "full") for end in ends], 4)
-    nodes = [list(end.nodes) for end in ends]
-    tied = np.zeros((model.stiffness.shape[0], 6))
-    for node in nodes[1]:
-        arm = model.coordinates[node] - [40, 0, 0]
-        tied[3 * node:3 * node + 3] = np.hstack([np.eye(3), -np.cross(np.eye(3), arm)])
-    ties = (3 * np.concatenate(nodes)[:, None] + np.arange(3)).ravel()
-    inner = np.setdiff1d(np.arange(len(tied)), ties)
-    basis = np.hstack([np.eye(len(tied))[:, inner], tied])
-    K = basis.T @ (model.stiffness @ basis)
-    force = np.zeros(len(K))
-    force[-6] = -1.0
-    u = basis @ np.linalg.solve(K, force)
-    KG = basis.T @ (model.geometric_stiffness(u) @ basis)
-    arms = model.coordinates[nodes[1]] - [40, 0, 0]
-    moments = (model.stiffness @ u).reshape(-1, 3)[nodes[1]].T @ arms
-    KG[-3:, -3:] += (moments + moments.T) / 2 - np.trace(moments) * np.eye(3)
-    exact = 1 / eigh(-KG, K, eigvals_only=True)[-1]
-    # the reduction's bending modes: 1e-4 with four, of which two are in this plane
-    found = critical(body, 0.8 * exact, 1.2 * exact, load=at_tip(body, 3))
-    assert_allclose(found, exact, rtol=3e-4)
-
-
 def test_a_solid_spins_as_the_beam_does():
     model, ends = strip(2.0)
     body = craig_bampton(model, [(end, "full") for end in ends], 6)
@@ -308,14 +141,23 @@ def test_turning_a_body_makes_no_resultants():
         assert turned_resultants(body).max() < 1e-9
 
 
+def counts(body):
+    return body.invariants.slaved, body.invariants.resultants
+
+
 def test_what_does_not_stiffen_is_left_out():
-    """Slender beams: in a plane tension alone, in space bending and twist of each other, too."""
-    flat = craig_bampton(planar_beam([2, 1], [2.6, 1.8], SLENDER, 12), {0: "full", 12: "full"}, 4)
-    assert (flat.invariants.slaved, flat.invariants.resultants) == (2, 1)
-    deep = cantilever().invariants
-    assert (deep.slaved, deep.resultants) == (6, 6)
-    one = cantilever(modes=0, elements=1).invariants
-    assert one.slaved == 0      # nothing inside that could move
+    """Load modes and resultants: tension alone in compact straight beams, all in frames."""
+    flat = planar_beam([2, 1], [2.6, 1.8], SLENDER, 12)
+    assert counts(craig_bampton(flat, {0: "full", 12: "full"}, 4)) == (2, 1)
+    assert counts(cantilever()) == (2, 1)
+    # stiff in one plane: its bending twists the beam, as in lateral buckling
+    assert counts(cantilever(replace(SLENDER, bending_y=10.0))) == (4, 3)
+    points = [[1, 2, -1], [3, 5, 5], [4, 0, 2]]
+    elbow = frame(points, [(0, 1), (2, 1)], SLENDER, 6)
+    slaved, resultants = counts(craig_bampton(elbow, {0: "full", 1: "full", 2: "full"}, 2))
+    assert slaved >= 9 and resultants == 12
+    # nothing inside that could move
+    assert cantilever(modes=0, elements=1).invariants.slaved == 0
 
 
 def test_units_and_order_change_nothing():

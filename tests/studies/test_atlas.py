@@ -64,7 +64,7 @@ def warned(run):
 def test_regular_scenes_are_not_warned(name):
     scene = import_module(f"sebody.scenes.{name.replace('-', '_')}").build()
     t_end = min(scene.t_end, 400 * scene.h) if name in ("four-bar", "squeezer") else scene.t_end
-    assert warned(lambda: Simulation(scene.model, scene.h).run_to(t_end)) == []
+    assert warned(lambda: Simulation(scene.model, scene.h).run_to(t_end).result()) == []
 
 
 def test_spin_is_warned_of_once():

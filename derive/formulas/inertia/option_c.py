@@ -20,7 +20,7 @@ work.
 import sympy as sp
 
 from sebody.derive.formulas import gravity
-from sebody.derive.formulas.damping import ADDED, FRICTION, rates
+from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.frames.frame import Frame, origin_stage
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import slaved
@@ -31,7 +31,6 @@ from sebody.derive.symbolic.linearize import Linearizer
 from sebody.derive.symbolic.spaces import Quantity
 from sebody.derive.symbolic.steps import (
     Call,
-    Damping,
     Repeat,
     Solve,
     Stage,
@@ -177,11 +176,13 @@ class _Floating:
                  ("Mz", "zdd", "local", "N", "N", "hN"), ("Mz", "zdd", "local"), 1),
             Call("elastic force, Sbar y", "add_block_times",
                  ("Sz", "z", "local", "free", "free", "hn"), ("Sz", "z", "local"), 1),
+            Call("damping force, Cbar ydot", "add_block_times",
+                 ("Cz", "zd", "local", "free", "damped", "hn"), ("Cz", "zd", "local"), 1),
             *self.stress.forces, slaved.pulled_back("local"),
             Stage("force and moment on the frame", "element",
                   sets=((self.on_origin, field.on_origin(self.motion, self.sums)),
                         (self.on_frame, field.on_frame(self.motion, self.sums)))),
-            scattered("local", "s"), Damping("structural damping", (FRICTION, ADDED)))
+            scattered("local", "s"))
 
     def contractions(self) -> tuple[Call, ...]:
         """Products of the constants with z and its rates, and of those with them again."""
@@ -252,6 +253,10 @@ class _Floating:
                       ("stiffness", "Sz", "hn", "ones", "1"),
                       ("forces on eta", "followers", "slaved*hn", "by_followers", "slaved"))),
                 *self.stress.stiffness)),
+            Repeat("structural damping", "j", "damped", (
+                Call("a column", "add_block_times",
+                     ("at(Cz, j*hn)", "ones", f"at({RATE}, j*deep)", "free", "1", "hn"),
+                     ("Cz", "ones", RATE)),)),
             *self.borders())
 
     def block_factors(self, out: str, squares: str, couplings: str, gyroscopic: str,
@@ -310,9 +315,7 @@ class _Floating:
                   chain.stage(self.factor_of_tangents),
                   self.tangent_times("add_block_times", RATE, "dzd", f"N + {self.turns}"),
                   self.tangent_times("add_block_times", SECOND, "dzdd", self.force_rows),
-                  slaved.pulled_back("dlocal"), scattered("dlocal", "ds"),
-                  Damping("differential: structural damping",
-                          (FRICTION.differential(), ADDED.differential()))]
+                  slaved.pulled_back("dlocal"), scattered("dlocal", "ds")]
         for quantity in (q.f, q.m, q.fm, self.on_origin, self.on_frame):
             chain.move(quantity)
         return tuple(steps)
@@ -334,6 +337,10 @@ class _Floating:
                  ("Sz", "z", "moved", "free", "free", "hn"), ("Sz", "z", "moved")),
             Call("twice its energy", "rows_times",
                  ("moved", "z", "at(squares, 1)", "free", "1", "hn"), ("moved", "z", "squares")),
+            Call("damping force, Cbar ydot", "block_times",
+                 ("Cz", "zd", "moved", "free", "damped", "hn"), ("Cz", "zd", "moved")),
+            Call("its power", "rows_times",
+                 ("moved", "zd", "at(squares, 2)", "free", "1", "hn"), ("moved", "zd", "squares")),
             Stage("energies, momentum and its moment about the origin", "element", sets=(
                 (q.kinetic, sp.Matrix([field.kinetic_energy(self.motion, self.sums,
                                                             squared.symbols[0])])),
@@ -373,7 +380,7 @@ INERTIA = InertiaOption(
         "the displacement field of the body, with slaved load modes (option C)", material=True,
         field=True,
         constants=(
-            Part("sizes", (2,), "slaved coordinates, resultants of second order"),
+            Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
             Part("kept", ("free",), "local coordinates that determine the others in the frame"),
             Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
             Part("J0", ("pairs",), "moments of inertia at rest"),
@@ -383,6 +390,7 @@ INERTIA = InertiaOption(
                  "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
             Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
             Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
+            Part("Cz", ("free", "damped"), "reduced damping", columns=True),
             Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
             Part("lam", ("resultants",), "eigenvalues of the resultants"),
             Part("E", ("free", "resultants"), "their eigenvectors", columns=True),

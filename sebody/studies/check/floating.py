@@ -40,13 +40,14 @@ def generic_invariants(random: np.random.Generator, n: int, slaved: int, resulta
 
 
 def generic_constants(random: np.random.Generator, case: Case,
-                      values: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
+                      values: Mapping[str, ArrayLike], damping: float) -> dict[str, ArrayLike]:
     """Values of the constants of option C by name, with the conditions of the frame."""
     free = case.counts["free"]
-    A = random.normal(size=(free, free))
+    A, B = random.normal(size=(2, free, free))
     conditions = frame_conditions(frame_traits(case.module), case.counts, values)
     return packed(generic_invariants(random, free, case.slaved, case.resultants, case.planar,
-                                     values["masses"][0]), A @ A.T, determining(conditions)[0])
+                                     values["masses"][0]), A @ A.T, determining(conditions)[0],
+                  damping * B @ B.T if case.damped else None)
 
 
 def without_stiffness(case: Case) -> dict[str, NDArray]:

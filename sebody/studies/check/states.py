@@ -25,6 +25,7 @@ from sebody.kernels.layout import (
     Row,
     first_mode,
     first_rotation,
+    floating_counts,
     scratch_size,
     superelement_counts,
 )
@@ -69,6 +70,7 @@ class Case(NamedTuple):
     loads: NDArray = np.zeros(3)    # amplitude and two rates
     slaved: int = 0             # of option C: coordinates that follow the others
     resultants: int = 0         # and stress resultants of second order
+    damped: bool = False        # whether the constants have its damping
 
     @property
     def planar(self) -> bool:
@@ -103,8 +105,9 @@ class Case(NamedTuple):
     @property
     def counts(self) -> dict[str, int]:
         """The counts that sizes of the constants are products of."""
-        return superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n,
-                                   self.slaved, self.resultants)
+        return superelement_counts(
+            self.n_positions, self.n_rotations, self.planar, self.n) | floating_counts(
+            self.planar, self.n, self.slaved, self.resultants, self.damped)
 
     @property
     def row(self) -> Row:

@@ -117,8 +117,8 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
                 gravity * random.normal(size=3))
     if is_floating(case):
         slaved, resultants = FOLLOWING[seed % len(FOLLOWING)]
-        case = case._replace(slaved=slaved, resultants=resultants)
-        values |= generic_constants(random, case, values)
+        case = case._replace(slaved=slaved, resultants=resultants, damped=damping > 0)
+        values |= generic_constants(random, case, values, damping)
     return with_constants(case, values | _declared(case, values, random))
 
 
@@ -227,7 +227,8 @@ def damping_of_rigid_motion(case: Case) -> float:
 
 def _damping_force(case: Case) -> NDArray:
     """Difference of the forces with and without the damping matrix."""
-    undamped = changed(case, C=np.zeros((case.n, case.n)))
+    name = "Cz" if is_floating(case) else "C"
+    undamped = changed(case, **{name: np.zeros_like(constants_of(case)[name])})
     return evaluate(case, RESIDUAL)[0] - evaluate(undamped, RESIDUAL)[0]
 
 
@@ -306,13 +307,13 @@ def _check(name: str, module: ModuleType, nodes: Nodes) -> list[CheckRow]:
     """All criteria, with some nodes and modes."""
     rows = []
     traits = frame_traits(module)
-    small = not traits.exact
+    small, damping = not traits.exact, module.DAMPED is not False
     for seed in range(STATES):
         case = superelement_case(module, seed, gravity=1.0, nodes=nodes)
-        damped = superelement_case(module, seed, gravity=1.0, damping=0.1 * module.DAMPED,
+        damped = superelement_case(module, seed, gravity=1.0, damping=0.1 * damping,
                                    nodes=nodes)
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
-        if module.DAMPED and not small:
+        if damping and not small:
             criteria |= DAMPING
         if INERTIA_OPTIONS[module.INERTIA].modes_apart and nodes.modes > 1:
             criteria |= MODES_APART

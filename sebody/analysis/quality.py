@@ -1,0 +1,116 @@
+"""Warnings of a run that has ended: from its energies, its steps and its fastest vibrations."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh, null_space
+
+from sebody.analysis.allocation import allocate
+from sebody.analysis.evaluation import matrix
+from sebody.analysis.thresholds import BALANCE, CUT, DRIFT, EXCITED, PERIOD
+from sebody.engine.evaluate import to_body_axes
+from sebody.engine.state import ADAPTIVE, CUTS, STEPS
+from sebody.kernels.layout import ENERGIES, RECORD_T
+from sebody.model.parts import Element
+from sebody.results.energy_balance import energy_balance
+from sebody.results.recording import Recording, record_counts
+
+LOOKED_AT = 200     # recorded states whose energies are compared
+SMALL = 100         # unknowns up to which vibrations are looked for, by dense algebra
+MASSLESS = 1e-12    # of the mean mass, where there is none
+NO_MOTION = 1e-9    # of all energies: kinetic energy of a model at rest
+
+
+def remarks(run: Recording) -> dict[str, str]:
+    """Warnings by key; `run` has its rows from the start on.
+
+    A run that failed has said why, and one with a tolerance keeps to it: only their cuts count.
+    """
+    if run.failure or run.state.control[ADAPTIVE]:
+        return _steps(run)
+    counts = record_counts(run.numbering)
+    chosen = np.unique(np.linspace(0, len(run.rows) - 1, LOOKED_AT).astype(int))
+    scratch = allocate(run.model, run.system, run.numbering, 1.0, False)    # the run may go on
+    part = Recording(run.model, run.numbering, run.system, scratch, run.rows[chosen], 0.0)
+    kinetic, strain, potential = (part.energies[:, ENERGIES.slices(counts)[name]][:, 0]
+                                  for name in ("kinetic", "strain", "potential"))
+    work = part.recorded("works").sum(axis=1)
+    found = {}
+    balance = energy_balance(kinetic, strain, potential, work)
+    if balance > BALANCE:
+        found["balance"] = (
+            f"energy balance {balance:.2g} of the energy exchanged (limit {BALANCE:g}): the step "
+            "is too long, or numerical damping takes energy that matters; take a smaller step, a "
+            "larger rho, or simulate_within")
+    found |= _steps(run)
+    if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
+        states = {int(np.argmax(kinetic)), int(np.argmax(strain))}
+        h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control[STEPS]), 1)
+        found |= _vibrations(part, sorted(states), h, kinetic.max())
+    if run.numbering.multipliers:
+        found |= _constraints(part)
+    return found
+
+
+def _steps(run: Recording) -> dict[str, str]:
+    """Whether many steps were cut."""
+    steps, cuts = int(run.state.control[STEPS]), int(run.state.control[CUTS])
+    if cuts <= CUT * steps:
+        return {}
+    return {"cuts": f"{cuts} cuts in {steps} steps (limit {CUT:g} of them): Newton's iteration "
+            "does not converge with this step; take a smaller one, or softer loads and bodies"}
+
+
+def _constraints(part: Recording) -> dict[str, str]:
+    """Whether the constraints hold, rotational ones compared with one radian."""
+    equations: list[Element] = part.model.constraints
+    extent = part.system.magnitude.max()
+    turning = all(t.rotational for c in equations for t in c.triplets)
+    size = 1.0 if turning or not extent > 0.0 else extent
+    off = part.constraint_residuals[:, 0].max() / size
+    if off <= DRIFT:
+        return {}
+    return {"constraints": f"constraints are off by {off:.2g} of the model's extent (limit "
+            f"{DRIFT:g}): take a smaller tolerance of the scheme, or a smaller step"}
+
+
+def _vibrations(part: Recording, states: list[int], h: float, largest: float) -> dict[str, str]:
+    """Whether the fastest vibration that has energy takes too few steps a period."""
+    if part.numbering.free > SMALL:
+        return {}
+    omega = max(_fastest(part, part.rows[k], EXCITED * largest) for k in states)
+    if omega * h * PERIOD <= 2.0 * np.pi:
+        return {}
+    return {"period": f"vibrations of {omega:.4g} rad/s are excited and take "
+            f"{2.0 * np.pi / (omega * h):.2g} steps a period (limit {PERIOD:g}): take a step of "
+            f"{2.0 * np.pi / (omega * 3.0 * PERIOD):.2g}, or apply loads more gradually"}
+
+
+def _fastest(part: Recording, row: NDArray, energy: float) -> float:
+    """Largest angular frequency of the free vibrations of a state that have some energy.
+
+    The energy of a vibration of modal coordinate x is at most ``(x'' / omega)^2 / 2``. Motion that
+    is slow against a vibration adds hardly anything to it: accelerations are projected, velocities
+    would be those of the body as a whole.
+    """
+    system, state, n = part.system, part.state, part.numbering.free
+    state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
+    state.now[:] = row
+    acceleration = state.a.copy()
+    state.v[:], state.a[:] = 0.0, 0.0
+    K, M = (matrix(system, state, "a recorded state", mass=mass, damping=0.0, stiffness=stiffness,
+                   constraint=stiffness).toarray() for mass, stiffness in ((0.0, 1.0), (1.0, 0.0)))
+    if not (np.isfinite(K).all() and np.isfinite(M).all()):     # a user force elsewhere
+        return 0.0
+    to_body_axes(system, state.frames, acceleration, False)
+    fixed = system.is_multiplier[:n] > 0.0
+    moving, multipliers = np.flatnonzero(~fixed), np.flatnonzero(fixed)
+    basis = (null_space(K[np.ix_(multipliers, moving)]) if multipliers.size else
+             np.eye(len(moving)))
+    if not basis.shape[1]:
+        return 0.0
+    K, M = (basis.T @ A[np.ix_(moving, moving)] @ basis for A in (K, M))
+    M = (M + M.T) / 2 + MASSLESS * np.trace(M) / len(M) * np.eye(len(M))
+    squares, shapes = eigh((K + K.T) / 2, M)
+    modal = shapes.T @ M @ (basis.T @ acceleration[moving])
+    excited = (squares > 0.0) & (modal**2 > 2.0 * energy * np.abs(squares))
+    return float(np.sqrt(squares[excited].max(initial=0.0)))

@@ -1,0 +1,126 @@
+"""Warnings of runs, equilibria and linearisations whose results are bad, and none of good ones."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from sebody import LimitWarning, Model, Simulation, generalized_alpha, simulate
+from sebody.analysis import equilibrium, linearize
+from sebody.cli.entry import main
+from sebody.fem import Section, planar_beam
+from sebody.reduction import craig_bampton
+from sebody.results.energy_balance import energy_balance
+from sebody.scenes import four_bar, hinged_beam
+
+SLENDER = Section(area=1.0, inertia_y=1e-4, inertia_z=1e-4, torsion=1e-4, youngs_modulus=3e4,
+                  poisson_ratio=0.3, density=1.0)
+
+
+def oscillator(steps_a_period, unit=1.0, tilt=0.0):
+    """A mass on a spring that is struck, in some unit of length; the step is part of its period."""
+    omega, along = 50.0, np.array([np.cos(tilt), np.sin(tilt)])
+    model = Model(planar=True)
+    model.node("wall", (0.0, 0.0), keeps="translation")
+    model.node("mass", unit * along, keeps="translation")
+    model.point_mass("mass", "mass", 2.0)
+    model.spring("wall", "mass", stiffness=2.0 * omega**2)
+    model.spring("mass", "wall", stiffness=2.0 * omega**2, name="second")
+    model.fix("wall", "position")
+    model.initial_velocity("mass", 0.1 * unit * omega * along)
+    h = 2 * np.pi / (steps_a_period * np.sqrt(2.0) * omega)
+    return simulate(model, h, 100 * h, generalized_alpha(1.0))
+
+
+def said(run):
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        run()
+    return [str(w.message) for w in found if issubclass(w.category, LimitWarning)]
+
+
+@pytest.mark.parametrize("unit, tilt", [(1.0, 0.0), (1e3, 0.7), (1e-3, 2.0)])
+def test_vibrations_that_the_step_does_not_resolve(unit, tilt):
+    message, = said(lambda: oscillator(4.0, unit, tilt))
+    assert message.startswith("vibrations of 70.7")         # 50 sqrt(2), nearly along the spring
+    assert "take 4 steps a period (limit 6): take a step of 0.0049" in message
+    assert said(lambda: oscillator(8.0, unit, tilt)) == []
+
+
+def test_bodies_that_are_carried_along_do_not_vibrate():
+    """The bar is far too stiff for the step, but nothing makes it vibrate."""
+    model = Model(planar=True)
+    body = craig_bampton(planar_beam((0, 0), (1, 0), SLENDER, 4), [(0, "full"), (4, "full")], 2)
+    model.superelement("bar", body, [model.node("a", (0.0, 0.0)), model.node("b", (1.0, 0.0))])
+    model.move("a", (0.0, 1.0), [(0.0, 0.0), (1.0, 0.1), (2.0, 0.4), (3.0, 0.9)])
+    model.fix("a", "rotation")
+    assert said(lambda: simulate(model, 0.05, 3.0)) == []
+
+
+def test_a_step_that_is_too_long_is_told_on_standard_error(capsys):
+    said(lambda: simulate(hinged_beam.build().model, 0.3, 0.3).summary())   # compiled before
+    capsys.readouterr()
+    assert main(["run", "hinged-beam", "--step", "0.3"]) == 0
+    lines = capsys.readouterr().err.splitlines()
+    assert lines and all(line.startswith("warning: ") for line in lines)
+    assert any("of the energy exchanged (limit 0.05)" in line for line in lines)
+    assert any("cuts in" in line and "take a smaller one" in line for line in lines)
+
+
+def test_a_warning_is_given_once_and_kept():
+    run = Simulation(hinged_beam.build(elements=4).model, 0.3)
+    found = said(lambda: (run.run_to(15.0).result(), run.run_to(30.0).result()))
+    assert len(found) == len(set(found)) and tuple(found) == run.result().warnings
+
+
+def test_constraints_that_do_not_hold():
+    loose = generalized_alpha(0.9, tolerance=0.5)
+    found = said(lambda: simulate(four_bar.build().model, 0.02, 2.0, loose))
+    assert any(m.startswith("constraints are off by") and "smaller tolerance" in m for m in found)
+
+
+def test_a_model_at_rest_has_no_balance_to_keep():
+    """A weight on a spring that bears it from the start, high above the origin."""
+    model = Model(planar=True)
+    model.gravity((0.0, -9.81))
+    for name, height in (("weight", 1e3), ("beam", 1e3 + 1.0)):
+        model.node(name, (0.0, height), keeps="translation")
+    model.fix("beam", "position")
+    model.point_mass("weight", "weight", 10.0)
+    model.spring("weight", "beam", stiffness=1e4, length=1.0 - 98.1 / 1e4)
+    found = []
+    assert said(lambda: found.append(simulate(model, 0.01, 1.0))) == []
+    assert found[0].energy_balance() < 0.05
+
+
+def test_the_balance_is_relative_to_what_is_exchanged():
+    none, t = np.zeros(5), np.linspace(0.0, 1.0, 5)
+    assert energy_balance(none, none, 1e6 + 1e-9 * t, none) == 0.0          # rounding
+    assert energy_balance(2.0 + 0.1 * t, none, none, none) == pytest.approx(0.1 / 2.1, rel=1e-9)
+    # the strain that is always there is not exchanged
+    assert energy_balance(none, 7.0 + t, none, 0.9 * t) == pytest.approx(0.1, rel=1e-9)
+    assert energy_balance(t, none, 5.0 - 10.0 * t, -9.5 * t) == pytest.approx(0.05, rel=1e-9)
+
+
+def bent(force):
+    """A cantilever of one linear body."""
+    model = Model(planar=True)
+    body = craig_bampton(planar_beam((0, 0), (1, 0), SLENDER, 4), [(0, "full"), (4, "full")], 0)
+    model.superelement("bar", body, [model.node("a", (0.0, 0.0)), model.node("b", (1.0, 0.0))])
+    model.fix("a")
+    model.force("b", (0.0, force))
+    return model
+
+
+@pytest.mark.parametrize("force, count", [(0.5, 0), (12.0, 1)])
+def test_equilibria_and_what_is_linearised_about_them_are_looked_at(force, count):
+    found = []
+    assert len(said(lambda: found.append(equilibrium(bent(force))))) == count
+    messages = said(lambda: linearize(found[0]))
+    assert len(messages) == count == len(found[0].warnings)
+    assert all("local rotation" in m and "divide it" in m for m in messages)
+
+
+def test_an_equilibrium_that_spins_too_fast():
+    message, = said(lambda: equilibrium(bent(0.0), spin=12.0))
+    assert message.startswith("spin 12 rad/s is above the limit") and "divide it in two" in message
