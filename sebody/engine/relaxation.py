@@ -2,17 +2,21 @@
 
 With redundant constraints the iteration matrix M is singular, and a residual has parts that no
 correction removes: rounding, or a small misfit of the joints. The factors are those of
-``A = M + R`` with the diagonal R, positive at coordinates, negative at multipliers, and ``RELAXED``
-times the matrix in size; a matrix of this kind has factors in any order (Vanderbei 1995). The
-correction is
+``A = M + R + L``. The diagonal R is negative at multipliers, `RELAXATION` times the strength of
+their constraints; L is positive at bodies with nearly no inertia about an axis. A matrix of this
+kind has factors in any order of elimination (Vanderbei 1995). The correction is
 
-    z = A^-1 M A^-1 r = (I - A^-1 R) A^-1 r.
+    z = (I - A^-1 R)^k A^-1 r    with k `PROJECTIONS`.
 
-Where M acts with the strength s relative to R / RELAXED, this is the solution times
-``(s / (s + RELAXED))^2``: all of it where s is far above RELAXED, nothing where s is rounding. So
-no rank is decided upon, multipliers get no part that exerts no force, and the motion does not
-depend on R. R has one size for all coordinates of a position or rotation and for all multipliers of
-an equation, so it does not depend on the directions of axes.
+Where the constraints act with the strength s relative to R / RELAXATION, this is the solution times
+``(s / (s + RELAXATION))^(k + 1)``: all of it where s is far above RELAXATION, nothing where s is
+rounding. So no rank is decided upon, multipliers get no part that exerts no force, and the motion
+does not depend on R. R has one size for all multipliers of an equation, L for all axes of a
+rotation: neither depends on the directions of axes. What L changes, at most `LIGHT` of a
+correction, further iterations correct; where something without mass can move it leaves that alone.
+
+Rounding in the factors is divided by RELAXATION^(k + 1) and multiplied by its own power k, so
+RELAXATION must stay well above that rounding, which thin bodies increase by 1 / LIGHT.
 """
 
 import numpy as np
@@ -26,12 +30,12 @@ RELAXATION = 1e-8       # of R at multipliers, for elimination without row excha
 EXCHANGED = 1e-10       # the same for inverses, which rounding spoils less
 LIGHT = 1e-3            # of R at thin bodies, relative to their largest moment of inertia
 WEAKEST = 1e-7          # strength of constraints below which a small matrix is regularized
-PROJECTIONS = 2         # of corrections: rounding over RELAXATION to this power is left
+PROJECTIONS = 2         # of corrections and of multipliers
 
 
 @compiled
 def relax(system, state, relaxation):
-    """Add R to the iteration matrix."""
+    """Add R and L to the iteration matrix."""
     for k in range(system.pulls.size):
         state.pulls[k] = state.matrix[system.pulls[k]]
     _set_relaxation(system, state, relaxation)
@@ -42,7 +46,7 @@ def relax(system, state, relaxation):
 
 @compiled
 def _set_relaxation(system, state, relaxation):
-    """R from the masses and from the rows of the constraints, in units of the matrix."""
+    """R and L from the rows of the constraints and the masses, and scales by equations."""
     n, size, R = system.diagonal.size, state.projected, state.relaxation
     mass = state.coefficients[C_MASS]
     for i in range(n):
@@ -105,7 +109,7 @@ def spread(system, state, inverse, dense):
     """Take from the multipliers the part that exerts no force: what is left is of least norm.
 
     That part grows as the constraints turn. It is what ``A^-1 R`` leaves as it is; of all other
-    parts that leaves ``RELAXATION / s``, so it is applied more than once.
+    parts that leaves ``RELAXATION / s``, so it is applied several times.
     """
     n, part = system.diagonal.size, state.projected
     for i in range(n):

@@ -102,7 +102,7 @@ class State(Arrays):
     scale                 (N, padded) of the unknowns: the scaled matrix has a unit diagonal
     weight                (N,) one over `scale`: norms of corrections are weighted by these
     inverse               (n, padded n) inverse of a small matrix, scales included, by columns
-    relaxation            (N,) diagonal R of a regularized matrix, see `sebody.engine.relaxation`
+    relaxation            (N,) R + L of a regularized matrix, see `sebody.engine.relaxation`
     pulls                 entries `System.pulls` of the matrix, before elimination
     projected, pulled     (N,) scratch memory of projections
     column                scratch memory of the elimination for a column of blocks
