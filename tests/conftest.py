@@ -1,5 +1,18 @@
-"""One thread for linear algebra: matrices of tests are small, and every core runs tests already."""
+"""One thread for linear algebra: matrices of tests are small, and every core runs tests already.
+
+Processes that share the tests find the time loop compiled, and the kernels where all tests run:
+cold, each process would compile them for itself.
+"""
 
 import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+def pytest_sessionstart(session):
+    config = session.config
+    if config.getoption("numprocesses", None):      # not in the processes themselves
+        from sebody.analysis.first_run import PARTS, compile_missing
+        from sebody.studies.catalogue import kernel_files
+
+        compile_missing(kernel_files() if config.args == config.getini("testpaths") else (), PARTS)

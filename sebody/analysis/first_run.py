@@ -28,7 +28,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.results import postprocessing
 
-LOOP_SECONDS = 25.0             # of one processor
+LOOP_SECONDS = 50.0             # of one processor
 SECONDS_A_LETTER = 1e-4         # of a kernel's file
 WORTH_IT = 4.0                  # seconds of compiling: starting processes takes one or two
 
@@ -44,8 +44,12 @@ class Part(NamedTuple):
     after: tuple[str, ...] = ()     # parts it calls, or takes most of
 
 
-# those that take long, then what they are parts of; the loop itself waits for those before it
-PARTS = {
+# the longest chain begins first, beside what the loop is made of; the loop itself waits for that
+MATRICES = {
+    "sums": Part(matrix.sum_matrices, "system state vector"),
+    "matrix": Part(matrix.refactorize, "system state whole flag", ("sums",)),
+}
+LOOP = {
     "forces": Part(evaluate.assemble, "whole whole system state vector"),
     "output": Part(step_control.write_between, "system state record whole"),
     "correction": Part(newton.apply_correction, "system state scheme flag"),
@@ -55,10 +59,8 @@ PARTS = {
     "beginning": Part(step.begin_step, "system state scheme"),
     "choice": Part(step_control.choose_step, "system state"),
 }
-PARTS["loop"] = Part(loop.advance, "system state record scheme whole whole flag", tuple(PARTS))
-PARTS |= {
-    "sums": Part(matrix.sum_matrices, "system state vector"),
-    "matrix": Part(matrix.refactorize, "system state whole flag", ("sums",)),
+PARTS = MATRICES | LOOP | {
+    "loop": Part(loop.advance, "system state record scheme whole whole flag", tuple(LOOP)),
     "constraints": Part(postprocessing._evaluate_constraints, "system state table table",
                         ("forces",)),
     "powers": Part(evaluate.set_powers, "system state", ("forces",)),

@@ -85,8 +85,8 @@ def first_moment(case: Case, y: NDArray) -> NDArray:
     return constants["c0"] + constants["moment_columns"][:, :case.dimension].T @ _whole(case, y)
 
 
-def kinetic(case: Case) -> float:
-    """``T`` from the velocity of the field: that of the frame and the rates of z by differences."""
+def kinetic_terms(case: Case) -> NDArray:
+    """Terms of ``T``: of the frame's velocity, and of the rates of z by differences."""
     h, d = 0.003, case.dimension
     constants, R0 = constants_of(case), frame_rotation(case).as_matrix()
     z = _whole(case, local_coordinates(case))
@@ -100,8 +100,8 @@ def kinetic(case: Case) -> float:
     pushed = np.r_[moments[:, :d].T @ zd, np.zeros(3 - d)]
     J, B = _inertia(case, z), _coupling(case, z)
     w_kept = w[2:] if case.planar else w
-    return float(constants["masses"][0] * v @ v / 2 + v @ (np.cross(w, c) + pushed)
-                 + w_kept @ J @ w_kept / 2 + w_kept @ B @ zd + zd @ constants["Mz"] @ zd / 2)
+    return np.array([constants["masses"][0] * v @ v / 2, v @ np.cross(w, c), v @ pushed,
+                     w_kept @ J @ w_kept / 2, w_kept @ B @ zd, zd @ constants["Mz"] @ zd / 2])
 
 
 def _free(case: Case, y: NDArray) -> NDArray:
