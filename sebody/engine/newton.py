@@ -54,6 +54,7 @@ POOR = 0.3              # a contraction rate above this asks for a new matrix at
 MOST_MATRICES = 4       # factorizations in a step
 ACCELERATION_TOLERANCE = 100.0  # tolerance relative to accelerations, over that of the increment
 WIDEST_GAP = 1e-5       # between what joints demand, relative to the extent of the model
+ROUNDED = 100.0         # of the target: where new matrices do not help, what is left is rounding
 QUICK = 0.05            # a contraction rate below this needs no acceleration by mixing
 
 
@@ -150,7 +151,9 @@ def _verdict(system, state, norm, left_norm, target):
     if rate / (1.0 - rate) * left_norm <= target:
         return CONVERGED
     left = MAX_ITERATIONS - iteration - 1
-    if left <= 0 or (iteration > 2 and control[FRESH] > 2 and rate > 0.9):
+    if iteration > 2 and control[FRESH] > 2 and rate > 0.9:
+        return CONVERGED if left_norm <= ROUNDED * target else GIVE_UP
+    if left <= 0:
         return GIVE_UP
     if iteration == 0 or control[FRESH] >= MOST_MATRICES:
         return GO_ON

@@ -22,6 +22,7 @@ from sebody.engine.state import (
     HELD,
     ITERATION,
     ITERATIONS,
+    KEPT,
     LAST_NORM,
     LEVEL,
     PHASE,
@@ -47,6 +48,7 @@ from sebody.kernels.layout import (
 from sebody.kernels.pipeline import compiled
 
 ORTHOGONAL = 8          # steps after which rotation matrices are made orthogonal again
+STEADY = 0.5            # share of a change by which the next one may differ
 MEMORY = 0.99           # factor of the largest norm of accelerations, in every step
 
 
@@ -63,7 +65,8 @@ def begin_step(system, state, scheme):
     # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
     offset = h / state.clock[AUX_STEP]
     state.clock[AUX_STEP] = h
-    follow = 1.0 if _steady(system, state) and offset == 1.0 else 0.0     # not from cut steps on
+    kept = state.control[FRESH] == 0 and state.control[WANTED] == KEPT and offset == 1.0
+    follow = 1.0 if _steady(system, state) and kept else 0.0
     for i in range(state.dq.size):
         q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
         change = follow * state.aux_change[i]
@@ -87,8 +90,9 @@ def begin_step(system, state, scheme):
 def _steady(system, state):
     """Whether auxiliary accelerations changed in the last step as in the step before, roughly.
 
-    If so, they are predicted to go on changing like that, else to stay as they are. What Newton's
-    iteration leaves is proportional to the error of the prediction.
+    If so, they are predicted to go on changing like that, else to stay as they are: after cut steps
+    and new matrices, too, which come where a motion is not smooth. What Newton's iteration with
+    old matrices leaves is proportional to the error of the prediction.
     """
     constant = linear = 0.0
     for i in range(system.diagonal.size):
@@ -97,7 +101,7 @@ def _steady(system, state):
         state.aux_change[i] = change
         constant += change * change * w * w
         linear += bend * bend * w * w
-    return linear < constant
+    return linear < STEADY * STEADY * constant
 
 
 @compiled(forceinline=True)
