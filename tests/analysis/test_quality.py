@@ -68,7 +68,7 @@ def test_a_step_that_is_too_long_is_told_on_standard_error(capsys):
 
 
 def test_a_warning_is_given_once_and_kept():
-    run = Simulation(hinged_beam.build(elements=4).model, 0.3)
+    run = Simulation(hinged_beam.build().model, 0.3)
     found = said(lambda: (run.run_to(15.0).result(), run.run_to(30.0).result()))
     assert len(found) == len(set(found)) and tuple(found) == run.result().warnings
 
