@@ -18,7 +18,7 @@ def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 4,
     frame : str
         Frame of the bodies: converged_mean, mean, mean_small, or node (attached to a node).
     inertia : str
-        Inertia option, a or b: angular velocities in frame axes or material.
+        Inertia option: velocities in frame axes (a) or material (b), or exact with stiffening (c).
     modes : int
         Internal modes a body.
     elements : int

@@ -14,7 +14,7 @@ def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 2,
     frame : str
         Frame of the bodies: converged_mean, or node (attached to their first node).
     inertia : str
-        Inertia option, a or b: angular velocities in frame axes or material.
+        Inertia option: velocities in frame axes (a) or material (b), or exact with stiffening (c).
     modes : int
         Internal modes a body.
     elements : int

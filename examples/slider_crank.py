@@ -32,7 +32,7 @@ def build(bodies: int = 1, modes: int = 5, elements: int = ELEMENTS,
     frame : str
         Frame of the bodies: converged_mean, or node (attached to their first node).
     inertia : str
-        Inertia option, a or b: angular velocities in frame axes or material.
+        Inertia option: velocities in frame axes (a) or material (b), or exact with stiffening (c).
     """
     model = Model(planar=True)
     pin = model.node("pin", (RADIUS, 0.0))

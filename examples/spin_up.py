@@ -33,7 +33,7 @@ def build(case: str = "kane", bodies: int = 8, modes: int = 0, elements: int = 3
     frame : str
         Frame of the bodies: converged_mean, or node (attached to their first node).
     inertia : str
-        Inertia option, a or b: angular velocities in frame axes or material.
+        Inertia option: velocities in frame axes (a) or material (b), or exact with stiffening (c).
 
     Raises
     ------
