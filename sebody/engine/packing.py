@@ -1,4 +1,4 @@
-"""Groups of arrays whose numbers lie in one buffer: many runs begin with one copy of all of them."""
+"""Groups of arrays whose numbers lie in one buffer: a copy of it begins a run."""
 
 from collections.abc import Iterator
 from dataclasses import fields

@@ -21,7 +21,6 @@ from sebody.engine.packing import Places, patterns
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.model.model import Model
 
 LINEAR = 1e-12      # largest deviation from a line, relative to the largest of the numbers compared
 

@@ -136,5 +136,8 @@ class Fold:
         k = int(np.searchsorted(t, time * (1 - 1e-12)))
         if self._kept is not None or k == len(t):
             return
-        part = 1.0 if k == 0 or t[k] <= time else (time - t[k - 1]) / (t[k] - t[k - 1])
-        self._kept = values[k] if part == 1.0 else values[k - 1] + part * (values[k] - values[k - 1])
+        if k == 0 or t[k] <= time:
+            self._kept = values[k]
+            return
+        part = (time - t[k - 1]) / (t[k] - t[k - 1])
+        self._kept = values[k - 1] + part * (values[k] - values[k - 1])
