@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.fem import beam_element
+from sebody.fem.layout import PLANAR, SPATIAL
 from sebody.fem.mass_field import MassField
-from sebody.fem.model import PLANAR, SPATIAL, FEModel, assemble
+from sebody.fem.model import FEModel, assemble
 from sebody.fem.section import StiffnessSection
 
 _IN_PLANE = np.array([0, 1, 5, 6, 7, 11])  # DOFs of an element in the xy plane

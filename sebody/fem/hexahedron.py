@@ -7,7 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from sebody import inputs
-from sebody.fem.model import SOLID, FEModel, assemble
+from sebody.fem.layout import SOLID
+from sebody.fem.model import FEModel, assemble
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
 
