@@ -60,7 +60,7 @@ def _factorise(stiffness: sparse.csc_array) -> SuperLU:
     options = {"SymmetricMode": True}
     # SciPy 1.11 selects rows with 64-bit indices, which its SuperLU does not accept
     short = (array.astype(np.intc) for array in (stiffness.indices, stiffness.indptr))
-    matrix = sparse.csc_array((stiffness.data, *short), shape=stiffness.shape)
+    matrix = sparse.csc_array((stiffness.data.copy(), *short), shape=stiffness.shape)
     try:
         factor = splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
         pivots = factor.U.diagonal()[factor.perm_c]

@@ -33,8 +33,9 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary, bas
     if fe_model.mass_field is not None:
         invariants, load_modes = _invariants(body, fe_model, boundary, basis, interior)
         shapes = np.hstack([basis, load_modes])
-    return replace(body, invariants=invariants,
-                   recovery=Recovery(shapes, fe_model.coordinates, fe_model.node_dofs))
+    recovery = Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
+                        cells=fe_model.cells, labels=fe_model.labels)
+    return replace(body, invariants=invariants, recovery=recovery)
 
 
 def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary, basis: NDArray,

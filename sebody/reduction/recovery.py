@@ -16,16 +16,19 @@ class Recovery:
 
     Parameters
     ----------
-    shapes : (n_dofs, N)
-        Of the n reduced coordinates, then of those that follow them in second order; in FE axes.
+    shapes : (n_nodes k, N)
+        Node after node, 0 for DOFs that a node does not have: of the n reduced coordinates, then
+        of those that follow them in second order; in FE axes.
     coordinates : (n_nodes, 3), planar (n_nodes, 2)
         FE nodes in FE axes [length].
     node_dofs : tuple of str
-        DOFs of one node in order, as in `FEModel`.
+        The k DOFs of one node in order, as in `FEModel`.
     axes : (D, D), optional
         Rotates vectors from FE axes to axes of the body.
     by : (n, n), optional
         The same of the reduced coordinates.
+    cells, labels
+        As in `FEModel`.
     """
 
     shapes: NDArray
@@ -33,6 +36,8 @@ class Recovery:
     node_dofs: tuple[str, ...]
     axes: NDArray | None = None
     by: NDArray | None = None
+    cells: tuple[tuple[str, NDArray], ...] = ()
+    labels: NDArray | None = None
 
     @property
     def dimension(self) -> int:
