@@ -34,7 +34,8 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary, bas
         invariants, load_modes = _invariants(body, fe_model, boundary, basis, interior)
         shapes = np.hstack([basis, load_modes])
     recovery = Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
-                        cells=fe_model.cells, labels=fe_model.labels)
+                        cells=fe_model.cells, labels=fe_model.labels,
+                        outlines=fe_model.outlines)
     return replace(body, invariants=invariants, recovery=recovery)
 
 

@@ -27,7 +27,7 @@ class Recovery:
         Rotates vectors from FE axes to axes of the body.
     by : (n, n), optional
         The same of the reduced coordinates.
-    cells, labels
+    cells, labels, outlines
         As in `FEModel`.
     """
 
@@ -38,6 +38,7 @@ class Recovery:
     by: NDArray | None = None
     cells: tuple[tuple[str, NDArray], ...] = ()
     labels: NDArray | None = None
+    outlines: NDArray | None = None
 
     @property
     def dimension(self) -> int:
