@@ -11,11 +11,7 @@ from sebody.fem.layout import SOLID
 from sebody.fem.model import FEModel, assemble
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
-<<<<<<< HEAD
 _MESHIO = [0, 1, 3, 2, 4, 5, 7, 6]  # the same corners in the order of meshio
-=======
-_VTK = [0, 1, 3, 2, 4, 5, 7, 6]     # order of the corners in meshio's hexahedra: around each face
->>>>>>> 0a2cc66cbbc21296b601dcbf33b71c267a09e59a
 
 
 def hexahedral_block(
@@ -73,11 +69,7 @@ def hexahedral_block(
     )
     return FEModel(stiffness, mass, nodes, SOLID,
                    geometric_stiffness=BrickPrestress(dofs, stresses, slopes, 3 * len(nodes)),
-<<<<<<< HEAD
                    cells=[("hexahedron", connectivity[:, _MESHIO])])
-=======
-                   cells=[("hexahedron", connectivity[:, _VTK])])
->>>>>>> 0a2cc66cbbc21296b601dcbf33b71c267a09e59a
 
 
 class BrickPrestress:
