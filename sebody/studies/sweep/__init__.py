@@ -19,7 +19,7 @@ from sebody.errors import InputError
 from sebody.files import check_target
 from sebody.studies.sweep import places, sobol
 from sebody.studies.sweep.axes import Distribution
-from sebody.studies.sweep.batches import OF_RUN, Plan, batches_of, check_plan
+from sebody.studies.sweep.batches import OF_RUN, Plan, check_plan, tasks_of
 from sebody.studies.sweep.design import Design, design
 from sebody.studies.sweep.table import Table
 
@@ -88,7 +88,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     saved = time.monotonic()
     try:
         with where as run:
-            for answer in run(iter(batches_of(plan, made.columns, structural, left, BATCH))):
+            for answer in run(iter(tasks_of(plan, made.columns, structural, left, BATCH))):
                 table.take(answer)
                 if progress:
                     progress(table.done.mean())

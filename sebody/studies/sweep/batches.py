@@ -47,8 +47,13 @@ class Answer(NamedTuple):
     failures: dict[int, str]        # by number of the run in the sweep
 
 
-def run_batch(batch: Batch) -> Answer:
-    """Run a batch in one thread; a model that cannot be built fails all of its runs."""
+def run_task(batches: list[Batch]) -> list[Answer]:
+    """Run some batches, one after the other, in one thread."""
+    return [_run(batch) for batch in batches]
+
+
+def _run(batch: Batch) -> Answer:
+    """Run a batch; a model that cannot be built fails all of its runs."""
     try:
         ensemble, t_end = _ensemble(batch.plan, batch.structure)
         outcome = ensemble.run(batch.parameters, t_end, dict(batch.plan.outputs), threads=1)
@@ -76,9 +81,9 @@ def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble
     return Ensemble(scene.model, h, scheme), steps * h
 
 
-def batches_of(plan: Plan, columns: Mapping[str, NDArray], structural: set[str], rows: NDArray,
-               most: int) -> list[Batch]:
-    """Some rows of a design as batches, each of one structure.
+def tasks_of(plan: Plan, columns: Mapping[str, NDArray], structural: set[str], rows: NDArray,
+             most: int) -> list[list[Batch]]:
+    """Some rows of a design as tasks: batches of one structure each.
 
     Parameters
     ----------
@@ -87,20 +92,24 @@ def batches_of(plan: Plan, columns: Mapping[str, NDArray], structural: set[str],
     rows : (k,)
         Numbers of the runs.
     most : int
-        Runs of a batch.
+        Runs of a task.
     """
     groups: dict[tuple, list[int]] = {}
     for row in rows:
         key = tuple((name, _plain(columns[name][row])) for name in columns if name in structural)
         groups.setdefault(key, []).append(int(row))
-    found = []
+    tasks, room = [[]], most
     for key, members in groups.items():
-        for first in range(0, len(members), most):
-            own = np.array(members[first:first + most])
-            found.append(Batch(plan, key, {name: np.asarray(values[own], dtype=float)
-                                           for name, values in columns.items()
-                                           if name not in structural}, own))
-    return found
+        while members:
+            own, members = np.array(members[:room]), members[room:]
+            tasks[-1].append(Batch(plan, key, {
+                name: np.asarray(values[own], dtype=float) for name, values in columns.items()
+                if name not in structural}, own))
+            room -= len(own)
+            if not room:
+                tasks.append([])
+                room = most
+    return [task for task in tasks if task]
 
 
 def _plain(value: Any) -> Any:
@@ -116,8 +125,8 @@ def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str])
         A scene that cannot be built, a quantity or parameter it does not have, a value it cannot
         have.
     """
-    first = batches_of(plan, {n: v for n, v in columns.items() if n in structural}, structural,
-                       np.arange(1), 1)[0]
+    of_structure = {n: v for n, v in columns.items() if n in structural}
+    first = tasks_of(plan, of_structure, structural, np.arange(1), 1)[0][0]
     ensemble, t_end = _ensemble(plan, first.structure)
     ensemble.check({name: values for name, values in columns.items() if name not in structural},
                    t_end, dict(plan.outputs))

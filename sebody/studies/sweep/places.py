@@ -1,4 +1,4 @@
-"""Where the batches of a sweep run: threads here, processes here, or the workers of a cluster."""
+"""Where the tasks of a sweep run: threads here, processes here, or the workers of a cluster."""
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
@@ -6,30 +6,33 @@ from contextlib import contextmanager
 from typing import Any
 
 from sebody.errors import InputError
-from sebody.studies.sweep.batches import Answer, Batch, run_batch
+from sebody.studies.sweep.batches import Answer, Batch, run_task
 
-AHEAD = 4               # batches that wait for each worker: more would only fill the scheduler
-RETRIES = 5             # of a batch whose worker is lost
+AHEAD = 4               # tasks that wait for each worker: more would only fill the scheduler
+RETRIES = 5             # of a task whose worker is lost
 PATIENCE = 10           # seconds to find a scheduler
 
-Run = Callable[[Iterator[Batch]], Iterator[Answer]]
+Task = list[Batch]
+Run = Callable[[Iterator[Task]], Iterator[Answer]]
 
 
 @contextmanager
 def threads(count: int) -> Iterator[Run]:
     """Threads of this process."""
     with ThreadPoolExecutor(count) as pool:
-        def run(batches: Iterator[Batch]) -> Iterator[Answer]:
+        def run(tasks: Iterator[Task]) -> Iterator[Answer]:
             waiting = set()
             try:
-                for batch in batches:
-                    waiting.add(pool.submit(run_batch, batch))
+                for task in tasks:
+                    waiting.add(pool.submit(run_task, task))
                     while len(waiting) >= AHEAD * count:
                         done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-                        yield from (one.result() for one in done)
+                        for one in done:
+                            yield from one.result()
                 while waiting:
                     done, waiting = wait(waiting, timeout=0.1, return_when=FIRST_COMPLETED)
-                    yield from (one.result() for one in done)
+                    for one in done:
+                        yield from one.result()
             finally:
                 for one in waiting:
                     one.cancel()
@@ -69,7 +72,7 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Run]:
                              "'dask scheduler', and workers with 'dask worker ADDRESS'") from error
         with client:
             _check_versions(client, address)
-            yield lambda batches: _on_workers(client, batches)
+            yield lambda tasks: _on_workers(client, tasks)
     finally:
         if own is not None:
             own.close()
@@ -95,21 +98,21 @@ def _version() -> str:
         return "not installed"
 
 
-def _on_workers(client: Any, batches: Iterator[Batch]) -> Iterator[Answer]:
-    """Answers in the order in which they come; so many batches are out at a time."""
+def _on_workers(client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:
+    """Answers in the order in which they come; so many tasks are out at a time."""
     from distributed import as_completed
 
-    def submit(batch: Batch) -> Any:
-        return client.submit(run_batch, batch, pure=False, retries=RETRIES)
+    def submit(task: Task) -> Any:
+        return client.submit(run_task, task, pure=False, retries=RETRIES)
 
     most = AHEAD * max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
     coming = as_completed([], loop=client.loop)
     out = 0
-    for batch in batches:
-        coming.add(submit(batch))
+    for task in tasks:
+        coming.add(submit(task))
         out += 1
         if out >= most:
-            yield next(coming).result()
+            yield from next(coming).result()
             out -= 1
     for _ in range(out):
-        yield next(coming).result()
+        yield from next(coming).result()
