@@ -112,7 +112,7 @@ def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
         parts = [(numbering.triplets[id(t)], numbering.rotations.get(id(t), 0), weight)
                  for t, weight in zip(body.rotations, body.alpha_r, strict=True)
                  if id(t) in numbering.triplets]
-        key = id(body.body), body.frame, tuple(body.alpha_r)
+        key = id(body.body), body.frame, body.stiffening, tuple(body.alpha_r)
         if key not in limits:
             limits[key] = spin_limit(body, None)
         if parts:
@@ -128,7 +128,8 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
     With options A and B the kinetic energy of a steady spin W is that of the velocities
     ``W axis x x`` of the nodes, so deflections feel the stiffness ``S - W^2 A^T M A`` with
     ``A = skew(axis)`` at positions. Motions that the frame follows are no deflections. One node is
-    taken as the pivot of the rotation: the one that gives the lowest limit.
+    taken as the pivot of the rotation: the one that gives the lowest limit. A body that stiffens
+    has no such limit.
 
     Parameters
     ----------
@@ -146,6 +147,8 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
         if not np.any(axis):
             raise inputs.refusal("axis", axis, "give its direction")
         axis = axis / np.linalg.norm(axis)
+    if body.stiffening:
+        return np.inf
     reduced = body.body
     planar, count = reduced.planar, len(reduced.position_nodes)
     d, size = (2, 1) if planar else (3, 3)

@@ -72,8 +72,8 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
     if kernel.DAMPED not in (None, reduced.damping is not None):
         wrong.append(f"it has {'no' if kernel.DAMPED else 'a'} damping matrix and the kernel reads "
                      f"{'one' if kernel.DAMPED else 'none'}")
-    if INERTIA_OPTIONS[kernel.INERTIA].field and reduced.invariants.slaved > MOST_SLAVED:
-        wrong.append(f"it has {reduced.invariants.slaved} slaved coordinates and the kernel memory "
+    if INERTIA_OPTIONS[kernel.INERTIA].field and body.invariants.slaved > MOST_SLAVED:
+        wrong.append(f"it has {body.invariants.slaved} slaved coordinates and the kernel memory "
                      f"for {MOST_SLAVED}")
     if wrong:
         raise _misfit(body.name, kernel, wrong)
@@ -130,9 +130,8 @@ def counts_of(body: Superelement) -> Counts:
                                  reduced.planar, _width(body))
     if not INERTIA_OPTIONS[body.inertia].field:
         return counts
-    return counts | floating_counts(reduced.planar, _width(body), reduced.invariants.slaved,
-                                    reduced.invariants.resultants,
-                                    reduced.damping is not None)
+    return counts | floating_counts(reduced.planar, _width(body), body.invariants.slaved,
+                                    body.invariants.resultants, reduced.damping is not None)
 
 
 def _width(body: Superelement) -> int:
