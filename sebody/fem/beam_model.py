@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.fem import beam_element
+from sebody.fem.layout import PLANAR, SPATIAL
 from sebody.fem.mass_field import MassField
-from sebody.fem.model import PLANAR, SPATIAL, FEModel, assemble
+from sebody.fem.model import FEModel, assemble
 from sebody.fem.section import StiffnessSection
 
 _IN_PLANE = np.array([0, 1, 5, 6, 7, 11])  # DOFs of an element in the xy plane
@@ -40,7 +41,7 @@ def beam_model(nodes: NDArray, pairs: NDArray, lengths: NDArray, axes: NDArray,
         matrices.append(assemble(elements.dofs, matrix, size))
     return FEModel(*matrices, nodes, node_dofs,
                    mass_field=_mass_field(elements, nodes, pairs, size),
-                   geometric_stiffness=BeamPrestress(elements, size))
+                   geometric_stiffness=BeamPrestress(elements, size), cells=[("line", pairs)])
 
 
 @dataclass(frozen=True, eq=False)

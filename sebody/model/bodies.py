@@ -30,11 +30,12 @@ def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable
     nodes : iterable of Node or str
         One node for each boundary node of the body, in its order.
     frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
-    inertia : {'a', 'b', 'c'}, optional
+    inertia : {'a', 'b', 'c', 'd'}, optional
         By default c, the velocities of the whole displacement field, of bodies that know it:
-        `craig_bampton` returns such bodies where the FE model knows the points of its mass. Else,
-        and with the paper's frames 'mean' and 'mean_small', b, the paper's interpolation of
-        velocities from the boundary nodes.
+        `craig_bampton` returns such bodies where the FE model knows the points of its mass. Of
+        reduced matrices alone d, in which the rigid part of the motion is exact. With the paper's
+        frames 'mean' and 'mean_small' b, the paper's interpolation of velocities from the boundary
+        nodes.
     rotation : (3, 3), planar (2, 2), optional
         Rotates vectors from FE axes to global axes; identity by default.
     frame_node : int

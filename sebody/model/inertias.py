@@ -29,7 +29,7 @@ def chosen_inertia(name: str, body: ReducedBody, frame: str, inertia: str | None
     if body.invariants is None:
         raise InputError(f"superelement {name!r}: inertia {option!r} needs the mass and modes of "
                          "the FE model, and the body has reduced matrices alone: reduce it from a "
-                         "model, or use inertia='b'")
+                         "model, use inertia='d', or use inertia='b' as the paper does")
     return option, body.invariants.stiffens if stiffening is None else stiffening
 
 
@@ -37,20 +37,18 @@ def best_inertia(body: ReducedBody, frame: str) -> str:
     """The most exact option that a body has the constants for, and the frame the rates."""
     if FRAMES[frame].traits.incremental:    # the paper's own frames, with the paper's option
         return "b"
-    if body.invariants is not None:
-        return "c"
-    return "b"      # reduced matrices alone
+    return "d" if body.invariants is None else "c"
 
 
 def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
     """Whether the body is damped and the kernels of its option are not for both kinds."""
-    return body.damping is not None and not options.INERTIA_OPTIONS[inertia].field
+    return body.damping is not None and not options.INERTIA_OPTIONS[inertia].rates
 
 
 def _check_option(inertia: str, frame: str) -> None:
     if not isinstance(inertia, str) or inertia not in INERTIAS:
         raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
-    if options.INERTIA_OPTIONS[inertia].field and FRAMES[frame].traits.incremental:
+    if options.INERTIA_OPTIONS[inertia].rates and FRAMES[frame].traits.incremental:
         raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "
                          f"the state alone, which {frame!r} does not: use one of "
                          f"{_exact_frames()}")

@@ -13,12 +13,13 @@ class Recovery:
 
     Parameters
     ----------
-    shapes : (n_dofs, N)
-        Of the n reduced coordinates, then of those that follow them in second order.
+    shapes : (n_nodes k, N)
+        Node after node, 0 for DOFs that a node does not have: of the n reduced coordinates, then
+        of those that follow them in second order.
     coordinates : (n_nodes, 3), planar (n_nodes, 2)
         FE nodes [length].
     node_dofs : tuple of str
-        DOFs of one node in order, as in `FEModel`.
+        The k DOFs of one node in order, as in `FEModel`.
     """
 
     shapes: NDArray

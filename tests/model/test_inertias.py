@@ -39,12 +39,13 @@ def placed(fe_model, **options):
 
 
 @pytest.mark.parametrize("fe_model, options, expected", [
-    (beam, {}, ("c", True)), (unstressed, {}, ("c", False)), (matrices, {}, ("b", False)),
+    (beam, {}, ("c", True)), (unstressed, {}, ("c", False)), (matrices, {}, ("d", False)),
     (beam, {"frame": "node"}, ("c", True)), (beam, {"frame": "mean"}, ("b", False)),
     (beam, {"frame": "mean_small"}, ("b", False)), (beam, {"stiffening": False}, ("c", False)),
     (beam, {"stiffening": True}, ("c", True)), (beam, {"inertia": "b"}, ("b", False)),
     (beam, {"inertia": "a", "stiffening": False}, ("a", False)),
-    (unstressed, {"inertia": "c"}, ("c", False)), (matrices, {"stiffening": False}, ("b", False))])
+    (unstressed, {"inertia": "c"}, ("c", False)), (matrices, {"stiffening": False}, ("d", False)),
+    (matrices, {"frame": "mean"}, ("b", False)), (matrices, {"inertia": "b"}, ("b", False))])
 def test_what_a_body_gets(fe_model, options, expected):
     body = placed(fe_model(), **options)
     assert (body.inertia, body.stiffening) == expected
