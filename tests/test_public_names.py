@@ -16,7 +16,7 @@ ROOMS = {
                         "at_time", "equilibrium", "final", "integral", "linearize", "maximum",
                         "minimum", "modes", "resume", "rms", "save_state", "spin_limit",
                         "vibrations"},
-    "sebody.results": {"Recording", "Result", "Start", "save_picture"},
+    "sebody.results": {"Field", "Recording", "Result", "Start", "plot", "save_picture"},
     "sebody.fem": {"FEModel", "Section", "StiffnessSection", "circle", "frame", "hexahedral_block",
                    "i_profile", "planar_beam", "rectangle", "straight_beam", "tube"},
     "sebody.reduction": {"ComponentModes", "MeanFace", "ReducedBody", "RigidFace", "body_weights",

@@ -36,7 +36,9 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     if fe_model.mass_field is not None:
         invariants, load_modes = _invariants(body, fe_model, boundary, component, interior)
         shapes = np.hstack([shapes, load_modes])
-    recovery = Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs)
+    recovery = Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
+                        cells=fe_model.cells, labels=fe_model.labels,
+                        outlines=fe_model.outlines)
     return replace(body, invariants=invariants, recovery=recovery)
 
 
