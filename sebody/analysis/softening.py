@@ -55,7 +55,7 @@ def softening(part: Superelement, axis: NDArray, held: Held) -> NDArray:
     """D, (n, n), for a spin about an axis, (3,): a quadratic form of it."""
     traits = INERTIA_OPTIONS[part.inertia]
     if traits.field:
-        return _of_field(part.body, axis, held)
+        return _of_field(part, axis, held)
     carriers = (_rigid_part(part.body, held) if traits.rates else
                 _of_nodes(part.body, traits.material, held))
     return _of_carriers(carriers, axis, held.turn)
@@ -157,12 +157,6 @@ def _lowest(part: Superelement, inertia: Callable[[int], NDArray]) -> float:
     return float(1.0 / np.sqrt(largest)) if largest > 0.0 else np.inf
 
 
-def stiffens(part: Superelement) -> bool:
-    """Whether the body has geometric stiffening."""
-    return (INERTIA_OPTIONS[part.inertia].field and part.body.invariants is not None
-            and part.body.invariants.resultants > 0)
-
-
 def reach(part: Superelement, axis: NDArray) -> float:
     """Part of a spin that stresses the body: by its moments of inertia about a node, 0 to 1.
 
@@ -251,10 +245,10 @@ def _of_carriers(carriers: Carriers, axis: NDArray, turn: NDArray) -> NDArray:
     return D
 
 
-def _of_field(body: ReducedBody, axis: NDArray, held: Held) -> NDArray:
+def _of_field(part: Superelement, axis: NDArray, held: Held) -> NDArray:
     """Option C: of the moment of inertia ``n' . J(z) n'``, and of the stress by the spin."""
-    d = body.coordinates.shape[1]
-    i, n = body.invariants.about(held.pivot[:d]), len(body.mass)
+    body, d = part.body, part.body.coordinates.shape[1]
+    i, n = part.invariants.about(held.pivot[:d]), len(body.mass)
     own = axis[2:] if body.planar else axis
     h = np.einsum("k,l,kln->n", own, own, i.h)
     D = np.einsum("k,l,klmn->mn", own, own, i.J2[..., :n, :n], optimize=True)
