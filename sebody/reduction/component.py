@@ -79,14 +79,13 @@ class ComponentModes:
                        omega_squared=omega_squared[chosen])
 
 
-def check_count(modes: int, interior: ClampedInterior) -> int:
-    """A number of modes that the clamped body has."""
+def check_count(modes: int, interior: ClampedInterior,
+                what: str = "clamped body has {} internal DOFs") -> int:
+    """A number of modes that the body has."""
     modes = inputs.integer(modes, "modes")
     if not 0 <= modes <= interior.count:
-        raise InputError(
-            f"modes is {modes}, but the clamped body has {interior.count} internal DOFs; ask for "
-            f"0 to {interior.count} or refine the FE model"
-        )
+        raise InputError(f"modes is {modes}, but the {what.format(interior.count)}; ask for 0 to "
+                         f"{interior.count} or refine the FE model")
     return modes
 
 

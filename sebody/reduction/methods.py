@@ -133,7 +133,7 @@ class _FreeModes:
         momenta = sparse.csr_array((mass @ self.rigid).T)
         free = ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
                                ties.lengths, ties.name)
-        self.elastic = free.vibrations(check_count(modes, free))[1]
+        self.elastic = free.vibrations(check_count(modes, free, "body has {} elastic modes"))[1]
 
     def component(self, static: ComponentModes, interior: ClampedInterior) -> ComponentModes:
         """The constraint modes and the internal shapes that these modes and inertia loads leave."""
