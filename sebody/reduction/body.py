@@ -13,7 +13,7 @@ from sebody.reduction import checks
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
-from sebody.reduction.summary import summary
+from sebody.reduction.summary import mode_lines, place
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -162,7 +162,17 @@ class ReducedBody:
 
     def summary(self) -> str:
         """Order, mass, frequencies and effective masses of the internal modes, and the notes."""
-        return summary(self)
+        nodes, n = len(self.coordinates), len(self.mass)
+        centre = self.centre_of_mass
+        kept = zip(self.coordinates, self.keeps, strict=True)
+        return "\n".join([
+            f"{nodes} boundary node{'s' * (nodes > 1)}, {n - self.modes} boundary coordinates, "
+            f"{self.modes} internal modes",
+            f"mass {self.total_mass:.6g}, centre of mass {place(centre)}",
+            *(f"boundary node {k} at {place(point)} keeps {keep!r}"
+              for k, (point, keep) in enumerate(kept)),
+            *mode_lines(self.stiffness, self.mass, self.rigid_modes_about(centre), self.modes),
+            *self.notes])
 
     def displacements(self, y: ArrayLike) -> NDArray:
         """Displacements of all FE nodes, with those of second order, (n_nodes, dofs_per_node).
