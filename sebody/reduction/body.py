@@ -190,10 +190,14 @@ class ReducedBody:
         if self.recovery is None:
             raise InputError("the body has no shapes of an FE model, so it knows no displacements "
                              "inside; reduce the FE model with craig_bampton")
-        y = np.asarray(y, dtype=float)
-        following = np.zeros(0) if self.invariants is None else self.invariants.Q @ y @ y / 2
-        field = self.recovery.shapes @ np.concatenate([y, following])
+        field = self.recovery.all_dofs(self.with_followers(np.asarray(y, dtype=float)[None]))
         return field.reshape(len(self.recovery.coordinates), -1)
+
+    def with_followers(self, y: NDArray) -> NDArray:
+        """Reduced coordinates (k, n) with those that follow in second order, (k, N)."""
+        if self.invariants is None:
+            return y
+        return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
 
     def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> "ReducedBody":
