@@ -19,8 +19,9 @@ ROOMS = {
     "sebody.results": {"Field", "Recording", "Result", "Start", "plot", "save_picture"},
     "sebody.fem": {"FEModel", "Section", "StiffnessSection", "circle", "frame", "hexahedral_block",
                    "i_profile", "planar_beam", "rectangle", "straight_beam", "tube"},
-    "sebody.reduction": {"ComponentModes", "MeanFace", "ReducedBody", "RigidFace", "body_weights",
-                         "component_modes", "craig_bampton", "frame_weights"},
+    "sebody.reduction": {"Accuracy", "ComponentModes", "MeanFace", "ReducedBody", "RigidFace",
+                         "body_weights", "component_modes", "craig_bampton", "frame_weights",
+                         "reduce"},
     "sebody.io": set(),
 }
 

@@ -13,6 +13,7 @@ from sebody.reduction import checks
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.summary import mode_lines, place
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -45,6 +46,8 @@ class ReducedBody:
         What inertia option C needs beyond the reduced matrices.
     recovery : Recovery, optional
         Shapes of the FE model, for `displacements`.
+    notes : tuple of str
+        How the body was made, in sentences, for `summary`.
 
     Raises
     ------
@@ -61,6 +64,7 @@ class ReducedBody:
     damping: NDArray | None = None
     invariants: InertiaInvariants | None = None
     recovery: Recovery | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         coordinates = inputs.reals(self.coordinates, "coordinates",
@@ -71,6 +75,11 @@ class ReducedBody:
         names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
         self._store("coordinates", coordinates)
         object.__setattr__(self, "keeps", keeps)
+        remedy = "give a list of texts"
+        notes = inputs.items(self.notes, "notes", remedy)
+        if not all(isinstance(note, str) for note in notes):
+            raise inputs.refusal("notes", self.notes, remedy)
+        object.__setattr__(self, "notes", tuple(notes))
         for name in ("stiffness", "mass"):
             matrix = inputs.reals(getattr(self, name), name, "give a matrix of real numbers")
             checks.check_matrix(name, matrix, names)
@@ -150,6 +159,20 @@ class ReducedBody:
         skew = (moment - moment.T) / 2
         moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
         return _read_only(middle + moments / self.total_mass)
+
+    def summary(self) -> str:
+        """Order, mass, frequencies and effective masses of the internal modes, and the notes."""
+        nodes, n = len(self.coordinates), len(self.mass)
+        centre = self.centre_of_mass
+        kept = zip(self.coordinates, self.keeps, strict=True)
+        return "\n".join([
+            f"{nodes} boundary node{'s' * (nodes > 1)}, {n - self.modes} boundary coordinates, "
+            f"{self.modes} internal modes",
+            f"mass {self.total_mass:.6g}, centre of mass {place(centre)}",
+            *(f"boundary node {k} at {place(point)} keeps {keep!r}"
+              for k, (point, keep) in enumerate(kept)),
+            *mode_lines(self.stiffness, self.mass, self.rigid_modes_about(centre), self.modes),
+            *self.notes])
 
     def displacements(self, y: ArrayLike) -> NDArray:
         """Displacements of all FE nodes, with those of second order, (n_nodes, dofs_per_node).
