@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
-from sebody.io.deck import Deck, read_deck
+from sebody.io.deck import Deck, deck_cells, deck_sets, read_deck
 from sebody.io.reading import Reading
 from sebody.io.text import fault, first_repeated, read_text
 from sebody.io.tied import tied_mass_field
@@ -22,11 +22,6 @@ from sebody.io.triplets import read_triplets
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 _REMEDY = ("run ccx with *FREQUENCY, SOLVER=MATRIXSTORAGE, which writes .sti, .mas and .dof beside "
            "the deck")
-# meshio's names of the cells of solids
-CELLS = {"C3D8": "hexahedron", "C3D8R": "hexahedron", "C3D8I": "hexahedron",
-         "C3D20": "hexahedron20", "C3D20R": "hexahedron20", "C3D4": "tetra", "C3D10": "tetra10",
-         "C3D10T": "tetra10", "C3D6": "wedge", "C3D15": "wedge15"}
-
 
 def read(path: Path) -> Reading:
     """The FE model of a deck and the matrices beside it.
@@ -66,8 +61,8 @@ def read(path: Path) -> Reading:
     notes = {} if field else {"mass_field": "none: the mass matrix is not that of solids whose "
                               "nodes are free or tied by *RIGID BODY"}
     model = FEModel(stiffness, mass, points, dof_map=tuple(dof_map), labels=tuple(order),
-                    node_sets=_sets(deck, index), cells=_cells(deck, index), mass_field=field,
-                    source=f"CalculiX {path.with_suffix('.inp').name}")
+                    node_sets=deck_sets(deck, index), cells=deck_cells(deck, index),
+                    mass_field=field, source=f"CalculiX {path.with_suffix('.inp').name}")
     return Reading(model, rotation_nodes=partners, notes=notes)
 
 
@@ -104,18 +99,3 @@ def _check_directions(rows: NDArray, order: list[int], path: Path) -> None:
                 f"{path.with_suffix('.dof')} has {there[k]} of 3 {what} of node {order[k]}: take "
                 "*BOUNDARY, *EQUATION and *MPC off the body, which must be free, and tie nodes "
                 "with *RIGID BODY")
-
-
-def _sets(deck: Deck, index: dict[int, int]) -> dict[str, list[int]]:
-    return {name: list(dict.fromkeys(index[label] for label in labels if label in index))
-            for name, labels in deck.node_sets.items()}
-
-
-def _cells(deck: Deck, index: dict[int, int]) -> list[tuple[str, NDArray]]:
-    """Connectivity by meshio's names, whose orders of nodes are those of CalculiX."""
-    found: dict[str, list] = {}
-    for elements in deck.elements:
-        if elements.kind in CELLS:
-            found.setdefault(CELLS[elements.kind], []).extend(
-                [index[label] for label in nodes] for nodes in elements.nodes.values())
-    return [(kind, np.array(cells)) for kind, cells in found.items()]

@@ -5,9 +5,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sebody.errors import InputError
 from sebody.io.text import fault, read_text
 
+# meshio's names of the cells of solids, whose orders of nodes are those of CalculiX and Abaqus
+CELLS = {"C3D8": "hexahedron", "C3D8R": "hexahedron", "C3D8I": "hexahedron",
+         "C3D20": "hexahedron20", "C3D20R": "hexahedron20", "C3D4": "tetra", "C3D10": "tetra10",
+         "C3D10M": "tetra10", "C3D6": "wedge", "C3D15": "wedge15"}
 _DEPTH = 10     # of files that include others; more is a circle
 
 
@@ -76,6 +83,22 @@ def read_deck(path: Path) -> Deck:
         raise InputError(f"deck {path} has no *NODE: give the deck that the matrices were "
                          "computed from")
     return deck
+
+
+def deck_sets(deck: Deck, index: dict[int, int]) -> dict[str, list[int]]:
+    """Node sets as node indices."""
+    return {name: list(dict.fromkeys(index[label] for label in labels if label in index))
+            for name, labels in deck.node_sets.items()}
+
+
+def deck_cells(deck: Deck, index: dict[int, int]) -> list[tuple[str, NDArray]]:
+    """Connectivity of the solids by meshio's names."""
+    found: dict[str, list] = {}
+    for elements in deck.elements:
+        if elements.kind in CELLS:
+            found.setdefault(CELLS[elements.kind], []).extend(
+                [index[label] for label in nodes] for nodes in elements.nodes.values())
+    return [(kind, np.array(cells)) for kind, cells in found.items()]
 
 
 def _cards(path: Path, depth: int) -> Iterator[Card]:

@@ -12,6 +12,7 @@ from sebody.files import check_target
 from sebody.io.body_file import TARGET, BodyFile, Mesh, write_body_file
 from sebody.io.interfaces import Interface, boundary_items, parsed
 from sebody.io.reading import Reading
+from sebody.io.reduced import chosen_interfaces
 from sebody.io.registry import read_source
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.craig_bampton import craig_bampton
@@ -34,7 +35,7 @@ def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
         Files that cannot be used, or that hold reduced matrices.
     """
     model = read_source(path, kind).model
-    if isinstance(model, ReducedBody):
+    if isinstance(model, dict):
         raise InputError(f"{path} holds matrices that are reduced already: use import_body")
     return model
 
@@ -80,8 +81,8 @@ def imported(reading: Reading, interfaces: list[Interface], modes: int, *, units
              path: str | Path) -> BodyFile:
     """What is to be written of a reading."""
     model = reading.model
-    if isinstance(model, ReducedBody):
-        raise InputError("reduced sources are not there yet")
+    if isinstance(model, dict):
+        return _reduced(reading, interfaces, modes, units)
     items = boundary_items(model, interfaces, reading.rotation_nodes)
     body = craig_bampton(model, items, modes)
     names = tuple(one.name for one in interfaces)
@@ -91,6 +92,23 @@ def imported(reading: Reading, interfaces: list[Interface], modes: int, *, units
     parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
     mesh = Mesh(model.coordinates, dict(model.cells))
     return BodyFile(parts, names, units or model.units, provenance, mesh)
+
+
+def _reduced(reading: Reading, interfaces: list[Interface], modes: int, units: str) -> BodyFile:
+    """A body that the FE program has reduced, its nodes named."""
+    if modes:
+        raise InputError(f"modes is {modes}, but the files hold matrices that are reduced already, "
+                         f"with {reading.model['modes']} modes: leave modes out")
+    provenance = {"source": reading.source, "method": "reduced by the FE program", **reading.notes}
+    file = BodyFile(reading.model, reading.names, units, provenance)
+    if not interfaces:
+        return file
+    for one in interfaces:
+        if len(one.nodes) != 1 or one.keeps:
+            raise InputError(f"interface {one.name!r}: the body is reduced already, so write "
+                             f"{one.name}=NODE")
+    return chosen_interfaces(file, [str(one.nodes[0]) for one in interfaces],
+                             [one.name for one in interfaces])
 
 
 def rigid_residual(model: FEModel) -> float:

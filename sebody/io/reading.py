@@ -5,7 +5,6 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from sebody.fem.model import FEModel
-from sebody.reduction.body import ReducedBody
 
 
 class Reading(NamedTuple):
@@ -13,16 +12,20 @@ class Reading(NamedTuple):
 
     Parameters
     ----------
-    model : FEModel or ReducedBody
+    model : FEModel or dict
+        An FE model, or the arguments of the `ReducedBody` that the program has made.
     names : tuple of str
         Of the boundary nodes of a reduced body: the labels of the FE program.
     rotation_nodes : dict of label by label
         Labels of nodes that are there for the rotations of another node alone, and of this node.
+    source : str
+        Where a reduced body comes from; an FE model knows it itself.
     notes : dict of str
         For the provenance, such as why there is no geometric stiffness.
     """
 
-    model: FEModel | ReducedBody
+    model: FEModel | dict
     names: tuple[str, ...] = ()
     rotation_nodes: Mapping[int, int] = MappingProxyType({})
+    source: str = ""
     notes: Mapping[str, str] = MappingProxyType({})

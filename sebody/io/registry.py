@@ -1,5 +1,6 @@
 """The table of sources: kinds of files, their readers, and what must be installed for them."""
 
+import re
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
@@ -7,8 +8,9 @@ from typing import NamedTuple
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.io import calculix
+from sebody.io import abaqus, ansys, calculix, matrix_market, nastran
 from sebody.io.reading import Reading
+from sebody.io.text import read_text
 
 
 class Source(NamedTuple):
@@ -24,6 +26,8 @@ class Source(NamedTuple):
         `Reading` of a path.
     summary : str
         For lists.
+    sign : str
+        Regular expression found at the beginning of such a file, where others have its endings.
     needs : str
         Package that must be importable; empty for none.
     extra : str
@@ -34,6 +38,7 @@ class Source(NamedTuple):
     suffixes: tuple[str, ...]
     read: Callable[[Path], Reading]
     summary: str
+    sign: str = ""
     needs: str = ""
     extra: str = ""
 
@@ -41,7 +46,24 @@ class Source(NamedTuple):
 SOURCES = (
     Source("calculix", (".inp", ".sti", ".mas", ".dof"), calculix.read,
            "deck and the matrices of *FREQUENCY, SOLVER=MATRIXSTORAGE beside it"),
+    Source("matrix-market", (".mtx",), matrix_market.read,
+           "NAME_K.mtx, NAME_M.mtx, NAME.mapping and NAME.nodes, as of Ansys HBMAT and NLIST",
+           r"\A%%MatrixMarket"),
+    Source("abaqus-substructure", (".mtx",), abaqus.read_substructure,
+           "*SUBSTRUCTURE MATRIX OUTPUT with the deck beside it; reduced already",
+           r"(?im)^\*USER ELEMENT"),
+    Source("abaqus-matrices", (".mtx",), abaqus.read_generated,
+           "JOB_STIF1.mtx and JOB_MASS1.mtx of *MATRIX GENERATE with the deck JOB.inp"),
+    Source("ansys", (".full",), ansys.read, ".full with the nodes of .rst or .cdb beside it",
+           needs="ansys.mapdl.reader", extra="ansys"),
+    Source("nastran-op4", (".op4",), nastran.read_op4,
+           "OP4 of EXTSEOUT with .asm or bulk data beside it; reduced already",
+           needs="pyyeti", extra="nastran"),
+    Source("nastran-dmig", (".pch", ".op2"), nastran.read_dmig,
+           "DMIG in a punch or OP2 file with GRID cards; reduced already", needs="pyyeti",
+           extra="nastran"),
 )
+_HEAD = 4000        # characters in which a sign is looked for
 
 
 def read_source(path: str | Path, kind: str | None = None) -> Reading:
@@ -76,13 +98,11 @@ def _named(kind: str) -> Source:
 
 
 def _guessed(path: Path) -> Source:
-    """The source of a file by its ending and the files beside it."""
+    """The source of a file by its ending, and its beginning where several have this ending."""
     fits = [source for source in SOURCES if path.suffix.lower() in source.suffixes]
-    for source in fits[1:]:
-        # endings that several programs share: the first is meant unless files of another are there
-        own = [end for end in source.suffixes if end not in fits[0].suffixes]
-        if path.suffix.lower() in own or any(path.with_suffix(end).exists() for end in own):
-            return source
+    if len(fits) > 1:
+        head = read_text(path, "file to import", "give another one")[:_HEAD]
+        fits = [source for source in fits if re.search(source.sign, head)]
     if fits:
         return fits[0]
     known = "; ".join(f"{source.name} ({', '.join(source.suffixes)})" for source in SOURCES)
