@@ -17,7 +17,7 @@ ROOMS = {
     "sebody.results": {"Recording", "Result", "Start", "save_picture"},
     "sebody.fem": {"FEModel", "Section", "StiffnessSection", "circle", "frame", "hexahedral_block",
                    "i_profile", "planar_beam", "rectangle", "straight_beam", "tube"},
-    "sebody.reduction": {"ComponentModes", "ReducedBody", "RigidFace", "body_weights",
+    "sebody.reduction": {"ComponentModes", "MeanFace", "ReducedBody", "RigidFace", "body_weights",
                          "component_modes", "craig_bampton", "frame_weights"},
     "sebody.io": {"BodyFile", "Mesh", "SOURCES", "Source", "import_body", "load_body",
                   "read_body_file", "read_fe_model", "save_body"},

@@ -41,7 +41,7 @@ def beam_model(nodes: NDArray, pairs: NDArray, lengths: NDArray, axes: NDArray,
         matrices.append(assemble(elements.dofs, matrix, size))
     return FEModel(*matrices, nodes, node_dofs,
                    mass_field=_mass_field(elements, nodes, pairs, size),
-                   geometric_stiffness=BeamPrestress(elements, size))
+                   geometric_stiffness=BeamPrestress(elements, size), cells=[("line", pairs)])
 
 
 @dataclass(frozen=True, eq=False)

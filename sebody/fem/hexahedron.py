@@ -11,6 +11,7 @@ from sebody.fem.layout import SOLID
 from sebody.fem.model import FEModel, assemble
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
+_MESHIO = [0, 1, 3, 2, 4, 5, 7, 6]  # the same corners in the order of meshio
 
 
 def hexahedral_block(
@@ -67,7 +68,8 @@ def hexahedral_block(
         for matrix in matrices
     )
     return FEModel(stiffness, mass, nodes, SOLID,
-                   geometric_stiffness=BrickPrestress(dofs, stresses, slopes, 3 * len(nodes)))
+                   geometric_stiffness=BrickPrestress(dofs, stresses, slopes, 3 * len(nodes)),
+                   cells=[("hexahedron", connectivity[:, _MESHIO])])
 
 
 class BrickPrestress:
