@@ -41,7 +41,8 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
 PICTURES = {"plots", "draw", "paper_figures"}       # modules that may import matplotlib
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
-SOURCES = {"nastran": "pyyeti", "ansys": "ansys"}       # readers, and what they may import
+# readers, and what they may import
+SOURCES = {"nastran": "pyyeti", "ansys": "ansys", "ngsolve_space": "ngsolve"}
 
 
 def module(path: Path) -> str:

@@ -19,7 +19,8 @@ ROOMS = {
                    "i_profile", "planar_beam", "rectangle", "straight_beam", "tube"},
     "sebody.reduction": {"ComponentModes", "MeanFace", "ReducedBody", "RigidFace", "body_weights",
                          "component_modes", "craig_bampton", "frame_weights"},
-    "sebody.io": {"BodyFile", "Mesh", "SOURCES", "Source", "import_body", "load_body",
+    "sebody.io": {"BodyFile", "Mesh", "SOURCES", "Source", "from_ngsolve", "from_skfem",
+                  "import_body", "load_body",
                   "read_body_file", "read_fe_model", "save_body"},
 }
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.io.deck import Deck, deck_cells, deck_sets, read_deck
+from sebody.io.prestress import deck_prestress
 from sebody.io.reading import Reading
 from sebody.io.reduced import NAMES, reduced_parts
 from sebody.io.text import fault, read_text
@@ -151,10 +152,15 @@ def read_generated(path: Path) -> Reading:
     stiffness, mass = (_matrix(found, keys) for found in entries)
     index = {label: k for k, label in enumerate(deck.nodes)}
     dof_map = [(index[label], NAMES[direction - 1]) for label, direction in keys.tolist()]
-    model = FEModel(stiffness, mass, np.array(list(deck.nodes.values())), dof_map=dof_map,
-                    labels=np.array(list(deck.nodes)), node_sets=deck_sets(deck, index),
-                    cells=deck_cells(deck, index), source=f"Abaqus {job}")
-    return Reading(model)
+    points = np.array(list(deck.nodes.values()))
+    by_nodes = np.full((len(points), 6), -1)
+    for row, (label, direction) in enumerate(keys.tolist()):
+        by_nodes[index[label], direction - 1] = row
+    geometric, note = deck_prestress(deck, index, points, by_nodes, stiffness)
+    model = FEModel(stiffness, mass, points, dof_map=dof_map, labels=np.array(list(deck.nodes)),
+                    node_sets=deck_sets(deck, index), cells=deck_cells(deck, index),
+                    geometric_stiffness=geometric, source=f"Abaqus {job}")
+    return Reading(model, notes={"geometric stiffness": note})
 
 
 def _entries(path: Path) -> NDArray:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.io.deck import Deck, deck_cells, deck_sets, read_deck
+from sebody.io.prestress import deck_prestress
 from sebody.io.reading import Reading
 from sebody.io.text import fault, first_repeated, read_text
 from sebody.io.tied import tied_mass_field
@@ -58,11 +59,14 @@ def read(path: Path) -> Reading:
     points = np.array([deck.nodes[label] for label in order])
     present = rows[:, 0] >= 0
     field = tied_mass_field(mass, points[present], rows[present])
-    notes = {} if field else {"mass_field": "none: the mass matrix is not that of solids whose "
+    notes = {} if field else {"exact inertia": "none: the mass matrix is not that of solids whose "
                               "nodes are free or tied by *RIGID BODY"}
+    geometric, note = deck_prestress(deck, index, points, rows, stiffness)
+    notes["geometric stiffness"] = note
     model = FEModel(stiffness, mass, points, dof_map=tuple(dof_map), labels=tuple(order),
                     node_sets=deck_sets(deck, index), cells=deck_cells(deck, index),
-                    mass_field=field, source=f"CalculiX {path.with_suffix('.inp').name}")
+                    mass_field=field, geometric_stiffness=geometric,
+                    source=f"CalculiX {path.with_suffix('.inp').name}")
     return Reading(model, rotation_nodes=partners, notes=notes)
 
 

@@ -101,6 +101,11 @@ def deck_cells(deck: Deck, index: dict[int, int]) -> list[tuple[str, NDArray]]:
     return [(kind, np.array(cells)) for kind, cells in found.items()]
 
 
+def material_of(deck: Deck, elements: Elements) -> Material | None:
+    """The material of a group of elements, if a section gives it one."""
+    return deck.materials.get(deck.sections.get(elements.name, ""))
+
+
 def _cards(path: Path, depth: int) -> Iterator[Card]:
     remedy = "give the deck that the matrices were computed from"
     if depth > _DEPTH:

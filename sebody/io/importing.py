@@ -84,7 +84,11 @@ def imported(reading: Reading, interfaces: list[Interface], modes: int, *, units
     if isinstance(model, dict):
         return _reduced(reading, interfaces, modes, units)
     items = boundary_items(model, interfaces, reading.rotation_nodes)
-    body = craig_bampton(model, items, modes)
+    try:
+        body = craig_bampton(model, items, modes)
+    except InputError as error:
+        by_area = any(one.tie == "rbe3" for one in interfaces) and "weights='equal'" in str(error)
+        raise InputError(f"{path}: {error}" + by_area * ", rbe3-equal:SET") from error
     names = tuple(one.name for one in interfaces)
     provenance = {"source": model.source or str(path), "method": f"craig_bampton, {modes} modes",
                   "FE matrices": f"{model.stiffness.shape[0]} rows, |K R| of rigid "

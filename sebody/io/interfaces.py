@@ -9,13 +9,13 @@ import numpy as np
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
-from sebody.reduction.boundary import BoundaryItem, RigidFace
+from sebody.reduction.boundary import BoundaryItem
 from sebody.reduction.checks import KEEPS
+from sebody.reduction.interfaces import MeanFace, RigidFace
 
-REMEDY = ("write name=NODE, name=NODE/NODE where rotations have a node of their own, name=rbe2:SET "
-          "or name=rbe3:SET, with :translation or :rotation behind a node that keeps but these, "
-          "and @x,y,z behind a set whose reference point is not its middle")
-TIES = ("rbe2", "rbe3")
+REMEDY = ("write name=NODE, name=NODE/NODE where rotations have their own node, name=rbe2:SET, "
+          "name=rbe3:SET (by area) or name=rbe3-equal:SET; with @x,y,z, the reference point of "
+          "a set if that is not its middle, and :translation or :rotation to keep these alone")
 
 
 class Interface(NamedTuple):
@@ -27,7 +27,7 @@ class Interface(NamedTuple):
     nodes : tuple of int
         Label of a node, or of two: that of the translations and that of the rotations.
     tie : str
-        'rbe2' or 'rbe3' for a set, else empty.
+        'rbe2', 'rbe3' or 'rbe3-equal' for a set, else empty.
     node_set : str
         Name of the set.
     point : tuple of float
@@ -75,20 +75,24 @@ def parsed(interfaces: Mapping[str, str | int] | Iterable[str]) -> list[Interfac
 def _one(name: str, text: str) -> Interface:
     name = inputs.name(name, "name of an interface").strip()
     text = text.strip()
-    if match := re.fullmatch(r"(rbe2|rbe3):([^@:]+)(?:@([^@:]+))?", text):
-        tie, node_set, place = match.groups()
+    if match := re.fullmatch(r"(rbe2|rbe3|rbe3-equal):([^@:]+)(?:@([^@:]+))?(?::(\w+))?", text):
+        tie, node_set, place, keeps = match.groups()
         try:
             point = tuple(map(float, place.split(","))) if place else ()
         except ValueError as error:
             raise inputs.refusal(f"interface {name!r}", text, REMEDY) from error
-        return Interface(name, tie=tie, node_set=node_set.strip(), point=point)
+        return Interface(name, (), tie, node_set.strip(), point, _keeps(name, text, keeps))
     if match := re.fullmatch(r"(\d+)(?:/(\d+))?(?::(\w+))?", text):
         first, second, keeps = match.groups()
-        if keeps not in (None, *KEEPS):
-            raise inputs.refusal(f"interface {name!r}", text, REMEDY)
         nodes = (int(first),) if second is None else (int(first), int(second))
-        return Interface(name, nodes, keeps=keeps or "")
+        return Interface(name, nodes, keeps=_keeps(name, text, keeps))
     raise inputs.refusal(f"interface {name!r}", text, REMEDY)
+
+
+def _keeps(name: str, text: str, keeps: str | None) -> str:
+    if keeps not in (None, *KEEPS):
+        raise inputs.refusal(f"interface {name!r}", text, REMEDY)
+    return keeps or ""
 
 
 def boundary_items(model: FEModel, interfaces: list[Interface],
@@ -156,7 +160,9 @@ def _tied(model: FEModel, one: Interface) -> BoundaryItem:
     if not nodes:
         raise InputError(f"interface {one.name!r}: node set {one.node_set!r} is empty: name the "
                          "nodes of the face")
+    keeps = one.keeps or "full"
+    if one.tie != "rbe2":
+        place = np.array(one.point) if one.point else None
+        return MeanFace(nodes, place, "area" if one.tie == "rbe3" else "equal"), keeps
     point = np.array(one.point) if one.point else model.coordinates[list(nodes)].mean(axis=0)
-    if one.tie == "rbe3":
-        raise InputError(f"interface {one.name!r}: rbe3 is not there yet: use rbe2")
-    return RigidFace(point, nodes), "full"
+    return RigidFace(point, nodes), keeps

@@ -49,8 +49,8 @@ def tied_mass_field(mass: sparse.csc_array, points: NDArray, rows: NDArray) -> M
     rigid = np.flatnonzero((rows[:, 3:] >= 0).all(axis=1))
     if (rows[:, :3] < 0).any() or (rows[:, 3:] >= 0).any(axis=1).sum() != len(rigid):
         return None
-    length = float(np.ptp(points, axis=0).max()) or 1.0
     moments = _moments(sparse.csr_array(mass), rows, rigid)
+    length = _radius(moments, len(rows), rigid) or float(np.ptp(points, axis=0).max()) or 1.0
     chosen = sparse.csr_array((np.ones(3 * len(rigid)), (np.arange(3 * len(rigid)),
                                                          np.repeat(rigid, 3))),
                               shape=(3 * len(rigid), len(rows)))
@@ -63,6 +63,14 @@ def tied_mass_field(mass: sparse.csc_array, points: NDArray, rows: NDArray) -> M
                       sparse.csr_array(inverse.T @ moments @ inverse))
     defect = abs(field.matrix() - mass)
     return field if defect.max() <= _EXACT * abs(mass).max() else None
+
+
+def _radius(moments: sparse.csr_array, count: int, rigid: NDArray) -> float:
+    """Largest radius of gyration of a rigid part: points as far off are within the body."""
+    masses = moments.diagonal()[rigid]
+    turns = moments.diagonal()[count:].reshape(-1, 3).sum(axis=1)
+    there = (masses > 0) & (turns > 0)
+    return float(np.sqrt(np.max(turns[there] / masses[there], initial=0.0)))
 
 
 def _moments(mass: sparse.csr_array, rows: NDArray, rigid: NDArray) -> sparse.csr_array:

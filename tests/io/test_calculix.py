@@ -70,6 +70,26 @@ def test_mass_of_tied_faces_has_points(beam_deck, beam_body):
                                atol=1e-5 * along)
 
 
+def test_faces_are_tied_here_as_well(beam_deck):
+    """A mean of a face in the middle adds no stiffness: the free beam keeps its frequencies."""
+    model = read_fe_model(beam_deck)
+    x = model.coordinates[:, 0]
+    middle = np.flatnonzero(np.isclose(x, 70.71) & (model.rows[:, 0] >= 0))
+    deck = beam_deck.read_text()
+    listed = ",\n".join(str(model.labels[node]) for node in middle)
+    changed = beam_deck.with_name("se2.inp")
+    changed.write_text(deck.replace("*STEP", f"*NSET, NSET=MID\n{listed}\n*STEP", 1))
+    for suffix in (".sti", ".mas", ".dof"):
+        shutil.copy(beam_deck.with_suffix(suffix), changed.with_suffix(suffix))
+    with pytest.raises(InputError, match="rbe3-equal"):     # no face of the surface is among them
+        import_body(changed, {**INTERFACES, "middle": "rbe3:mid"}, 8)
+    body = import_body(changed, {**INTERFACES, "middle": "rbe3-equal:mid"}, 8)
+    assert body.keeps == ("full",) * 3
+    np.testing.assert_allclose(body.coordinates[2], (70.71, 0, 0), atol=1e-9)
+    found = hertz(body)[:4:2]
+    assert (found > WHOLE[:2]).all() and (found < PAIRS[:2]).all()
+
+
 def test_beams_that_become_solids_are_refused(tmp_path):
     (tmp_path / "b.inp").write_text("*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 2, 0, 0\n")
     # as ccx 2.20 begins the .dof of B32 elements: the nodes of their solids share labels
