@@ -31,7 +31,7 @@ ROOMS = {
     "scenes": {"sebody", "fem", "reduction", "io", "results"},
     "studies": {"kernels", "generated", "engine", "fem", "reduction", "io", "model", "assembly",
                 "results", "analysis", "scenes"},
-    "cli": {"kernels", "io", "sebody", "results", "analysis", "scenes", "studies"},
+    "cli": {"kernels", "reduction", "io", "sebody", "results", "analysis", "scenes", "studies"},
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}

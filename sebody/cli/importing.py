@@ -2,6 +2,12 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sebody.errors import InputError
+
+if TYPE_CHECKING:
+    from sebody.reduction import Accuracy
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -13,10 +19,18 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         dest="interfaces",
                         help="a boundary node, may be repeated: a node's label, two of them 1/2 "
                              "where rotations have a node of their own, rbe2:SET or rbe3:SET")
-    parser.add_argument("--modes", type=int, default=0, metavar="N",
+    parser.add_argument("--modes", type=int, metavar="N",
                         help="number of internal modes (default 0)")
+    parser.add_argument("--accuracy", type=float, metavar="E",
+                        help="in place of --modes: as many as this relative error of the dynamic "
+                             "stiffness of the interfaces needs, up to the frequency --up-to")
+    parser.add_argument("--up-to", type=float, metavar="F", help="end of the band of --accuracy")
+    parser.add_argument("--method", default="craig-bampton", metavar="NAME",
+                        help="craig-bampton (default), guyan, macneal or rubin")
     parser.add_argument("--format", metavar="NAME", help="kind of the files, guessed by default")
     parser.add_argument("--units", default="", metavar="TEXT", help="units, to be kept in the file")
+    parser.add_argument("--unchecked", action="store_true",
+                        help="write also reduced matrices that no model would take, for inspect")
     parser.add_argument("--output", type=Path, required=True, metavar="BODY.npz",
                         help="body file to write")
     return parser
@@ -31,12 +45,27 @@ def run(options: argparse.Namespace) -> int:
     from sebody.io.registry import read_source
 
     check_target(options.output, *TARGET)
+    modes = _modes(options)
     interfaces = parsed(options.interfaces)
-    file = imported(read_source(options.file, options.format), interfaces, options.modes,
-                    units=options.units, path=options.file)
-    file.body()
+    file = imported(read_source(options.file, options.format), interfaces, modes, options.method,
+                    options.units, options.file)
+    body = None if options.unchecked else file.body()
     write_body_file(file, options.output)
     for name, text in file.provenance.items():
-        print(f"{name:20} {text}")
-    print(f"{'body':20} {options.output}")
+        print(f"{name}: {text}")
+    if body:
+        print(body.summary())
+    print(f"body: {options.output}, see 'sebody inspect {options.output}'")
     return 0
+
+
+def _modes(options: argparse.Namespace) -> "int | Accuracy":
+    from sebody.reduction import Accuracy
+
+    if (options.accuracy is None) != (options.up_to is None):
+        raise InputError("--accuracy and --up-to belong together: give --accuracy 1e-3 --up-to F")
+    if options.accuracy is None:
+        return options.modes or 0
+    if options.modes is not None:
+        raise InputError("--accuracy chooses the number of modes: leave out --modes")
+    return Accuracy(options.accuracy, options.up_to)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.files import check_target
@@ -14,8 +15,9 @@ from sebody.io.interfaces import Interface, boundary_items, parsed
 from sebody.io.reading import Reading
 from sebody.io.reduced import chosen_interfaces
 from sebody.io.registry import read_source
+from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.craig_bampton import craig_bampton
+from sebody.reduction.methods import reduce
 from sebody.reduction.rigid import rigid_motions
 
 
@@ -41,7 +43,8 @@ def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
 
 
 def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable[str] = (),
-                modes: int = 0, *, kind: str | None = None, units: str = "",
+                modes: int | Accuracy = 0, method: str = "craig-bampton", *,
+                kind: str | None = None, units: str = "",
                 output: str | Path | None = None) -> ReducedBody:
     """A body of the files of an FE program, as ``sebody import`` makes it.
 
@@ -53,8 +56,10 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
         Boundary nodes in order: the label of a node, two labels ``"1/2"`` where rotations have a
         node of their own, or ``"rbe2:SET"`` and ``"rbe3:SET"`` for named sets. Of files with
         reduced matrices their own boundary nodes, all of them and in their order by default.
-    modes : int
-        Number of internal modes.
+    modes : int or Accuracy
+        Number of internal modes, or what they are to achieve.
+    method : 'craig-bampton', 'guyan', 'macneal' or 'rubin'
+        See `sebody.reduction.reduce`.
     kind : str, optional
         Name of the source, see `SOURCES`; guessed from the files by default.
     units : str
@@ -71,26 +76,26 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     """
     if output is not None:
         check_target(output, *TARGET)
-    file = imported(read_source(path, kind), parsed(interfaces), modes, units=units, path=path)
+    file = imported(read_source(path, kind), parsed(interfaces), modes, method, units, path)
     if output is not None:
         write_body_file(file, output)
     return file.body()
 
 
-def imported(reading: Reading, interfaces: list[Interface], modes: int, *, units: str,
-             path: str | Path) -> BodyFile:
+def imported(reading: Reading, interfaces: list[Interface], modes: int | Accuracy, method: str,
+             units: str, path: str | Path) -> BodyFile:
     """What is to be written of a reading."""
     model = reading.model
     if isinstance(model, dict):
         return _reduced(reading, interfaces, modes, units)
     items = boundary_items(model, interfaces, reading.rotation_nodes)
     try:
-        body = craig_bampton(model, items, modes)
+        body = reduce(model, items, modes, method)
     except InputError as error:
         by_area = any(one.tie == "rbe3" for one in interfaces) and "weights='equal'" in str(error)
         raise InputError(f"{path}: {error}" + by_area * ", rbe3-equal:SET") from error
     names = tuple(one.name for one in interfaces)
-    provenance = {"source": model.source or str(path), "method": f"craig_bampton, {modes} modes",
+    provenance = {"source": model.source or str(path), "method": f"{method}, {body.modes} modes",
                   "FE matrices": f"{model.stiffness.shape[0]} rows, |K R| of rigid "
                   f"motions up to {rigid_residual(model):.4e} of a row's entries", **reading.notes}
     parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
@@ -98,11 +103,12 @@ def imported(reading: Reading, interfaces: list[Interface], modes: int, *, units
     return BodyFile(parts, names, units or model.units, provenance, mesh)
 
 
-def _reduced(reading: Reading, interfaces: list[Interface], modes: int, units: str) -> BodyFile:
+def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accuracy,
+             units: str) -> BodyFile:
     """A body that the FE program has reduced, its nodes named."""
     if modes:
-        raise InputError(f"modes is {modes}, but the files hold matrices that are reduced already, "
-                         f"with {reading.model['modes']} modes: leave modes out")
+        raise InputError(f"modes is {inputs.shown(modes)}, but the files hold matrices that are "
+                         f"reduced already, with {reading.model['modes']} modes: leave modes out")
     provenance = {"source": reading.source, "method": "reduced by the FE program", **reading.notes}
     file = BodyFile(reading.model, reading.names, units, provenance)
     if not interfaces:

@@ -14,6 +14,7 @@ from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.summary import summary
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -46,6 +47,8 @@ class ReducedBody:
         What inertia option C needs beyond the reduced matrices.
     recovery : Recovery, optional
         Shapes of the FE model, for `displacements`.
+    notes : tuple of str
+        How the body was made, in sentences, for `summary`.
 
     Raises
     ------
@@ -62,6 +65,7 @@ class ReducedBody:
     damping: NDArray | None = None
     invariants: InertiaInvariants | None = None
     recovery: Recovery | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         coordinates = inputs.reals(self.coordinates, "coordinates",
@@ -72,6 +76,11 @@ class ReducedBody:
         names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
         self._store("coordinates", coordinates)
         object.__setattr__(self, "keeps", keeps)
+        remedy = "give a list of texts"
+        notes = inputs.items(self.notes, "notes", remedy)
+        if not all(isinstance(note, str) for note in notes):
+            raise inputs.refusal("notes", self.notes, remedy)
+        object.__setattr__(self, "notes", tuple(notes))
         for name in ("stiffness", "mass"):
             matrix = inputs.reals(getattr(self, name), name, "give a matrix of real numbers")
             checks.check_matrix(name, matrix, names)
@@ -137,6 +146,10 @@ class ReducedBody:
         skew = (moment - moment.T) / 2
         moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
         return _read_only(middle + moments / self.total_mass)
+
+    def summary(self) -> str:
+        """Order, mass, frequencies and effective masses of the internal modes, and the notes."""
+        return summary(self)
 
     def displacements(self, y: ArrayLike) -> NDArray:
         """Displacements of all FE nodes, with those of second order, (n_nodes, dofs_per_node).
