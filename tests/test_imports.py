@@ -38,11 +38,12 @@ RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
-PICTURES = {"plots", "drawing", "draw", "paper_figures"}       # modules that may import matplotlib
+PICTURES = {"plots", "drawing", "draw", "picture", "paper_figures"}       # modules that may import matplotlib
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
-# readers, and what they may import
-SOURCES = {"nastran": "pyyeti", "ansys": "ansys", "ngsolve_space": "ngsolve"}
+# readers of files, writers of tables, and what they may import
+SOURCES = {"nastran": "pyyeti", "ansys": "ansys", "ngsolve_space": "ngsolve",
+           "places": "distributed", "table": "pandas"}
 
 
 def module(path: Path) -> str:
@@ -109,7 +110,7 @@ def test_packages_of_others(path):
     allowed = PACKAGES.get(own, RUNTIME) | {"sebody"}
     allowed |= {"matplotlib", "mpl_toolkits"} if path.stem in PICTURES else set()
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()
-    allowed |= {SOURCES[path.stem]} if own == "io" and path.stem in SOURCES else set()
+    allowed |= {SOURCES[path.stem]} if own in ("io", "studies") and path.stem in SOURCES else set()
     allowed |= {"sympy"} if path.stem in FORMULAS else set()
     tops = {name.split(".")[0] for name in imported(path.read_text())}
     unknown = tops - allowed

@@ -30,6 +30,8 @@ def plane():
 def same(one, other):
     if is_dataclass(one):
         return all(same(getattr(one, f.name), getattr(other, f.name)) for f in fields(one))
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(same, one, other))
     return np.array_equal(one, other)
 
 
