@@ -120,8 +120,8 @@ def massless_rotations() -> Finding:
         "nearly massless rotations",
         "A rotation with little inertia has a high frequency, which the scheme damps; the motion "
         "tends to that without it in proportion. Without any its acceleration is undetermined.",
-        "Integrates down to 1e-10 of the beam's own inertia with option B, 1e-8 with D, and refuses "
-        "what has none by name.",
+        "Integrates down to 1e-10 of the beam's own inertia with option B, to 1e-8 with D, and "
+        "refuses what has none by name.",
         "share of the inertia about the axis", "change of the tip, relative", logarithmic="xy")
     shares = np.array([1e-1, 1e-2, 1e-3, 1e-4])
     least = _struck(1e-10)
