@@ -10,8 +10,10 @@ from scipy import sparse
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem import mesh
+from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SOLID, SPATIAL, equal_rows, mapped_rows
 from sebody.fem.mass_field import MassField, nodal_field
+from sebody.fem.stress import SolidStress
 
 SYMMETRY_LIMIT = 1e-8   # difference of entries across the diagonal, relative to its own entries
 
@@ -48,6 +50,8 @@ class FEModel:
         Kind of the elements, by meshio's names, and their nodes.
     source, units : str
         Where the model comes from and its units, in words.
+    stress : sequence of SolidStress or BeamStress
+        What stresses the displacements cause, one for each kind of element; see `solid_stress`.
 
     Raises
     ------
@@ -68,6 +72,7 @@ class FEModel:
     cells: Sequence[tuple[str, NDArray]] = ()
     source: str = ""
     units: str = ""
+    stress: Sequence[SolidStress | BeamStress] = ()
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
 
     def __post_init__(self) -> None:
@@ -90,6 +95,10 @@ class FEModel:
             mesh.cells(self.cells, count)
         for name, value in zip(("labels", "node_sets", "cells"), checked, strict=True):
             object.__setattr__(self, name, value)
+        remedy = "give SolidStress, as solid_stress makes them"
+        object.__setattr__(self, "stress", tuple(
+            inputs.instance(one, "stress", SolidStress | BeamStress, remedy)
+            for one in inputs.items(self.stress, "stress", remedy)))
 
     def _check_nodes(self) -> None:
         """Coordinates, and the rows of every node."""

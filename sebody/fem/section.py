@@ -2,9 +2,28 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 from sebody import inputs
 from sebody.errors import InputError
+
+Row = tuple[float, ...]
+
+
+class Fibre(NamedTuple):
+    """A place in a cross-section where stresses are wanted.
+
+    Parameters
+    ----------
+    y, z : float
+        In principal axes from the centroid [length].
+    stress : ((6,), (6,), (6,))
+        Stresses xx, xy and zx there of unit section forces (N, Qy, Qz, Mx, My, Mz).
+    """
+
+    y: float
+    z: float
+    stress: tuple[Row, Row, Row]
 
 
 @dataclass(frozen=True)
@@ -27,6 +46,8 @@ class StiffnessSection:
         Rotary inertia a length about x, y and z [mass length]; may be zero.
     shear_y, shear_z : float, optional
         Shear stiffnesses for shear forces along y and z [force]; None: no shear deformation.
+    fibres : tuple of Fibre
+        Where stresses are computed.
 
     Raises
     ------
@@ -44,11 +65,13 @@ class StiffnessSection:
     inertia_z: float
     shear_y: float | None = None
     shear_z: float | None = None
+    fibres: tuple[Fibre, ...] = ()
 
     def __post_init__(self) -> None:
+        _check_fibres(self)
         for field in fields(self):
             value = getattr(self, field.name)
-            if value is not None:
+            if value is not None and field.name != "fibres":
                 _check_number(self, field.name, value, field.name.startswith("inertia"))
 
     @property
@@ -94,11 +117,13 @@ class Section:
     poisson_ratio: float
     density: float
     shear_factor: float | tuple[float, float] | None = None
+    fibres: tuple[Fibre, ...] = ()
 
     def __post_init__(self) -> None:
+        _check_fibres(self)
         for field in fields(self):
             value = getattr(self, field.name)
-            if field.name not in ("poisson_ratio", "shear_factor"):
+            if field.name not in ("poisson_ratio", "shear_factor", "fibres"):
                 _check_number(self, field.name, value)
         if isinstance(self.shear_factor, (tuple, list)) and len(self.shear_factor) != 2:
             raise InputError(
@@ -131,7 +156,27 @@ class Section:
             inertia_z=self.density * self.inertia_z,
             shear_y=shear[0],
             shear_z=shear[1],
+            fibres=self.fibres,
         )
+
+    def fibre(self, y: float, z: float, xy: Row = (0.0, 0.0, 0.0),
+              zx: Row = (0.0, 0.0, 0.0)) -> Fibre:
+        """A fibre of this section: ``xx = N / A + z My / I_y - y Mz / I_z``.
+
+        Parameters
+        ----------
+        y, z : float
+            In principal axes from the centroid [length].
+        xy, zx : (3,)
+            Shear stresses there of unit shear forces Qy, Qz and of a unit torque.
+
+        Returns
+        -------
+        Fibre
+            For ``dataclasses.replace(section, fibres=(...))``.
+        """
+        normal = (1 / self.area, 0.0, 0.0, 0.0, z / self.inertia_y, -y / self.inertia_z)
+        return Fibre(y, z, (normal, *((0.0, *shear, 0.0, 0.0) for shear in (xy, zx))))
 
     def _shear_factors(self) -> tuple:
         if isinstance(self.shear_factor, (tuple, list)):
@@ -164,6 +209,17 @@ def part_of(section: AnySection, first: float, last: float) -> AnySection:
     if not callable(section):
         return section
     return lambda place: section(first + place * (last - first))
+
+
+def _check_fibres(section: Section | StiffnessSection) -> None:
+    remedy = "give Fibre, as Section.fibre makes them"
+    what = f"{type(section).__name__}.fibres"
+    found = tuple(inputs.instance(fibre, what, Fibre, remedy)
+                  for fibre in inputs.items(section.fibres, what, remedy))
+    for fibre in found:
+        inputs.vector((fibre.y, fibre.z), what, 2)
+        inputs.array(fibre.stress, what, (3, 6))
+    object.__setattr__(section, "fibres", found)
 
 
 def _check_number(section: object, name: str, value: float, may_be_zero: bool = False) -> None:
