@@ -63,6 +63,13 @@ class Recovery:
         """FE nodes in the axes of the body, (n_nodes, D)."""
         return self.coordinates if self.axes is None else self.coordinates @ self.axes.T
 
+    def has(self, number: int) -> bool:
+        """Whether the node of this number in the FE model is among those that are kept."""
+        if self.nodes is None:
+            return 0 <= number < len(self.coordinates)
+        place = int(np.searchsorted(self.nodes, number))
+        return place < len(self.nodes) and self.nodes[place] == number
+
     def number(self, place: int) -> int:
         """Number in the FE model of a node, by its place among those that are kept."""
         return int(place) if self.nodes is None else int(self.nodes[place])

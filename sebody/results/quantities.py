@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from difflib import get_close_matches
 from functools import partial
 from typing import NamedTuple
 
@@ -14,8 +15,11 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
+from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording, record_counts
+
+FE_NODE = "node inside a body"
 
 
 class NodeQuantity(NamedTuple):
@@ -53,11 +57,28 @@ def look_up(recording: Recording, name: str) -> NDArray:
     found = [one for one in OWNERS if owner in one.names(recording)]
     if found:
         raise InputError(f"{quantity!r} is unknown: " + "; ".join(
-            f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
-    offers = [one.offer.format(names=", ".join(one.names(recording)) or f"any {one.kind}",
-                               quantities=_enumerated(one.quantities)) for one in OWNERS]
+            f"a {one.kind} has {', '.join(one.quantities)}" for one in found)
+            + _near(recording, name))
+    *offers, of_fe_nodes = [one.offer.format(names=_listed(one, recording),
+                                             quantities=_enumerated(one.quantities))
+                            for one in OWNERS]
     raise InputError(f"{name!r} is unknown: {'; '.join(offers)}; of the model "
-                     f"{', '.join(OF_MODEL)}")
+                     f"{', '.join(OF_MODEL)}{of_fe_nodes}{_near(recording, name)}")
+
+
+def _listed(one: Owner, recording: Recording) -> str:
+    """Names of a kind, where its offer lists them."""
+    return ", ".join(one.names(recording) if "{names}" in one.offer else ()) or f"any {one.kind}"
+
+
+def _near(recording: Recording, name: str) -> str:
+    """The names that are spelled most like one."""
+    owner, _, quantity = name.rpartition(".")
+    known = [f"{n}.{q}" for one in OWNERS if one.kind != FE_NODE for n in one.names(recording)
+             for q in one.quantities]
+    known += [f"{owner}.{q}" for q in fields.QUANTITIES if owner in fields.FENodes(recording)]
+    found = get_close_matches(name, [*OF_MODEL, *known], 2, 0.75)
+    return f"; did you mean {' or '.join(found)}?" if found else ""
 
 
 def _enumerated(names: Iterable[str]) -> str:
@@ -188,4 +209,7 @@ OWNERS = (
     Owner("source of work", "of {names} {quantities}",
           lambda recording: recording.numbering.port_names,
           {"work": forces.work, "power": forces.power}),
+    # the last one: its names are too many to be searched for names like another
+    Owner(FE_NODE, "; of FE nodes, <body>.node<k>, {quantities}", fields.FENodes,
+          {name: partial(fields.of_fe_node, name) for name in fields.QUANTITIES}),
 )
