@@ -38,7 +38,7 @@ RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
-PICTURES = {"plots", "draw", "paper_figures"}       # modules that may import matplotlib
+PICTURES = {"plots", "drawing", "draw", "paper_figures"}       # modules that may import matplotlib
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 

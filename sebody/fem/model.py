@@ -50,6 +50,8 @@ class FEModel:
         Kind of the elements, by meshio's names, and their nodes.
     source, units : str
         Where the model comes from and its units, in words.
+    outlines : (n_lines, corners, 3), optional
+        Edges of the sections of the cells of kind line, about their axes, for pictures [length].
     stress : sequence of SolidStress or BeamStress
         What stresses the displacements cause, one for each kind of element; see `solid_stress`.
 
@@ -72,6 +74,7 @@ class FEModel:
     cells: Sequence[tuple[str, NDArray]] = ()
     source: str = ""
     units: str = ""
+    outlines: NDArray | None = None
     stress: Sequence[SolidStress | BeamStress] = ()
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
 
@@ -95,6 +98,11 @@ class FEModel:
             mesh.cells(self.cells, count)
         for name, value in zip(("labels", "node_sets", "cells"), checked, strict=True):
             object.__setattr__(self, name, value)
+        if self.outlines is not None:
+            lines = sum(len(nodes) for kind, nodes in self.cells if kind == "line")
+            object.__setattr__(self, "outlines", inputs.array(
+                self.outlines, "outlines", (lines, None, 3),
+                remedy=f"give corners (x, y, z) for each of the {lines} cells of kind line"))
         remedy = "give SolidStress, as solid_stress makes them"
         object.__setattr__(self, "stress", tuple(
             inputs.instance(one, "stress", SolidStress | BeamStress, remedy)

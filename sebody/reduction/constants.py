@@ -35,7 +35,8 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary, bas
         invariants, load_modes = _invariants(body, fe_model, boundary, basis, interior)
         shapes = np.hstack([basis, load_modes])
     recovery = Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
-                        cells=fe_model.cells, labels=fe_model.labels, stress=fe_model.stress)
+                        cells=fe_model.cells, labels=fe_model.labels, stress=fe_model.stress,
+                        outlines=fe_model.outlines)
     if fe_model.stress:
         static = static_correction(fe_model, basis, body, interior)
         recovery = replace(recovery, static=fe_model.by_nodes(static))

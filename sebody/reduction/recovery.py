@@ -30,7 +30,7 @@ class Recovery:
         Rotates vectors from FE axes to axes of the body.
     by : (n, n), optional
         The same of the reduced coordinates.
-    cells, labels
+    cells, labels, outlines
         As in `FEModel`.
     stress : tuple of SolidStress, BeamStress or StressModes
         What stresses the displacements cause, of those of the first n shapes.
@@ -49,6 +49,7 @@ class Recovery:
     by: NDArray | None = None
     cells: tuple[tuple[str, NDArray], ...] = ()
     labels: NDArray | None = None
+    outlines: NDArray | None = None
     stress: tuple[SolidStress | BeamStress | StressModes, ...] = ()
     static: NDArray | None = None
     nodes: NDArray | None = None
@@ -111,12 +112,14 @@ class Recovery:
         rows = (len(self.node_dofs) * nodes[:, None] + np.arange(len(self.node_dofs))).ravel()
         cells = tuple((kind, place[own[np.all(place[own] >= 0, axis=1)]])
                       for kind, own in self.cells)
+        lines = [np.all(place[own] >= 0, axis=1) for kind, own in self.cells if kind == "line"]
+        outlines = self.outlines if self.outlines is None else self.outlines[np.concatenate(lines)]
         stress = tuple(found for one in self.stress
                        if len((found := one.restricted(place, self.coordinates[nodes])).nodes))
         return replace(
             self, shapes=self.shapes[rows], coordinates=self.coordinates[nodes],
             cells=tuple(cell for cell in cells if len(cell[1])), stress=stress,
-            labels=None if self.labels is None else self.labels[nodes],
+            labels=None if self.labels is None else self.labels[nodes], outlines=outlines,
             static=None if self.static is None else self.static[rows],
             nodes=nodes if self.nodes is None else self.nodes[nodes])
 

@@ -20,6 +20,7 @@ from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording, record_counts
 
 FE_NODE = "node inside a body"
+ALIKE = 0.75            # ratio of `difflib` from which a name is near another
 
 
 class NodeQuantity(NamedTuple):
@@ -55,15 +56,18 @@ def look_up(recording: Recording, name: str) -> NDArray:
         if quantity in one.quantities and owner in one.names(recording):
             return one.quantities[quantity](recording, owner)
     found = [one for one in OWNERS if owner in one.names(recording)]
+    inside = fields.QUANTITIES if owner in fields.FENodes(recording) else ()
+    near = get_close_matches(name, [*names(recording), *(f"{owner}.{q}" for q in inside)],
+                             cutoff=ALIKE)
+    meant = f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
     if found:
         raise InputError(f"{quantity!r} is unknown: " + "; ".join(
-            f"a {one.kind} has {', '.join(one.quantities)}" for one in found)
-            + _near(recording, name))
+            f"a {one.kind} has {', '.join(one.quantities)}" for one in found) + meant)
     *offers, of_fe_nodes = [one.offer.format(names=_listed(one, recording),
                                              quantities=_enumerated(one.quantities))
                             for one in OWNERS]
     raise InputError(f"{name!r} is unknown: {'; '.join(offers)}; of the model "
-                     f"{', '.join(OF_MODEL)}{of_fe_nodes}{_near(recording, name)}")
+                     f"{', '.join(OF_MODEL)}{of_fe_nodes}{meant}")
 
 
 def _listed(one: Owner, recording: Recording) -> str:
@@ -71,14 +75,12 @@ def _listed(one: Owner, recording: Recording) -> str:
     return ", ".join(one.names(recording) if "{names}" in one.offer else ()) or f"any {one.kind}"
 
 
-def _near(recording: Recording, name: str) -> str:
-    """The names that are spelled most like one."""
-    owner, _, quantity = name.rpartition(".")
-    known = [f"{n}.{q}" for one in OWNERS if one.kind != FE_NODE for n in one.names(recording)
-             for q in one.quantities]
-    known += [f"{owner}.{q}" for q in fields.QUANTITIES if owner in fields.FENodes(recording)]
-    found = get_close_matches(name, [*OF_MODEL, *known], 2, 0.75)
-    return f"; did you mean {' or '.join(found)}?" if found else ""
+def names(recording: Recording) -> list[str]:
+    """Names of all quantities there are, but those of FE nodes: of the model, then by owner."""
+    return list(OF_MODEL) + list(dict.fromkeys(
+        f"{owner}.{quantity}" for one in OWNERS if one.kind != FE_NODE
+        for owner in one.names(recording)
+        for quantity in one.quantities if _has(recording, one.kind, owner, quantity)))
 
 
 def _enumerated(names: Iterable[str]) -> str:
@@ -213,3 +215,27 @@ OWNERS = (
     Owner(FE_NODE, "; of FE nodes, <body>.node<k>, {quantities}", fields.FENodes,
           {name: partial(fields.of_fe_node, name) for name in fields.QUANTITIES}),
 )
+
+
+def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
+    """Whether an owner of a kind has one of the quantities of this kind."""
+    model = recording.model
+    place = "rotation" if quantity.endswith("moment") else "position"
+    if kind == "node":
+        triplet = getattr(model.nodes[owner], "rotation" if OF_NODE[quantity].rotational else
+                          "position")
+        return (triplet is not None and id(triplet) in recording.numbering.triplets
+                and (triplet.fixed or not quantity.startswith("reaction")))
+    if quantity == "modes":
+        return owner in model.bodies and model.bodies[owner].body.modes > 0
+    if kind == "node of a body":
+        body, node = forces.nodes_of_bodies(recording)[owner]
+        return (node, place) in forces.bodies(recording)[body].places
+    if quantity == "multipliers":
+        return bool(forces.joints(recording)[owner].constraints)
+    if kind == "drive":
+        return (quantity == "torque") == (forces.driven(forces.drives(recording)[owner])
+                                          == "rotation")
+    if kind == "spring or load":
+        return any(kept == place for _, kept in forces.loads(recording)[owner].places)
+    return True
