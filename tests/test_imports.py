@@ -39,6 +39,7 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 PICTURES = {"plots", "drawing", "draw", "paper_figures"}       # modules that may import matplotlib
+OTHERS = {"hdf5": {"h5py"}, "tables": {"pandas", "xarray"}, "vtk_series": {"meshio"}}   # extras
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 
@@ -108,6 +109,7 @@ def test_packages_of_others(path):
     allowed |= {"matplotlib"} if path.stem in PICTURES else set()
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()
     allowed |= {"sympy"} if path.stem in FORMULAS else set()
+    allowed |= OTHERS.get(path.stem, set()) if own == "results" else set()
     tops = {name.split(".")[0] for name in imported(path.read_text())}
     unknown = tops - allowed
     assert unknown <= (set() if own == "generated" else set(sys.stdlib_module_names)), unknown
