@@ -38,7 +38,8 @@ RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
-PICTURES = {"plots", "drawing", "draw", "paper_figures"}       # modules that may import matplotlib
+# modules that may import matplotlib
+PICTURES = {"plots", "frequency_pictures", "drawing", "draw", "paper_figures"}
 OTHERS = {"hdf5": {"h5py"}, "tables": {"pandas", "xarray"}, "vtk_series": {"meshio"}}   # extras
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn

@@ -58,7 +58,8 @@ class Result(Recording):
                                   rotations, then modes
     ``<body>.modes``              (n, m) of a superelement
     ``<body>.node<k>.velocity``   (n, 3) of an FE node inside a superelement: position, velocity,
-                                  acceleration, displacement, stress (n, 6), von_mises (n,); `field`
+                                  acceleration, displacement, stress (n, 6), von_mises (n,), of
+                                  beams section_forces (n, ends of elements, 6); see `field`
     ============================  ==================================================================
     """
 

@@ -7,6 +7,7 @@ OF_QUANTITY = {
     "reaction": "force", "force": "force", "local_force": "force", "thrust": "force",
     "reaction_moment": "force length", "moment": "force length", "local_moment": "force length",
     "torque": "force length", "power": "force length/time", "work": "force length",
+    "section_forces": "force, from the fourth on force length",
     "stress": "force/length^2", "von_mises": "force/length^2",
 }
 OF_MODEL = {
