@@ -25,7 +25,7 @@ ROOMS = {
     "io": {"fem", "reduction"},
     "model": {"kernels", "generated", "fem", "reduction", "io"},    # of generated the options alone
     "assembly": {"kernels", "generated", "engine", "reduction", "model"},   # the options likewise
-    "results": {"kernels", "engine", "reduction", "model", "assembly"},
+    "results": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly"},
     "analysis": {"kernels", "generated", "engine", "reduction", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "io", "results"},
@@ -38,7 +38,9 @@ RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
-PICTURES = {"plots", "drawing", "draw", "picture", "paper_figures"}       # modules that may import matplotlib
+# modules that may import matplotlib
+PICTURES = {"plots", "frequency_pictures", "drawing", "draw", "picture", "paper_figures"}
+OTHERS = {"hdf5": {"h5py"}, "tables": {"pandas", "xarray"}, "vtk_series": {"meshio"}}   # extras
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # readers of files, writers of tables, and what they may import
@@ -112,6 +114,7 @@ def test_packages_of_others(path):
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()
     allowed |= {SOURCES[path.stem]} if own in ("io", "studies") and path.stem in SOURCES else set()
     allowed |= {"sympy"} if path.stem in FORMULAS else set()
+    allowed |= OTHERS.get(path.stem, set()) if own == "results" else set()
     tops = {name.split(".")[0] for name in imported(path.read_text())}
     unknown = tops - allowed
     assert unknown <= (set() if own == "generated" else set(sys.stdlib_module_names)), unknown
