@@ -38,7 +38,9 @@ RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
-PICTURES = {"plots", "drawing", "draw", "paper_figures"}       # modules that may import matplotlib
+# modules that may import matplotlib, or packages of films
+PICTURES = {"plots", "drawing", "film", "draw", "paper_figures"}
+FILMS = {"film": {"PIL", "imageio"}}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 
@@ -106,6 +108,7 @@ def test_packages_of_others(path):
     own = room(module(path))
     allowed = PACKAGES.get(own, RUNTIME) | {"sebody"}
     allowed |= {"matplotlib"} if path.stem in PICTURES else set()
+    allowed |= FILMS.get(path.stem, set())
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()
     allowed |= {"sympy"} if path.stem in FORMULAS else set()
     tops = {name.split(".")[0] for name in imported(path.read_text())}

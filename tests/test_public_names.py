@@ -14,7 +14,7 @@ ROOMS = {
                "simulate_within", "spline", "trapezoidal", "with_corners"},
     "sebody.analysis": {"Linearization", "Modes", "Vibrations", "equilibrium", "linearize",
                         "modes", "resume", "save_state", "spin_limit", "vibrations"},
-    "sebody.results": {"Field", "Recording", "Result", "Start", "plot", "save_picture"},
+    "sebody.results": {"Field", "Recording", "Result", "Start", "animate", "plot", "save_picture"},
     "sebody.fem": {"FEModel", "Section", "StiffnessSection", "circle", "frame", "hexahedral_block",
                    "i_profile", "planar_beam", "rectangle", "straight_beam", "tube"},
     "sebody.reduction": {"ComponentModes", "ReducedBody", "RigidFace", "body_weights",

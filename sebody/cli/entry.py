@@ -7,10 +7,11 @@ import sys
 import warnings
 from collections.abc import Sequence
 
-from sebody.cli import atlas, bench, chart, check, interrupts, listing, plot, run, warm
+from sebody.cli import animate, atlas, bench, chart, check, interrupts, listing, plot, run, warm
 from sebody.errors import InputError, SebodyError
 
-COMMANDS = (run, listing, plot, check, bench, chart, atlas, warm)     # in the order of the help
+# in the order of the help
+COMMANDS = (run, listing, plot, animate, check, bench, chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
