@@ -156,7 +156,7 @@ def test_without_webgl(beam, folder, chrome):
     path = animate(beam, folder / "beam.html")
     path.write_text(path.read_text().replace('getContext("webgl2"', 'getContext("webgl9"'))
     chrome.call("Page.navigate", url=path.as_uri())
-    chrome.wait("!document.getElementById('failure')?.hidden")
+    chrome.wait("document.getElementById('failure')?.hidden === false")
     said = chrome.value("document.getElementById('failure').textContent")
     assert said == ("The animation cannot be shown: this browser offers no WebGL 2, which draws "
                     "the model.")
