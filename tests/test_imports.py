@@ -25,7 +25,7 @@ ROOMS = {
     "io": {"fem"},
     "model": {"kernels", "generated", "fem", "reduction"},     # of generated the options alone
     "assembly": {"kernels", "generated", "engine", "reduction", "model"},   # the options likewise
-    "results": {"kernels", "engine", "reduction", "model", "assembly"},
+    "results": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly"},
     "analysis": {"kernels", "engine", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "results"},

@@ -14,6 +14,7 @@ from sebody.reduction.integrals import MassIntegrals
 from sebody.reduction.invariant_checks import CONTRADICTION_LIMIT
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.static_correction import static_correction
 from sebody.reduction.stiffening import GeometricStiffness, Stiffening
 
 _ASYMMETRY = 1e-8  # of a geometric stiffness, relative to its largest entry
@@ -34,8 +35,11 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary, bas
         invariants, load_modes = _invariants(body, fe_model, boundary, basis, interior)
         shapes = np.hstack([basis, load_modes])
     recovery = Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
-                        cells=fe_model.cells, labels=fe_model.labels,
+                        cells=fe_model.cells, labels=fe_model.labels, stress=fe_model.stress,
                         outlines=fe_model.outlines)
+    if fe_model.stress:
+        static = static_correction(fe_model, basis, body, interior)
+        recovery = replace(recovery, static=fe_model.by_nodes(static))
     return replace(body, invariants=invariants, recovery=recovery)
 
 

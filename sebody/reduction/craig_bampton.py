@@ -65,6 +65,7 @@ def craig_bampton(
     boundary: Mapping[int | RigidFace, str] | Iterable[BoundaryItem],
     modes: int,
     select: Sequence[int] | None = None,
+    recover: Sequence[int] | None = None,
 ) -> ReducedBody:
     """Superelement of an FE model; no modes gives Guyan's reduction.
 
@@ -83,6 +84,9 @@ def craig_bampton(
     select : sequence of int, optional
         Which of these modes to keep, counted from 0; default all. Modes that the motion cannot
         excite (out of plane, torsion) can be left out.
+    recover : sequence of int, optional
+        FE nodes whose motion and stress shall be known afterwards, of a large model; all by
+        default. Stresses need all nodes of the elements around.
 
     Raises
     ------
@@ -96,7 +100,8 @@ def craig_bampton(
                                            select)
     stiffness, mass = component.project(fe_model.stiffness, fe_model.mass)
     body = ReducedBody(stiffness, mass, edge.coordinates, edge.keeps, len(component.omega_squared))
-    return with_constants(body, fe_model, edge, component.basis, interior)
+    body = with_constants(body, fe_model, edge, component.basis, interior)
+    return body if recover is None else body.recovering(recover)
 
 
 def component_modes(

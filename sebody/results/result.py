@@ -6,11 +6,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
 from sebody.files import check_target, replacing
 from sebody.results.advice import kernels_that_pay
 from sebody.results.energy_balance import energy_balance
 from sebody.results.field import Field
+from sebody.results.field_quantities import field_of
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
@@ -51,6 +53,8 @@ class Result(Recording):
     ``<body>.forces``             (n, coordinates) the same of all its places: positions, then
                                   rotations, then modes
     ``<body>.modes``              (n, m) of a superelement
+    ``<body>.node<k>.velocity``   (n, 3) of an FE node inside a superelement: position, velocity,
+                                  acceleration, displacement, stress (n, 6), von_mises (n,); `field`
     ============================  ==================================================================
     """
 
@@ -96,7 +100,8 @@ class Result(Recording):
         InputError
             No such superelement, or one without the shapes of an FE model.
         """
-        return Field(self, name)
+        inputs.name(name, "name of a superelement")
+        return field_of(self, name)
 
     def energy_balance(self) -> float:
         """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
