@@ -27,7 +27,7 @@ FEWEST_FRAMES = 201
 NUMBERS = 3_000_000     # of all frames together, beyond which models have fewer of them
 SEEN = 1e-5             # of the model's extent: smaller steps of a place are not seen
 SIGN = 0.018            # size of signs, of the extent
-ROOM = 1.15             # of what is seen at the start, over what moves
+ROOM = 1.0              # of what is seen at the start, over what moves
 SAMPLED = 200           # frames at which the largest displacement is looked for
 REAL_TIME = (2.0, 120.0)        # durations that are played at their own speed
 SECONDS = 10.0          # that the others take
@@ -107,7 +107,7 @@ def check_animation(output: str | Path) -> Path:
 def page(result: Result, quantities: Sequence[str], title: str,
          speed: float | None = None) -> str:
     """The text of the page."""
-    drawn = scenery(result, _most_frames(result))
+    drawn = scenery(result, _most_frames(result), stressed=True)
     plots = panels({"the result": result}, quantities)
     header, blocks = _header(result, drawn, plots)
     header["speed"] = speed or _speed(drawn.t)
@@ -138,11 +138,13 @@ def _header(result: Result, drawn: Scenery, plots: list[Panel]) -> tuple[dict, B
     size, middle = extent(drawn.nodes), _middle(drawn)
     number = {name: k for k, name in enumerate(drawn.nodes)}
     largest = max((_largest(body) for body in drawn.bodies), default=0.0)
+    stress = max((float(body.stress.max()) for body in drawn.bodies if body.stress is not None),
+                 default=0.0)
     grounds = {node.name for node in result.model.grounds} - set(result.model.nodes)
     header = {
         "about": _about(result, drawn),
         "t": blocks.values(drawn.t[:, None], 1e-6 * np.ptp(drawn.t)),
-        "bodies": [_body(blocks, body, middle, size) for body in drawn.bodies],
+        "bodies": [_body(blocks, body, middle, size, stress) for body in drawn.bodies],
         "nodes": [{"name": node.name, "ground": node.name in grounds,
                    "position": blocks.values((node.position - middle) / size, SEEN),
                    "rotation": None if node.rotation is None else blocks.values(node.rotation)}
@@ -154,13 +156,14 @@ def _header(result: Result, drawn: Scenery, plots: list[Panel]) -> tuple[dict, B
                   for sign in drawn.signs],
         "sign": SIGN, "view": _view(drawn, middle, size),
         "trace": number[drawn.farthest],
-        "largest": {"displacement": largest / size}, "units": {"displacement": size},
+        "largest": {"displacement": largest / size, "stress": stress},
+        "units": {"displacement": size, "stress": 1.0},
         "plots": [_plot(blocks, plot, drawn.states) for plot in plots if plot.kind == "history"],
     }
     return header, blocks
 
 
-def _body(blocks: Blocks, body: DrawnBody, middle: NDArray, size: float) -> dict:
+def _body(blocks: Blocks, body: DrawnBody, middle: NDArray, size: float, stress: float) -> dict:
     surface, modes = body.surface, body.amplitudes.shape[1]
     turning = modes and np.any(surface.turns)
     # rows: components of stations, columns: amplitudes
@@ -175,7 +178,9 @@ def _body(blocks: Blocks, body: DrawnBody, middle: NDArray, size: float) -> dict
             "triangles": blocks.indices(surface.triangles), "edges": blocks.indices(surface.edges),
             "origin": blocks.values((body.origin - middle) / size, SEEN),
             "rotation": blocks.values(body.rotation),
-            "amplitudes": blocks.values(body.amplitudes)}
+            "amplitudes": blocks.values(body.amplitudes),
+            "stress": (blocks.colours(body.stress / stress)
+                       if body.stress is not None and stress > 0 else None)}
 
 
 def _plot(blocks: Blocks, plot: Panel, states: NDArray) -> dict:

@@ -1,7 +1,7 @@
 """Arrays as blocks of whole numbers in one stretch of bytes, which the page of an animation reads.
 
 Each column of an array is stored in steps of its own range, 16 bits a number; 32 bits where steps
-of 16 bits would be seen. Columns that do not change are not stored.
+of 16 bits would be seen, 8 for colours. Columns that do not change are not stored.
 """
 
 import numpy as np
@@ -38,6 +38,11 @@ class Blocks:
         whole = np.rint((array[:, varying] - low[varying]) / step).astype(kind)
         return self._block(whole, {"shape": list(array.shape), "low": low.tolist(),
                                    "step": step.tolist(), "varying": varying.tolist()})
+
+    def colours(self, array: NDArray) -> dict:
+        """A block of (rows, columns) of numbers from 0 to 1, to 1/255."""
+        whole = np.rint(255 * np.asarray(array)).astype("u1")
+        return self._block(whole, {"shape": list(whole.shape)})
 
     def indices(self, array: NDArray) -> dict:
         """A block of whole numbers >= 0."""

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
+from sebody.fem.stress import von_mises
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Joint, Node, Superelement
 from sebody.results.motion import body_motion
@@ -16,6 +17,7 @@ from sebody.results.surface import Surface, box, surface_of
 
 NEGLIGIBLE = 1e-7       # of the model's extent: smaller displacements by an amplitude are left out
 THINNEST = 0.004        # of the model's extent: half of a section, smaller ones are drawn larger
+STRESSES = 1_000_000    # stresses of nodes in frames that are computed
 FLAT = 0.03             # share of the largest extent below which a motion is in a plane
 SPRINGS = "spring", "planar_spring"
 SLIDING = "slider", "prismatic", "cylindrical", "planar"
@@ -31,6 +33,7 @@ class DrawnBody(NamedTuple):
     origin: NDArray         # (frames, 3)
     rotation: NDArray       # (frames, 4) quaternions, the real part last
     amplitudes: NDArray     # (frames, N)
+    stress: NDArray | None = None   # (some frames at even distances, stations), von Mises
 
 
 class DrawnNode(NamedTuple):
@@ -78,8 +81,8 @@ class Scenery(NamedTuple):
             np.ptp(self.nodes[name].position, axis=0)))
 
 
-def scenery(result: Result, most: int) -> Scenery:
-    """The scenery of a result in at most so many of its recorded states.
+def scenery(result: Result, most: int, stressed: bool = False) -> Scenery:
+    """The scenery of a result in at most so many of its recorded states, stresses if wanted.
 
     Raises
     ------
@@ -99,6 +102,8 @@ def scenery(result: Result, most: int) -> Scenery:
     size = extent(nodes)
     bodies = [body for part in model.bodies.values()
               if (body := _flexible(result, part, states, size)) is not None]
+    if stressed:
+        bodies = [body._replace(stress=_stress(result, body, states)) for body in bodies]
     bodies += [_rigid(model, part, nodes) for part in model.rigid_bodies.values()
                if part.kind.endswith("rigid_body")]
     return Scenery(result.t[states], states, bodies, nodes,
@@ -173,6 +178,23 @@ def _flexible(result: Result, body: Superelement, states: NDArray, size: float
     surface = surface._replace(moves=surface.moves[kept], turns=surface.turns[kept])
     return DrawnBody(body.name, surface, _spatial(motion.origin), quaternions(motion.rotation),
                      amplitudes[:, kept])
+
+
+def _stress(result: Result, body: DrawnBody, states: NDArray) -> NDArray | None:
+    """Von Mises's stress at the stations, of fewer frames where there are many nodes."""
+    if not result.model.bodies[body.name].body.recovery.stress:
+        return None
+    field = result.field(body.name)
+    stresses = field.stresses(True)
+    stride = max(1, -(-len(states) * field.count // STRESSES))
+    chosen, surface = states[::stride], body.surface
+    found = np.zeros((len(chosen), len(surface.points)))
+    for first in range(0, len(chosen), stresses.states_at_once):
+        some = slice(first, first + stresses.states_at_once)
+        nodes = np.nan_to_num(von_mises(stresses.at_nodes(chosen[some])))
+        one, other = nodes[:, surface.nodes[:, 0]], nodes[:, surface.nodes[:, 1]]
+        found[some] = one + surface.shares * (other - one)
+    return found
 
 
 def _rigid(model: Mechanism, body: Element, nodes: dict[str, DrawnNode]) -> DrawnBody:

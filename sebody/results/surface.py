@@ -37,6 +37,8 @@ class Surface(NamedTuple):
     offsets: NDArray        # (vertices, 3) from the station, turning with it
     triangles: NDArray      # (triangles, 3) of vertices
     edges: NDArray          # (edges, 2) of vertices: those of elements
+    nodes: NDArray          # (stations, 2) FE nodes that a station is between
+    shares: NDArray         # (stations,) part of the way from the first to the second
 
 
 def surface_of(recovery: Recovery, amplitudes: int) -> Surface | None:
@@ -82,7 +84,7 @@ def box(sides: NDArray, centre: NDArray, axes: NDArray) -> Surface:
     points = centre + (corners * sides) @ axes.T
     none = np.zeros((0, 8, 3))
     return Surface(points, none, none, np.arange(8), np.zeros((8, 3)), _triangles(quads),
-                   _edges(quads))
+                   _edges(quads), np.zeros((8, 2), dtype=int), np.zeros(8))
 
 
 def _skin(points: NDArray, moves: NDArray, faces: list[NDArray]) -> Surface:
@@ -95,7 +97,8 @@ def _skin(points: NDArray, moves: NDArray, faces: list[NDArray]) -> Surface:
     moves = moves[:, used]
     return Surface(points[used], moves, np.zeros_like(moves), np.arange(len(used)),
                    np.zeros((len(used), 3)), np.concatenate([_triangles(f) for f in places]),
-                   np.concatenate([_edges(f) for f in places]))
+                   np.concatenate([_edges(f) for f in places]),
+                   np.column_stack([used, used]), np.zeros(len(used)))
 
 
 def _beams(points: NDArray, moves: NDArray, turns: NDArray, pairs: NDArray,
@@ -119,7 +122,8 @@ def _beams(points: NDArray, moves: NDArray, turns: NDArray, pairs: NDArray,
             for at, node in ((0, pair[0]), (-1, pair[1])) if degree[node] != 2]
     triangles = np.concatenate([_triangles(sides.reshape(-1, 4)), *ends])
     return Surface(along, moved, turned, np.repeat(np.arange(rings), corners), offsets,
-                   triangles, np.zeros((0, 2), dtype=int))
+                   triangles, np.zeros((0, 2), dtype=int), np.repeat(pairs, pieces + 1, axis=0),
+                   np.tile(s, len(pairs)))
 
 
 def _between(moves: NDArray, turns: NDArray, points: NDArray, pairs: NDArray, s: NDArray
@@ -216,7 +220,9 @@ def _joined(parts: list[Surface]) -> Surface:
                    np.concatenate([p.offsets for p in parts]),
                    *(np.concatenate([getattr(p, name) + k
                                      for p, k in zip(parts, vertices, strict=False)])
-                     for name in ("triangles", "edges")))
+                     for name in ("triangles", "edges")),
+                   *(np.concatenate([getattr(p, name) for p in parts])
+                     for name in ("nodes", "shares")))
 
 
 def _spatial(vectors: NDArray) -> NDArray:

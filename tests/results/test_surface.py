@@ -15,7 +15,7 @@ from sebody.fem import (
     rectangle,
     straight_beam,
 )
-from sebody.reduction import craig_bampton
+from sebody.reduction import RigidFace, craig_bampton
 from sebody.results.blocks import Blocks
 from sebody.results.scenery import scenery, vertices
 from sebody.results.surface import FACES, _cap, outer_faces, surface_of
@@ -112,6 +112,29 @@ def test_vertices_are_where_the_field_is(planar):
         used = [found[2 * e] for e in range(12)] + [found[-1]]
         # displacements that are left out, of two amplitudes and all the rest
         assert np.abs(np.array(used)[:, :D] - exact).max() < 1e-5 * np.linalg.norm(ends[1])
+
+
+def test_stresses_are_those_of_the_field():
+    steel = 2.1e11, 0.3, 7800.0
+    block = hexahedral_block((0, 0, 0), (4, 1, 1), (4, 1, 1), *steel)
+    ends = [RigidFace((x, 0.5, 0.5), np.flatnonzero(block.coordinates[:, 0] == x)) for x in (0, 4)]
+    body = craig_bampton(block, [(end, "full") for end in ends], 2)
+    bar = craig_bampton(straight_beam((4, 0.5, 0.5), (6, 0.5, 0.5), rectangle(0.2, 0.3, *steel), 4),
+                        [(0, "full"), (4, "full")], 2)
+    model = Model()
+    nodes = [model.node(name, (x, 0.5, 0.5)) for name, x in zip("abc", (0, 4, 6), strict=True)]
+    model.superelement("block", body, nodes[:2])
+    model.superelement("bar", bar, nodes[1:])
+    model.revolute("a", axis=(0, 1, 0))
+    model.gravity((0, 0, -9.81))
+    result = simulate(model, 0.01, 0.3)
+    block, bar = scenery(result, 31, stressed=True).bodies
+    exact = [result.field(name).von_mises(17) for name in ("block", "bar")]
+    assert exact[0].max() > 1e4     # a weight of 31 t on a section of 1 m^2
+    np.testing.assert_allclose(block.stress[17], exact[0][block.surface.nodes[:, 0]])
+    ends = np.isin(bar.surface.shares, (0.0, 1.0))
+    of_ends = bar.surface.nodes[np.arange(len(ends)), (bar.surface.shares == 1).astype(int)]
+    np.testing.assert_allclose(bar.stress[17][ends], exact[1][of_ends[ends]])
 
 
 def read(blocks, block):

@@ -35,7 +35,7 @@ class Page {
   choices() {
     const { header, scene } = this;
     const colours = [["none", "body"], ["displacement", "displacement"]];
-    if (header.largest.stress) colours.push(["stress", "von Mises stress"]);
+    if (header.largest.stress) colours.push(["stress", "von Mises"]);
     fill(element("colour"), header.largest.displacement ? colours : colours.slice(0, 1),
          header.largest.displacement ? "displacement" : "none");
     element("colour").addEventListener("change", () => this.colour());

@@ -12,7 +12,7 @@ class Motion {
       triangles: numbers.indices(body.triangles), edges: numbers.indices(body.edges),
       origin: numbers.values(body.origin), rotation: numbers.values(body.rotation),
       amplitudes: numbers.values(body.amplitudes),
-      stress: body.stress && numbers.values(body.stress),
+      stress: body.stress && numbers.colours(body.stress),
     }));
     this.nodes = header.nodes.map((node) => ({
       ...node, position: numbers.values(node.position),
@@ -95,22 +95,21 @@ class Motion {
       vertices[3 * v] = x; vertices[3 * v + 1] = y; vertices[3 * v + 2] = z;
       if (kind === "displacement") colours[v] = Math.hypot(u[i], u[i + 1], u[i + 2]);
     }
-    if (kind === "stress") this.stresses(body, a, colours);
+    if (kind === "stress") this.stresses(body, colours);
     else if (kind === "none") colours.fill(-1);
   }
 
-  // Stress of von Mises at the vertices, of six components that are linear in the amplitudes.
-  stresses(body, a, colours) {
+  // Stress of von Mises at the vertices, from 0 to 1; it is known in some of the frames.
+  stresses(body, colours) {
     if (!body.stress) { colours.fill(-1); return; }
-    const modes = a.length, s = new Array(6);
+    const count = body.points.length / 3, rows = body.stress.length / count;
+    const stride = Math.ceil((this.t.length) / rows);
+    const at = Math.min((this.frame + this.part) / stride, rows - 1);
+    const row = Math.min(Math.floor(at), Math.max(rows - 2, 0)), part = at - row;
+    const next = rows > 1 ? count : 0;
     for (let v = 0; v < body.stations.length; v++) {
-      for (let c = 0; c < 6; c++) {
-        const first = (6 * v + c) * modes;
-        s[c] = 0;
-        for (let k = 0; k < modes; k++) s[c] += a[k] * body.stress[first + k];
-      }
-      colours[v] = Math.sqrt(0.5 * ((s[0] - s[1]) ** 2 + (s[1] - s[2]) ** 2 + (s[2] - s[0]) ** 2)
-                             + 3 * (s[3] ** 2 + s[4] ** 2 + s[5] ** 2));
+      const k = row * count + body.stations[v];
+      colours[v] = ((1 - part) * body.stress[k] + part * body.stress[k + next]) / 255;
     }
   }
 }

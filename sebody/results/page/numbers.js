@@ -29,13 +29,18 @@ class Numbers {
     return found;
   }
 
+  // Numbers from 0 to 1 of a block, row after row, in steps of 1 / 255.
+  colours(block) {
+    return this.stored(block, block.shape[0] * block.shape[1]);
+  }
+
   // Whole numbers of a block.
   indices(block) {
     return Uint32Array.from(this.stored(block, block.count));
   }
 
   stored(block, count) {
-    const kind = block.bytes === 4 ? Uint32Array : Uint16Array;
+    const kind = { 1: Uint8Array, 2: Uint16Array, 4: Uint32Array }[block.bytes];
     return new kind(this.bytes.buffer, block.at, count);
   }
 }

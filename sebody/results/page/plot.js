@@ -78,7 +78,7 @@ class Plot {
     brush.strokeStyle = "#e6e9ef";
     brush.textAlign = "right";
     brush.textBaseline = "middle";
-    for (const value of ticks(low, high, 4)) {
+    for (const value of ticks(low, high, 5)) {
       brush.fillText(short(value), MARGIN.left - 8, y(value));
       brush.beginPath();
       brush.moveTo(MARGIN.left, y(value));

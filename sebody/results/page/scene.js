@@ -58,7 +58,7 @@ class Scene {
                                     : "rigid";
     if (one.deformed !== wanted) {
       motion.deform(body, shown.scale, one.vertices, one.values, kind);
-      const most = this.header.largest[kind];
+      const most = kind === "displacement" && this.header.largest.displacement;
       if (most) for (let k = 0; k < one.values.length; k++) one.values[k] /= most;
       renderer.update(one.mesh, one.vertices, one.values);
       one.deformed = wanted;
