@@ -7,11 +7,23 @@ import sys
 import warnings
 from collections.abc import Sequence
 
-from sebody.cli import animate, atlas, bench, chart, check, interrupts, listing, plot, run, warm
+from sebody.cli import (
+    animate,
+    atlas,
+    bench,
+    chart,
+    check,
+    interrupts,
+    listing,
+    plot,
+    report,
+    run,
+    warm,
+)
 from sebody.errors import InputError, SebodyError
 
 # in the order of the help
-COMMANDS = (run, listing, plot, animate, check, bench, chart, atlas, warm)
+COMMANDS = (run, listing, plot, animate, report, check, bench, chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -4,7 +4,6 @@ import base64
 import html
 import json
 from collections.abc import Sequence
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +18,7 @@ from sebody.results.curves import Panel, panels
 from sebody.results.drawing import overview
 from sebody.results.result import Result
 from sebody.results.scenery import DrawnBody, Scenery, extent, scenery
+from sebody.results.templates import filled
 
 SUFFIXES = ".html", ".gif", ".mp4"
 SCRIPTS = ("numbers", "vectors", "motion", "shapes", "renderer", "camera", "scene", "plot", "main")
@@ -111,17 +111,12 @@ def page(result: Result, quantities: Sequence[str], title: str,
     plots = panels({"the result": result}, quantities)
     header, blocks = _header(result, drawn, plots)
     header["speed"] = speed or _speed(drawn.t)
-    folder = files("sebody.results") / "page"
-    parts = {"title": html.escape(title),
-             "style": (folder / "page.css").read_text(),
-             "script": '"use strict";\n' + "\n".join(
-                 (folder / f"{name}.js").read_text() for name in SCRIPTS),
-             "header": json.dumps(header, allow_nan=False).replace("<", "\\u003c"),
-             "numbers": base64.b64encode(blocks.bytes()).decode()}
-    text = (folder / "page.html").read_text()
-    pieces = text.split("{{")           # what is filled in may contain braces of its own
-    return pieces[0] + "".join(parts[name] + rest for name, _, rest in (
-        piece.partition("}}") for piece in pieces[1:]))
+    script = "\n".join(filled(f"{name}.js", {}) for name in SCRIPTS)
+    return filled("page.html", {
+        "title": html.escape(title), "style": filled("page.css", {}),
+        "script": f'"use strict";\n{script}',
+        "header": json.dumps(header, allow_nan=False).replace("<", "\\u003c"),
+        "numbers": base64.b64encode(blocks.bytes()).decode()})
 
 
 def _most_frames(result: Result) -> int:

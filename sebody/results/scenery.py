@@ -9,19 +9,16 @@ from scipy.spatial.transform import Rotation
 from sebody.errors import InputError
 from sebody.fem.stress import von_mises
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Joint, Node, Superelement
+from sebody.model.parts import Element, Node, Superelement
 from sebody.results.motion import body_motion
 from sebody.results.result import Result
-from sebody.results.skeleton import neighbours
+from sebody.results.signs import Link, Sign, links, signs
 from sebody.results.surface import Surface, box, surface_of
 
 NEGLIGIBLE = 1e-7       # of the model's extent: smaller displacements by an amplitude are left out
 THINNEST = 0.004        # of the model's extent: half of a section, smaller ones are drawn larger
 STRESSES = 1_000_000    # stresses of nodes in frames that are computed
 FLAT = 0.03             # share of the largest extent below which a motion is in a plane
-SPRINGS = "spring", "planar_spring"
-SLIDING = "slider", "prismatic", "cylindrical", "planar"
-ABOUT_Z = np.eye(3)[:, [2, 0, 1]]       # axes whose first direction is z
 SLENDER = 0.1           # width of a planar rigid body over its length
 
 
@@ -42,23 +39,6 @@ class DrawnNode(NamedTuple):
     name: str
     position: NDArray       # (frames, 3)
     rotation: NDArray | None        # (frames, 4)
-
-
-class Link(NamedTuple):
-    """A line between two nodes: a body made of matrices, a rigid link, a distance, a spring."""
-
-    kind: str               # body, rod, distance or spring
-    ends: tuple[str, str]
-
-
-class Sign(NamedTuple):
-    """A sign at a node: of a joint, drive, support or point mass."""
-
-    kind: str
-    name: str
-    node: str
-    axes: NDArray           # (3, 3) columns
-    carrier: str            # node that they turn with
 
 
 class Scenery(NamedTuple):
@@ -107,8 +87,8 @@ def scenery(result: Result, most: int, stressed: bool = False) -> Scenery:
     bodies += [_rigid(model, part, nodes) for part in model.rigid_bodies.values()
                if part.kind.endswith("rigid_body")]
     return Scenery(result.t[states], states, bodies, nodes,
-                   _links(model, nodes, {body.name for body in bodies}), _signs(model, nodes),
-                   *_view(model, nodes))
+                   links(model, set(nodes), {body.name for body in bodies}),
+                   signs(model, set(nodes)), *_view(model, nodes))
 
 
 def vertices(body: DrawnBody, frame: int, scale: float = 1.0) -> NDArray:
@@ -226,53 +206,6 @@ def _along(model: Mechanism, node: Node, centre: NDArray) -> NDArray:
     size = np.linalg.norm(way)
     c, s = way[:2] / size if size > 0 else (1.0, 0.0)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _links(model: Mechanism, nodes: dict[str, DrawnNode], drawn: set[str]) -> list[Link]:
-    found = []
-    for body in model.bodies.values():
-        if body.name not in drawn:
-            held = [body.nodes[i] for i in body.body.position_nodes]
-            found += [Link("body", (held[i].name, held[j].name))
-                      for i, j in neighbours(np.array([node.point for node in held]))]
-    found += [Link("rod", (c.to.name, c.node.name)) for c in model.connections
-              if c.kind == "position" and c.to and not np.array_equal(c.to.point, c.node.point)]
-    found += [Link("distance", (joint.node.name, joint.to.name)) for joint in model.joints
-              if joint.kind == "distance"]
-    found += [Link("spring", (load.places[0].node.name, load.places[1].node.name))
-              for load in model.loads if load.kind in SPRINGS]
-    return [link for link in dict.fromkeys(found) if set(link.ends) <= set(nodes)]
-
-
-def _signs(model: Mechanism, nodes: dict[str, DrawnNode]) -> list[Sign]:
-    def on_ground(node: Node) -> bool:
-        return model.nodes.get(node.name) is not node
-
-    found = [Sign(joint.kind, joint.name, (joint.to if on_ground(joint.node) else joint.node).name,
-                  _columns(joint), joint.axes.carrier.name)
-             for joint in model.joints if joint.axes is not None]
-    found += [Sign("ground", f"ground of {joint.name}", node.name, ABOUT_Z, node.name)
-              for joint in model.joints for node in (joint.node, joint.to) if on_ground(node)
-              and joint.kind not in SLIDING]
-    for node in model.nodes.values():
-        if node.position is not None and node.position.fixed:
-            kind = "drive" if node.position.motions else "ground"
-            found.append(Sign(kind, node.name, node.name, ABOUT_Z, node.name))
-    found += [Sign("mass", body.name, body.places[0].node.name, ABOUT_Z, body.places[0].node.name)
-              for body in model.rigid_bodies.values() if body.kind.endswith("point_mass")]
-    return [sign for sign in found if {sign.node, sign.carrier} <= set(nodes)]
-
-
-def _columns(joint: Joint) -> NDArray:
-    """Axes of a joint in space; in a plane that of a hinge is z."""
-    columns = joint.axes.columns
-    if len(columns) == 3:
-        return columns
-    if joint.kind not in SLIDING and not any("slide" in c.kind for c in joint.constraints):
-        return ABOUT_Z
-    found = np.eye(3)
-    found[:2, :2] = columns
-    return found
 
 
 def _view(model: Mechanism, nodes: dict[str, DrawnNode]) -> tuple[NDArray, NDArray, NDArray]:

@@ -102,7 +102,7 @@ class Plot {
     brush.textBaseline = "top";
     brush.textAlign = "left";
     let at = MARGIN.left;
-    const noise = 1e-9 * Math.max(...panel.range.map(Math.abs));
+    const noise = 2e-5 * Math.max(...panel.range.map(Math.abs));
     now.slice(0, CURVES.length).forEach((value, k) => {
       brush.fillStyle = CURVES[k];
       brush.beginPath();
