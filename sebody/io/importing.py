@@ -77,9 +77,10 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     if output is not None:
         check_target(output, *TARGET)
     file = imported(read_source(path, kind), parsed(interfaces), modes, method, units, path)
+    body = file.body()
     if output is not None:
         write_body_file(file, output)
-    return file.body()
+    return body
 
 
 def imported(reading: Reading, interfaces: list[Interface], modes: int | Accuracy, method: str,
