@@ -260,7 +260,7 @@ CALCULIX = {
         "interfaces": {"a": "10:full", "b": 20, "c": 30}}),
     "a line of nodes": Case("lie on a line", options={
         "interfaces": {"a": "rbe2:EDGE", "b": "rbe2:RIGHT"}}),
-    "a mean without faces": Case("nodes on no face that lies within it: node 20, node 30", options={
+    "a mean without faces": Case("weights='equal', rbe3-equal:SET", options={
         "interfaces": {"a": "rbe3:MIDDLE", "b": "rbe2:RIGHT"}}),
     "too many modes": Case("modes is 25, but the clamped body has", options={"modes": 25}),
     "negative modes": Case("modes is -1", options={"modes": -1}),
@@ -340,7 +340,7 @@ SUBSTRUCTURE = {
         "interfaces": {"a": "rbe2:ALL"}}),
     "a node left out": Case("boundary nodes that are no interfaces: 7", options={
         "interfaces": {"a": 4}}),
-    "modes": Case("with 0 modes: leave modes out", options={"modes": 4}),
+    "modes": Case("are reduced already: leave modes out", options={"modes": 4}),
 }
 OP4 = {
     "cut": Case("", cut("se.op4", 0.7)),
