@@ -27,7 +27,7 @@ ROOMS = {
                          "reduce"},
     "sebody.io": {"BodyFile", "Mesh", "SOURCES", "Source", "from_ngsolve", "from_skfem",
                   "import_body", "load_body",
-                  "read_body_file", "read_fe_model", "save_body"},
+                  "read_body_file", "read_fe_model", "save_body", "write_sid"},
 }
 
 

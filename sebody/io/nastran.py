@@ -5,6 +5,8 @@
 Output coordinate systems of nodes (CD) are turned to the basic system.
 """
 
+import warnings
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -133,10 +135,12 @@ def _pair(found: dict[str, NDArray], path: Path) -> tuple[NDArray, NDArray]:
                      f"{have}: {_REMEDY}")
 
 
-def _called(function: Any, path: Path) -> Any:
+def _called(function: Callable[[], Any], path: Path) -> Any:
     """What pyyeti makes of a file; whatever it raises is said of the file."""
     try:
-        return function()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", RuntimeWarning)      # of files that end early
+            return function()
     except OSError as error:
         raise InputError(f"{path} cannot be read ({error.strerror or error}): {_REMEDY}"
                          ) from error
