@@ -171,7 +171,7 @@ class Result(Recording):
         return save_vtk(self, path, every)
 
     def to_pandas(self, names: Iterable[str] | None = None) -> "tables.DataFrame":
-        """Histories as columns, ``tip.position.x``, indexed by time (extra ``tables``).
+        """Histories as columns, ``tip.position.x``, indexed by time (extra ``table``).
 
         Parameters
         ----------
@@ -186,7 +186,7 @@ class Result(Recording):
         return tables.to_pandas(self, names)
 
     def to_xarray(self, names: Iterable[str] | None = None) -> "tables.Dataset":
-        """Histories as variables with their units in words (extra ``tables``); see `to_pandas`."""
+        """Histories as variables with their units in words (extra ``table``); see `to_pandas`."""
         return tables.to_xarray(self, names)
 
     @classmethod
