@@ -39,12 +39,14 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
-PICTURES = {"plots", "frequency_pictures", "drawing", "draw", "paper_figures"}
-OTHERS = {"hdf5": {"h5py"}, "tables": {"pandas", "xarray"}, "vtk_series": {"meshio"}}   # extras
+PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "picture", "paper_figures"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
-# readers, and what they may import
-SOURCES = {"nastran": "pyyeti", "ansys": "ansys", "ngsolve_space": "ngsolve"}
+# modules of extras by room, and what they may import
+OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
+          "results/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
+          "results/vtk_series": {"meshio"}, "results/film": {"PIL", "imageio"},
+          "studies/places": {"distributed"}, "studies/table": {"pandas"}}
 
 
 def module(path: Path) -> str:
@@ -111,9 +113,8 @@ def test_packages_of_others(path):
     allowed = PACKAGES.get(own, RUNTIME) | {"sebody"}
     allowed |= {"matplotlib", "mpl_toolkits"} if path.stem in PICTURES else set()
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()
-    allowed |= {SOURCES[path.stem]} if own == "io" and path.stem in SOURCES else set()
+    allowed |= OTHERS.get(f"{own}/{path.stem}", set())
     allowed |= {"sympy"} if path.stem in FORMULAS else set()
-    allowed |= OTHERS.get(path.stem, set()) if own == "results" else set()
     tops = {name.split(".")[0] for name in imported(path.read_text())}
     unknown = tops - allowed
     assert unknown <= (set() if own == "generated" else set(sys.stdlib_module_names)), unknown

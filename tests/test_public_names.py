@@ -17,7 +17,8 @@ ROOMS = {
                         "at_time", "equilibrium", "final", "integral", "linearize", "maximum",
                         "minimum", "modes", "resume", "rms", "save_state", "spin_limit",
                         "vibrations"},
-    "sebody.results": {"Field", "Recording", "Result", "Start", "plot", "save_picture"},
+    "sebody.results": {"Field", "Recording", "Result", "Start", "animate", "plot", "report",
+                       "save_picture"},
     "sebody.fem": {"FEModel", "Section", "SolidStress", "StiffnessSection", "StressModes",
                    "circle", "frame", "hexahedral_block", "i_profile", "planar_beam", "rectangle",
                    "solid_stress", "straight_beam", "tube"},
@@ -26,7 +27,7 @@ ROOMS = {
                          "reduce"},
     "sebody.io": {"BodyFile", "Mesh", "SOURCES", "Source", "from_ngsolve", "from_skfem",
                   "import_body", "load_body",
-                  "read_body_file", "read_fe_model", "save_body"},
+                  "read_body_file", "read_fe_model", "save_body", "write_sid"},
 }
 
 

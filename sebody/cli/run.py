@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from sebody.cli import interrupts
 from sebody.cli.inputs import build_scene, check_distinct, check_picture
-from sebody.cli.progress import Progress
 from sebody.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
 from sebody.files import check_target
 
@@ -77,10 +76,12 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
     They are written before anything is printed: whoever reads may stop reading.
     """
+    from sebody.analysis.progress import Progress
+
     warnings.simplefilter("ignore", LimitWarning)   # they are printed after the summary
     t_end = _t_end(scene, options)
     simulation = None if options.accuracy is not None else _simulation(scene, options)
-    bar, errors = Progress(), []
+    bar, errors = Progress(t_end), []
 
     def progress(fraction: float) -> None:
         bar(fraction)

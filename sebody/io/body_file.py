@@ -213,24 +213,24 @@ def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -
 def _named(value: Any, name: str, arrays: dict) -> Any:
     """A value for JSON: arrays in lists by their names, stress operators by class and fields."""
     if isinstance(value, list | tuple):
-        return [_named(one, f"{name}.{k}", arrays) for k, one in enumerate(value)]
+        return [_named(one, f"{name}/{k}", arrays) for k, one in enumerate(value)]
     if isinstance(value, np.ndarray):
         arrays[name] = value
         return {"array": name}
     if is_dataclass(value):
         return {"part": type(value).__name__,
-                "fields": {one.name: _named(getattr(value, one.name), f"{name}.{one.name}", arrays)
+                "fields": {one.name: _named(getattr(value, one.name), f"{name}/{one.name}", arrays)
                            for one in fields(value)}}
     return value
 
 
 def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
-    values = {name: _restored(value, arrays) for name, value in notes["body"].items()} | arrays
+    values = {name: _restored(value, arrays) for name, value in notes["body"].items()}
+    values |= {name: array for name, array in arrays.items() if "/" not in name}
     parts = {name: value for name, value in values.items() if "." not in name}
     for part, kind in PARTS.items():
         found = {name.removeprefix(f"{part}."): value for name, value in values.items()
                  if name.startswith(f"{part}.")}
-        found = {name: value for name, value in found.items() if "." not in name}
         if found:
             parts[part] = kind(**found)
     missing = {"stiffness", "mass", "coordinates", "keeps"} - set(parts)

@@ -40,8 +40,7 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     recovery = _recovery(fe_model, shapes)
     if fe_model.stress:
         static = static_correction(fe_model, boundary, component, interior, body)
-        recovery = replace(recovery, static=fe_model.by_nodes(
-            boundary.ties.spread(static)))
+        recovery = replace(recovery, static=fe_model.by_nodes(boundary.ties.spread(static)))
     return replace(body, invariants=invariants, recovery=recovery, notes=notes)
 
 
@@ -53,8 +52,8 @@ def with_shapes(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
 
 def _recovery(fe_model: FEModel, shapes: NDArray) -> Recovery:
     return Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
-                    cells=fe_model.cells, labels=fe_model.labels, outlines=fe_model.outlines,
-                    stress=fe_model.stress)
+                    cells=fe_model.cells, labels=fe_model.labels, stress=fe_model.stress,
+                    outlines=fe_model.outlines)
 
 
 def _inertia_note(fe_model: FEModel) -> str:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
 from sebody.files import check_target, replacing
+from sebody.model.tables import table
 from sebody.results import hdf5, tables
 from sebody.results.advice import kernels_that_pay
 from sebody.results.energy_balance import energy_balance
@@ -22,6 +23,7 @@ from sebody.results.units import unit
 from sebody.results.vtk_series import save_vtk
 
 OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
+LABELS = 21             # columns of the labels of a summary
 
 
 class Result(Recording):
@@ -171,7 +173,7 @@ class Result(Recording):
         return save_vtk(self, path, every)
 
     def to_pandas(self, names: Iterable[str] | None = None) -> "tables.DataFrame":
-        """Histories as columns, ``tip.position.x``, indexed by time (extra ``table``).
+        """Histories as columns, ``tip.position.x``, indexed by time (extra ``tables``).
 
         Parameters
         ----------
@@ -186,7 +188,7 @@ class Result(Recording):
         return tables.to_pandas(self, names)
 
     def to_xarray(self, names: Iterable[str] | None = None) -> "tables.Dataset":
-        """Histories as variables with their units in words (extra ``table``); see `to_pandas`."""
+        """Histories as variables with their units in words (extra ``tables``); see `to_pandas`."""
         return tables.to_xarray(self, names)
 
     @classmethod
@@ -201,6 +203,12 @@ class Result(Recording):
             No such file, or one of another kind or version.
         """
         return unpacked(cls, path)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show: the summary as a table."""
+        lines = (line.partition("  ") if len(line) < LABELS else (line[:LABELS], "", line[LABELS:])
+                 for line in self.summary().splitlines())
+        return table(("run", ""), [(name.strip(), value.strip()) for name, _, value in lines])
 
     def summary(self) -> str:
         """A few lines: steps, iterations, time, balances, works, changes of the initial state."""

@@ -1,4 +1,4 @@
-"""Histories as tables of pandas and data sets of xarray (extra ``table``)."""
+"""Histories as tables of pandas and data sets of xarray (extra ``tables``)."""
 
 from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
@@ -94,4 +94,4 @@ def _histories(recording: Recording, names: Iterable[str] | None
 
 def _check_installed(package: str) -> None:
     if find_spec(package) is None:
-        raise InputError(f'tables need {package}: pip install "sebody[table]"')
+        raise InputError(f'tables need {package}: pip install "sebody[tables]"')

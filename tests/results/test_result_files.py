@@ -95,8 +95,8 @@ def test_tables(result):
 
 @pytest.mark.parametrize("package, call, message", [
     ("h5py", lambda r, p: r.save(p / "r.h5"), r'need h5py: pip install "sebody\[hdf5\]", or take'),
-    ("pandas", lambda r, p: r.to_pandas(), r'need pandas: pip install "sebody\[table\]"'),
-    ("xarray", lambda r, p: r.to_xarray(), r'need xarray: pip install "sebody\[table\]"'),
+    ("pandas", lambda r, p: r.to_pandas(), r'need pandas: pip install "sebody\[tables\]"'),
+    ("xarray", lambda r, p: r.to_xarray(), r'need xarray: pip install "sebody\[tables\]"'),
 ])
 def test_what_is_missing_is_named(result, tmp_path, monkeypatch, package, call, message):
     found = importlib.util.find_spec
