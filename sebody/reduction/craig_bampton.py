@@ -63,8 +63,8 @@ def craig_bampton(
         Unknown or repeated boundary node, a triplet the nodes do not have, more modes than there
         are, boundary nodes that leave a mechanism inside, or loads of another length.
     """
-    body = reduce(fe_model, boundary, modes, "craig-bampton", select, loads, residual_modes)
-    return body if recover is None else body.recovering(recover)
+    return reduce(fe_model, boundary, modes, "craig-bampton", select, recover, loads,
+                  residual_modes)
 
 
 def component_modes(

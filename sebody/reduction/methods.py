@@ -46,7 +46,7 @@ _MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to
 
 def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
            method: str = "craig-bampton", select: Sequence[int] | None = None,
-           loads: Mapping[str, ArrayLike] | None = None,
+           recover: Sequence[int] | None = None, loads: Mapping[str, ArrayLike] | None = None,
            residual_modes: bool = False) -> ReducedBody:
     """Superelement of an FE model by one of four methods; see `sebody.reduction.methods`.
 
@@ -64,6 +64,9 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     method : 'craig-bampton', 'guyan', 'macneal' or 'rubin'
     select : sequence of int, optional
         For 'craig-bampton': which of the modes to keep, counted from 0; default all.
+    recover : sequence of int, optional
+        FE nodes whose motion and stress shall be known afterwards, of a large model; all by
+        default. Stresses need all nodes of the elements around.
     loads : mapping of str to (n_dofs,), optional
         Loads on the FE DOFs by name, see `sebody.fem.loads`; applied with `Model.body_load`.
     residual_modes : bool
@@ -115,8 +118,10 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
                        notes=tuple(notes),
                        loads=dict(zip(names, forces.T @ component.basis, strict=True)))
     if method == "macneal":
-        return with_shapes(body, fe_model, edge, component)
-    return with_constants(body, fe_model, edge, component, interior)
+        body = with_shapes(body, fe_model, edge, component)
+    else:
+        body = with_constants(body, fe_model, edge, component, interior)
+    return body if recover is None else body.recovering(recover)
 
 
 def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | None,
