@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.analysis.quality import remarks
-from sebody.analysis.softening import cautious_limit, divergence, reach
-from sebody.analysis.thresholds import FLAT, LINEAR
+from sebody.analysis.softening import cautious_limit, divergence, first_frequency, reach
+from sebody.analysis.thresholds import ACCURATE, FLAT, LINEAR
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import RECORD
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
@@ -93,6 +94,12 @@ class Watch:
             self.say(f"spin {body.name}", f"spin {speed:.3g} rad/s is above the limit {limit:.3g} "
                      f"of body {body.name!r}, whose stiffness does not grow with it: "
                      f"{_remedy(body)}")
+        elif speed > accurate_spin(body):
+            error = 15.0 * (speed / accurate_spin(body) * ACCURATE) ** 2
+            self.say(f"matrices {body.name}", f"body {body.name!r} has inertia "
+                     f"{body.inertia!r} and does not stiffen: at the spin {speed:.3g} rad/s its "
+                     f"first frequency is off by about {error:.2g} %, from "
+                     f"{accurate_spin(body):.3g} rad/s on by more than 1 %: {_remedy(body)}")
 
 
 class Group(NamedTuple):
@@ -115,7 +122,8 @@ def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
                  if id(t) in numbering.triplets]
         key = id(body.body), body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in limits:
-            limits[key] = np.inf if body.stiffening else cautious_limit(body)
+            limits[key] = (np.inf if body.stiffening else
+                           min(cautious_limit(body), accurate_spin(body)))
         if parts:
             found.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True),
                                                      limits[key]))
@@ -150,6 +158,16 @@ def spin_limit(body: Superelement, axis: ArrayLike | None) -> float:
             raise inputs.refusal("axis", axis, "give its direction")
         axis = axis / np.linalg.norm(axis)
     return divergence(body, np.array([0.0, 0.0, 1.0]) if planar else axis)
+
+
+def accurate_spin(body: Superelement) -> float:
+    """Spin up to which a body with option D has its first frequency within 1 %.
+
+    A quarter of that frequency with one boundary node held; infinite for all other bodies.
+    """
+    option = INERTIA_OPTIONS[body.inertia]
+    alone = option.rates and not option.field
+    return ACCURATE * first_frequency(body) if alone else np.inf
 
 
 def _remedy(body: Superelement) -> str:
