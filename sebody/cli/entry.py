@@ -7,11 +7,24 @@ import sys
 import warnings
 from collections.abc import Sequence
 
-from sebody.cli import atlas, bench, chart, check, interrupts, listing, plot, run, sweep, warm
+from sebody.cli import (
+    atlas,
+    bench,
+    chart,
+    check,
+    importing,
+    inspect,
+    interrupts,
+    listing,
+    plot,
+    run,
+    sweep,
+    warm,
+)
 from sebody.errors import InputError, SebodyError
 
 # in the order of the help
-COMMANDS = (run, sweep, listing, plot, check, bench, chart, atlas, warm)
+COMMANDS = (run, sweep, listing, plot, importing, inspect, check, bench, chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,12 +1,15 @@
 """Bodies of a model: superelements, rigid bodies and point masses."""
 
 from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.io.body_file import load_body
 from sebody.kernels.layout import layout_name
 from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.frames import check_frame, frame_weights, known_frame
@@ -17,16 +20,16 @@ from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.reduction import ReducedBody
 
 
-def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable[Node | str],
-                 frame: str = "converged_mean", inertia: str | None = None,
-                 rotation: ArrayLike | None = None, frame_node: int = 0,
-                 stiffening: bool | None = None) -> Superelement:
+def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
+                 nodes: Iterable[Node | str], frame: str = "converged_mean",
+                 inertia: str | None = None, rotation: ArrayLike | None = None,
+                 frame_node: int = 0, stiffening: bool | None = None) -> Superelement:
     """Place a reduced body on nodes.
 
     Parameters
     ----------
-    body : ReducedBody
-        Reduced matrices in any axes.
+    body : ReducedBody, str or Path
+        Reduced matrices in any axes, or the body file that holds them.
     nodes : iterable of Node or str
         One node for each boundary node of the body, in its order.
     frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
@@ -48,15 +51,18 @@ def superelement(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable
     Raises
     ------
     InputError
-        Nodes that do not fit the body, unknown options, stiffening asked of a body without
-        geometric stiffness, or no kernel for the layout (the
+        A body file that cannot be used, nodes that do not fit the body, unknown options,
+        stiffening asked of a body without geometric stiffness, or no kernel for the layout (the
         message says how to make it).
     """
     _check_name(model, name, "superelement")
     nodes = tuple(known(model, n) for n in inputs.items(
         nodes, f"nodes of superelement {name!r}", "give a list of nodes"))
+    if isinstance(body, str | PathLike) and Path(body).suffix == ".npz":
+        body = load_body(body)
     inputs.instance(body, f"body of superelement {name!r}", ReducedBody,
-                    "give a ReducedBody, such as craig_bampton returns")
+                    "give a ReducedBody, such as craig_bampton returns, or a body file, "
+                    "BODY.npz")
     if body.planar != model.planar:
         raise InputError(f"superelement {name!r} is {'planar' if body.planar else 'spatial'} "
                          f"and the model is {'planar' if model.planar else 'spatial'}: use one "

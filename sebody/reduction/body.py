@@ -13,6 +13,7 @@ from sebody.reduction import checks
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.rigid import rigid_motions
 from sebody.reduction.summary import mode_lines, place
 
 
@@ -122,21 +123,7 @@ class ReducedBody:
     def rigid_modes_about(self, point: ArrayLike) -> NDArray:
         """Rigid modes with rotations about `point`: rows e, e x (X_i - point); e; zero."""
         point = inputs.vector(point, "point", self.coordinates.shape[1])
-        arms = self.coordinates[list(self.position_nodes)] - point
-        count, dimension = arms.shape
-        if self.planar:
-            velocities = np.column_stack([-arms[:, 1], arms[:, 0]]).reshape(-1, 1)
-        else:
-            # Row of node i: (e_1 x a, e_2 x a, e_3 x a) = -skew(a).
-            velocities = np.cross(np.eye(3), arms[:, None, :]).transpose(0, 2, 1).reshape(-1, 3)
-        axes = velocities.shape[1]
-        angles = len(self.rotation_nodes)
-        positions = np.hstack([np.tile(np.eye(dimension), (count, 1)), velocities])
-        rotations = np.hstack(
-            [np.zeros((angles * axes, dimension)), np.tile(np.eye(axes), (angles, 1))]
-        )
-        internal = np.zeros((self.modes, dimension + axes))
-        return np.vstack([positions, rotations, internal])
+        return rigid_motions(self.coordinates, self.keeps, len(self.mass), point)
 
     @cached_property
     def total_mass(self) -> float:
