@@ -4,6 +4,7 @@ None of them is reached in any of the shipped scenes but those that are there to
 """
 
 LINEAR = 0.3        # rad, local rotation: linear stiffness misses its square, a tenth
+FAST = 0.25         # spin without stiffening, of the first frequency: a per cent of it
 FLAT = 1e-3         # smallest ratio of the spreads of nodes that define a frame
 BALANCE = 0.05      # share of the energy exchanged: speeds are off by half of it
 CUT = 0.3           # share of steps that were cut: most of the time goes into failed ones
