@@ -104,9 +104,10 @@ def _keyword(path: Path, number: int, line: str) -> str:
 
 def _whole(path: Path, number: int, words: list[str]) -> list[int]:
     try:
-        return _directions(path, number, [int(word) for word in words])
+        found = [int(word) for word in words]
     except ValueError as error:
         raise fault(path, number, "no list of DOFs", _SUBSTRUCTURE) from error
+    return _directions(path, number, found)
 
 
 def _directions(path: Path, number: int, found: list[int]) -> list[int]:

@@ -204,11 +204,22 @@ def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -
         elif isinstance(value, np.ndarray):
             arrays[prefix + name] = value
         elif value is not None:
-            texts[prefix + name] = value
+            texts[prefix + name] = _listed(value, prefix + name, arrays)
+
+
+def _listed(value: Any, name: str, arrays: dict) -> Any:
+    """A value for JSON: arrays within tuples have the place of each in their names."""
+    if isinstance(value, np.ndarray):
+        arrays[name] = value
+        return {"array": name}
+    if isinstance(value, list | tuple):
+        return [_listed(one, f"{name}/{k}", arrays) for k, one in enumerate(value)]
+    return value
 
 
 def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
-    values = {name: _tuples(value) for name, value in notes["body"].items()} | arrays
+    values = {name: _tuples(value, arrays) for name, value in notes["body"].items()}
+    values |= {name: array for name, array in arrays.items() if "/" not in name}
     parts = {name: value for name, value in values.items() if "." not in name}
     for part, kind in PARTS.items():
         found = {name.removeprefix(f"{part}."): value for name, value in values.items()
@@ -224,6 +235,8 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
     return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"], mesh)
 
 
-def _tuples(value: Any) -> Any:
-    """Lists as tuples, however deep."""
-    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+def _tuples(value: Any, arrays: dict[str, NDArray]) -> Any:
+    """Lists as tuples, however deep, with the arrays in them."""
+    if isinstance(value, dict):
+        return arrays[value["array"]]
+    return tuple(_tuples(one, arrays) for one in value) if isinstance(value, list) else value
