@@ -57,8 +57,7 @@ def craig_bampton(
         Unknown or repeated boundary node, a triplet the nodes do not have, more modes than there
         are, or boundary nodes that leave a mechanism inside.
     """
-    body = reduce(fe_model, boundary, modes, "craig-bampton", select)
-    return body if recover is None else body.recovering(recover)
+    return reduce(fe_model, boundary, modes, "craig-bampton", select, recover)
 
 
 def component_modes(
