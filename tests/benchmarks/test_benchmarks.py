@@ -79,3 +79,17 @@ def test_everyday_mechanisms_run_in_every_place(monkeypatch, capsys):
     found = json.loads(capsys.readouterr().out)["door"]
     assert list(found) == list(bench.PLACES)
     assert all(one["microseconds"] > 0.0 and one["cuts"] == 0 for one in found.values())
+
+
+def test_options_are_compared_with_exact_values(monkeypatch, capsys):
+    bench = imported("bench_stiffening")
+    monkeypatch.setattr(bench, "OPTIONS", {name: bench.OPTIONS[name] for name in (
+        "B", "C + stiffening")})
+    bench.main(["--json", "propeller"])
+    (row, values), = json.loads(capsys.readouterr().out).items()
+    assert row == "propeller moment" and list(values) == ["exact", "B", "C + stiffening"]
+    assert values["C + stiffening"] == pytest.approx(values["exact"], abs=1e-3)
+    bench.main(["Euler, 4"])
+    out = capsys.readouterr().out.splitlines()
+    assert out[0] == "| | exact | B | C + stiffening |"
+    assert out[2].startswith("| Euler, 4 modes: load | 2.4674 | 3.165")
