@@ -1,5 +1,6 @@
 """The superelement in the form the multibody code takes: reduced matrices and their layout."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,6 +14,7 @@ from sebody.reduction import checks
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.rigid import rigid_motions
 from sebody.reduction.summary import mode_lines, place
 
 
@@ -122,21 +124,7 @@ class ReducedBody:
     def rigid_modes_about(self, point: ArrayLike) -> NDArray:
         """Rigid modes with rotations about `point`: rows e, e x (X_i - point); e; zero."""
         point = inputs.vector(point, "point", self.coordinates.shape[1])
-        arms = self.coordinates[list(self.position_nodes)] - point
-        count, dimension = arms.shape
-        if self.planar:
-            velocities = np.column_stack([-arms[:, 1], arms[:, 0]]).reshape(-1, 1)
-        else:
-            # Row of node i: (e_1 x a, e_2 x a, e_3 x a) = -skew(a).
-            velocities = np.cross(np.eye(3), arms[:, None, :]).transpose(0, 2, 1).reshape(-1, 3)
-        axes = velocities.shape[1]
-        angles = len(self.rotation_nodes)
-        positions = np.hstack([np.tile(np.eye(dimension), (count, 1)), velocities])
-        rotations = np.hstack(
-            [np.zeros((angles * axes, dimension)), np.tile(np.eye(axes), (angles, 1))]
-        )
-        internal = np.zeros((self.modes, dimension + axes))
-        return np.vstack([positions, rotations, internal])
+        return rigid_motions(self.coordinates, self.keeps, len(self.mass), point)
 
     @cached_property
     def total_mass(self) -> float:
@@ -198,6 +186,29 @@ class ReducedBody:
         if self.invariants is None:
             return y
         return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
+
+    def recovering(self, nodes: Iterable[int]) -> "ReducedBody":
+        """The same body with the shapes of some FE nodes alone.
+
+        Parameters
+        ----------
+        nodes : iterable of int
+            Their numbers in the FE model.
+
+        Raises
+        ------
+        InputError
+            No shapes, no node, or one that is unknown.
+        """
+        if self.recovery is None:
+            raise InputError("recover: the body has no shapes of an FE model to keep a part of")
+        count = len(self.recovery.coordinates)
+        remedy = f"give nodes of the FE model, from 0 to {count - 1}"
+        found = [inputs.integer(node, "recover: a node", least=0, most=count - 1, remedy=remedy)
+                 for node in inputs.items(nodes, "recover", remedy)]
+        if not found:
+            raise InputError(f"recover names no node: {remedy}")
+        return replace(self, recovery=self.recovery.restricted(np.array(found)))
 
     def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> "ReducedBody":
