@@ -110,11 +110,11 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
     """Load modes and resultants; a prestress is its displacement above the forces on the means."""
     ties, basis, n = boundary.ties, component.basis, boundary.ties.size
     shapes = ties.spread(basis)
+    _check_geometric(fe_model.geometric_stiffness(shapes[:, 0]), fe_model.stiffness)
 
     def geometric(prestress: NDArray) -> NDArray:
         displacement = ties.spread(prestress[:n])
         tangent = fe_model.geometric_stiffness(displacement)
-        _check_geometric(tangent, fe_model.stiffness)
         G = shapes.T @ (tangent @ shapes) + boundary.second_order(
             fe_model.stiffness @ displacement, prestress[n:], basis)
         return (G + G.T) / 2
