@@ -116,7 +116,6 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
     def geometric(prestress: NDArray) -> NDArray:
         displacement = ties.spread(prestress[:n])
         tangent = fe_model.geometric_stiffness(displacement)
-        _check_geometric(tangent, fe_model.stiffness)
         G = shapes.T @ (tangent @ shapes) + boundary.second_order(
             fe_model.stiffness @ displacement, prestress[n:], basis)
         return (G + G.T) / 2
@@ -155,7 +154,7 @@ def _check_linear(fe_model: FEModel, displacement: NDArray) -> None:
 
 def _check_geometric(tangent: sparse.csc_array, stiffness: sparse.csc_array) -> None:
     if not (sparse.issparse(tangent) or isinstance(tangent, np.ndarray)):
-        raise refusal("the value of geometric_stiffness", tangent, "return a sparse matrix")
+        raise inputs.refusal("the value of geometric_stiffness", tangent, "return a sparse matrix")
     if tangent.shape != stiffness.shape:
         raise InputError(f"geometric_stiffness has shape {tangent.shape}; the model's DOFs need "
                          f"{stiffness.shape}")

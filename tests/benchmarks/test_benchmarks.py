@@ -93,3 +93,14 @@ def test_options_are_compared_with_exact_values(monkeypatch, capsys):
     out = capsys.readouterr().out.splitlines()
     assert out[0] == "| | exact | B | C + stiffening |"
     assert out[2].startswith("| Euler, 4 modes: load | 2.4674 | 3.165")
+
+
+def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
+    bench = imported("bench_modes")
+    monkeypatch.setattr(bench, "MOST", 1)
+    bench.main(["--json"], bodies=2)
+    beam, weak = json.loads(capsys.readouterr().out)
+    assert (beam["body"], weak["body"]) == ("beam", "nearly_two")
+    for row in (beam, weak):
+        assert row["true"] <= bench.TOLERANCE and row["free"] <= bench.TOLERANCE
+        assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
