@@ -72,3 +72,12 @@ def test_everyday_mechanisms_run_in_every_place(monkeypatch, capsys):
     found = json.loads(capsys.readouterr().out)["door"]
     assert list(found) == list(bench.PLACES)
     assert all(one["microseconds"] > 0.0 and one["cuts"] == 0 for one in found.values())
+
+
+def test_recovered_stresses_are_compared_with_full_solutions():
+    bench = imported("bench_recovery")
+    row = bench.errors({"beam": bench.beam}, (2,))["beam"]["2"]
+    assert max(row["static"]) < 1e-4                # at rest Guyan's shapes are exact
+    near, middle = row["moving"]
+    assert near < 0.6 * row["moving, without"][0] and middle < 0.05
+    assert min(bench.seconds(bench.large_field((3, 2, 2), 20, 14)).values()) > 0.0
