@@ -154,7 +154,7 @@ def _check_linear(fe_model: FEModel, displacement: NDArray) -> None:
 
 def _check_geometric(tangent: sparse.csc_array, stiffness: sparse.csc_array) -> None:
     if not (sparse.issparse(tangent) or isinstance(tangent, np.ndarray)):
-        raise inputs.refusal("the value of geometric_stiffness", tangent, "return a sparse matrix")
+        raise refusal("the value of geometric_stiffness", tangent, "return a sparse matrix")
     if tangent.shape != stiffness.shape:
         raise InputError(f"geometric_stiffness has shape {tangent.shape}; the model's DOFs need "
                          f"{stiffness.shape}")

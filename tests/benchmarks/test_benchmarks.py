@@ -104,3 +104,12 @@ def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
     for row in (beam, weak):
         assert row["true"] <= bench.TOLERANCE and row["free"] <= bench.TOLERANCE
         assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
+
+
+def test_recovered_stresses_are_compared_with_full_solutions():
+    bench = imported("bench_recovery")
+    row = bench.errors({"beam": bench.beam}, (2,))["beam"]["2"]
+    assert max(row["static"]) < 1e-4                # at rest Guyan's shapes are exact
+    near, middle = row["moving"]
+    assert near < 0.6 * row["moving, without"][0] and middle < 0.05
+    assert min(bench.seconds(bench.large_field((3, 2, 2), 20, 14)).values()) > 0.0
