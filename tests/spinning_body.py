@@ -82,3 +82,17 @@ def strip(thickness, elements=20):
     x = model.coordinates[:, 0]
     ends = [RigidFace((place, 0.0, 0.0), tuple(np.flatnonzero(x == place))) for place in (0, 40)]
     return model, ends
+
+
+def turned_resultants(body):
+    """Resultants of a body that turns as a whole, over the largest part that must cancel."""
+    i = body.invariants
+    count = len(body.position_nodes)
+    psi = np.array([0.3, -0.8, 0.5])
+    arms = body.coordinates[list(body.position_nodes)] - i.origin
+    first = np.cross(psi, arms)
+    second = np.concatenate([(np.cross(psi, first) / 2).ravel(),
+                             np.zeros(len(body.mass) - 3 * count)])
+    y = body.rigid_modes_about(i.origin)[:, 3:] @ psi
+    parts = i.lam * (i.E.T @ second), i.Ghat @ y @ y / 2
+    return np.abs(sum(parts)) / np.abs(parts).max()

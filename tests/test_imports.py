@@ -26,7 +26,7 @@ ROOMS = {
     "model": {"kernels", "generated", "fem", "reduction"},     # of generated the options alone
     "assembly": {"kernels", "generated", "engine", "reduction", "model"},   # the options likewise
     "results": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly"},
-    "analysis": {"kernels", "engine", "model", "assembly", "results"},
+    "analysis": {"kernels", "generated", "engine", "reduction", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "results"},
     "studies": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly",
@@ -38,9 +38,10 @@ RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
-# modules that may import matplotlib, or packages of films
-PICTURES = {"plots", "drawing", "film", "draw", "paper_figures"}
-FILMS = {"film": {"PIL", "imageio"}}
+# modules that may import matplotlib
+PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "paper_figures"}
+OTHERS = {"hdf5": {"h5py"}, "tables": {"pandas", "xarray"}, "vtk_series": {"meshio"},
+          "film": {"PIL", "imageio"}}   # extras
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 
@@ -108,9 +109,9 @@ def test_packages_of_others(path):
     own = room(module(path))
     allowed = PACKAGES.get(own, RUNTIME) | {"sebody"}
     allowed |= {"matplotlib"} if path.stem in PICTURES else set()
-    allowed |= FILMS.get(path.stem, set())
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()
     allowed |= {"sympy"} if path.stem in FORMULAS else set()
+    allowed |= OTHERS.get(path.stem, set()) if own == "results" else set()
     tops = {name.split(".")[0] for name in imported(path.read_text())}
     unknown = tops - allowed
     assert unknown <= (set() if own == "generated" else set(sys.stdlib_module_names)), unknown

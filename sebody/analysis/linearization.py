@@ -34,9 +34,17 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
                   stiffness=stiffness, constraint=stiffness)
 
 
-def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
-    """Tangent stiffness in axes that rotate with the spin, and the residual."""
-    stiffness = _turning(run, spin)[2] if spin.rotates else derivative(run, 0.0, 0.0, 1.0)
+def rotating(run: Simulation | Result, spin: Spin,
+             resistance: float = 0.0) -> tuple[csc_matrix, NDArray]:
+    """Tangent stiffness in axes that rotate with the spin, and the residual.
+
+    With a `resistance` so many times the mass times the squared spin is added.
+    """
+    if spin.rotates:
+        mass, _, stiffness = _turning(run, spin)
+        stiffness = stiffness + resistance * spin.squared * mass
+    else:
+        stiffness = derivative(run, 0.0, 0.0, 1.0)
     residual = run.state.residual.copy()
     to_body_axes(run.system, run.state.frames, residual, False)
     return csc_matrix(stiffness), residual[:run.numbering.free]
@@ -55,6 +63,29 @@ def _turning(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, csc_matr
 def _summed(run: Simulation | Result, *weights: float) -> csc_matrix:
     derivative(run, *weights)
     return summed(run)
+
+
+def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray, NDArray]:
+    """Mass, damping and stiffness of all unknowns, multipliers included, in their own axes.
+
+    Raises
+    ------
+    InputError
+        A state that cannot be evaluated.
+    """
+    if run.system is None:
+        raise InputError("the result was read from a file, which holds no compiled functions: give "
+                         "that of a run or of an equilibrium")
+    watch = run.watch if isinstance(run, Simulation) else Watch()
+    watch.look(run.model, run.numbering, run.state.now[None].copy())
+    user_faults.forget(run.model)
+    matrices = (_turning(run, spin) if spin.rotates else
+                tuple(derivative(run, *weights) for weights in np.eye(3)))
+    M, C, K = (A.toarray() for A in matrices)
+    if not all(np.isfinite(A).all() for A in (K, C, M)):
+        did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
+        raise InputError(f"the state cannot be evaluated: {did}")
+    return M, C, K
 
 
 class Linearization(NamedTuple):
@@ -85,16 +116,7 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     """
     inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
                     "of an equilibrium")
-    steady = Spin.of(run, spin)
-    watch = run.watch if isinstance(run, Simulation) else Watch()
-    watch.look(run.model, run.numbering, run.state.now[None].copy())
-    user_faults.forget(run.model)
-    matrices = (_turning(run, steady) if steady.rotates else
-                tuple(derivative(run, *weights) for weights in np.eye(3)))
-    M, C, K = (A.toarray() for A in matrices)
-    if not all(np.isfinite(A).all() for A in (K, C, M)):
-        did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
-        raise InputError(f"the state cannot be evaluated: {did}")
+    M, C, K = small_motion(run, Spin.of(run, spin))
     n = len(K)
     multipliers = np.flatnonzero(run.system.is_multiplier[:n])
     moving = np.setdiff1d(np.arange(n), multipliers)

@@ -23,7 +23,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser = commands.add_parser("run", help="run a scene")
     parser.add_argument("scene", metavar="SCENE",
                         help="name of a scene, see 'sebody list', or a file of your own, FILE.py")
-    parser.add_argument("--output", type=Path, metavar="FILE.npz", help="save the histories")
+    parser.add_argument("--output", type=Path, metavar="FILE.npz",
+                        help="save the result: FILE.npz, or FILE.h5 with h5py")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the standard picture")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
@@ -160,11 +161,12 @@ def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulatio
 def _check(options: argparse.Namespace, scene: "Scene") -> None:
     """Refuse before the run what cannot be written, and options that contradict others."""
     from sebody.analysis.restart import TARGET
-    from sebody.results.result import OUTPUT
+    from sebody.results.result import check_output
 
-    for path, kind in ((options.output, OUTPUT), (options.save, TARGET)):
-        if path:
-            check_target(path, *kind)
+    if options.output:
+        check_output(options.output)
+    if options.save:
+        check_target(options.save, *TARGET)
     check_distinct({"--output": options.output, "--save": options.save})
     check_distinct({"--output": options.output, "--resume": options.resume})
     check_picture(options.plot)

@@ -12,7 +12,7 @@ from sebody.fem.model import FEModel, assemble
 from sebody.fem.stress import SolidStress, elasticity
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
-_VTK = [0, 1, 3, 2, 4, 5, 7, 6]     # order of the corners in meshio's hexahedra: around each face
+_MESHIO = [0, 1, 3, 2, 4, 5, 7, 6]  # the same corners in the order of meshio
 
 
 def hexahedral_block(
@@ -69,9 +69,9 @@ def hexahedral_block(
         for matrix in matrices
     )
     law, volume = elasticity(youngs_modulus, poisson_ratio), np.prod(size / counts) / 8
-    cells = connectivity[:, _VTK]
-    columns = (3 * np.array(_VTK)[:, None] + np.arange(3)).ravel()
-    own = SolidStress("hexahedron", cells, nodes, law, strains[_VTK][:, :, columns])
+    cells = connectivity[:, _MESHIO]
+    columns = (3 * np.array(_MESHIO)[:, None] + np.arange(3)).ravel()
+    own = SolidStress("hexahedron", cells, nodes, law, strains[_MESHIO][:, :, columns])
     return FEModel(stiffness, mass, nodes, SOLID, cells=[("hexahedron", cells)], stress=(own,),
                    geometric_stiffness=BrickPrestress(dofs, volume * law @ strains, slopes,
                                                       3 * len(nodes)))

@@ -3,66 +3,25 @@
     FE matrices -> constraint modes (2)-(4) -> fixed-interface modes (5)-(6) -> project (25), (38)
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.linalg import block_diag
 
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel, fe_matrix
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.boundary import BoundaryItem, RigidFace, boundary_of
+from sebody.reduction.boundary import Items, boundary_of
 from sebody.reduction.clamped import ClampedInterior
+from sebody.reduction.component import ComponentModes
 from sebody.reduction.constants import with_constants
-
-_ROUNDING = 1e-11  # ratio of stiffness to its summands below which stiffness is rounding error
-
-
-@dataclass(frozen=True, eq=False)
-class ComponentModes:
-    """Basis of the reduction, ``q = constraint @ y_B + fixed_interface @ y_I`` (10).
-
-    Parameters
-    ----------
-    constraint : (n_dofs, n_boundary)
-        Static modes of unit boundary coordinates (4).
-    fixed_interface : (n_dofs, m)
-        Vibration modes with the boundary clamped, mass-normalised (6).
-    omega_squared : (m,)
-        Squares of their angular frequencies [1/time^2].
-    """
-
-    constraint: NDArray
-    fixed_interface: NDArray
-    omega_squared: NDArray
-
-    @property
-    def basis(self) -> NDArray:
-        """All modes side by side, (n_dofs, n_boundary + m)."""
-        return np.hstack([self.constraint, self.fixed_interface])
-
-    def project(self, stiffness: sparse.csc_array, mass: sparse.csc_array) -> tuple:
-        """Reduced stiffness (25) and mass (38), (n, n) each, of the FE matrices."""
-        static, dynamic = self.constraint, self.fixed_interface
-        boundary = static.T @ (stiffness @ static)
-        summands = np.abs(static).T @ (abs(stiffness) @ np.abs(static))
-        if np.all(np.abs(boundary) <= _ROUNDING * summands):
-            boundary[:] = 0.0  # a boundary that holds the body without strain, e.g. one node
-        coupling = static.T @ (mass @ dynamic)
-        reduced_mass = np.block([
-            [static.T @ (mass @ static), coupling],
-            [coupling.T, np.eye(dynamic.shape[1])],
-        ])
-        return block_diag(boundary, np.diag(self.omega_squared)), reduced_mass
 
 
 def craig_bampton(
     fe_model: FEModel,
-    boundary: Mapping[int | RigidFace, str] | Iterable[BoundaryItem],
+    boundary: Items,
     modes: int,
     select: Sequence[int] | None = None,
     recover: Sequence[int] | None = None,
@@ -78,7 +37,8 @@ def craig_bampton(
         Free FE model.
     boundary : mapping or pairs of node index and 'full', 'translation' or 'rotation'
         Boundary nodes, in the order wanted, and the triplets kept there. A triplet not kept is
-        an internal DOF. A `RigidFace`, which keeps 'full', ties FE nodes to a boundary node.
+        an internal DOF. In place of a node, a `RigidFace` ties FE nodes to a boundary node, and a
+        `MeanFace` is the mean motion of FE nodes.
     modes : int
         Number of fixed-interface modes, from the lowest frequency up.
     select : sequence of int, optional
@@ -96,11 +56,13 @@ def craig_bampton(
     """
     inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
     edge = boundary_of(fe_model, boundary)
-    component, interior = _component_modes(fe_model.stiffness, fe_model.mass, edge.motion, modes,
-                                           select)
-    stiffness, mass = component.project(fe_model.stiffness, fe_model.mass)
-    body = ReducedBody(stiffness, mass, edge.coordinates, edge.keeps, len(component.omega_squared))
-    body = with_constants(body, fe_model, edge, component.basis, interior)
+    stiffness, mass = (edge.ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
+    interior = ClampedInterior(stiffness, mass, edge.held, edge.means, edge.ties.rigid,
+                               edge.ties.lengths, edge.ties.name)
+    component = _component_modes(stiffness, interior, edge.unit_motions(), modes, select)
+    reduced = component.project(stiffness, mass)
+    body = ReducedBody(*reduced, edge.coordinates, edge.keeps, len(component.omega_squared))
+    body = with_constants(body, fe_model, edge, component, interior)
     return body if recover is None else body.recovering(recover)
 
 
@@ -132,23 +94,22 @@ def component_modes(
         raise InputError(f"stiffness has shape {stiffness.shape} and mass {mass.shape}: give "
                          "square matrices of one size")
     boundary_dofs = _boundary_rows(boundary_dofs, stiffness.shape[0])
-    count = len(boundary_dofs)
-    held = sparse.csc_array((np.ones(count), (boundary_dofs, np.arange(count))),
-                            shape=(stiffness.shape[0], count))
-    return _component_modes(stiffness, mass, held, modes, select)[0]
+    moved = np.zeros((stiffness.shape[0], len(boundary_dofs)))
+    moved[boundary_dofs, np.arange(len(boundary_dofs))] = 1.0
+    interior = ClampedInterior(stiffness, mass, boundary_dofs)
+    return _component_modes(stiffness, interior, (moved, np.zeros((0, moved.shape[1]))), modes,
+                            select)
 
 
-def _component_modes(
-    stiffness: sparse.csc_array, mass: sparse.csc_array, motion: sparse.csc_array, modes: int,
-    select: Sequence[int] | None
-) -> tuple[ComponentModes, ClampedInterior]:
-    """Modes of a boundary whose unit coordinates move the DOFs by `motion`; the rest is inside."""
-    internal = np.setdiff1d(np.arange(stiffness.shape[0]), motion.indices)
+def _component_modes(stiffness: sparse.csc_array, interior: ClampedInterior,
+                     unit_motions: tuple[NDArray, NDArray], modes: int,
+                     select: Sequence[int] | None) -> ComponentModes:
+    """Modes of an interior, and its answers to unit motions of the boundary."""
     modes = inputs.integer(modes, "modes")
-    if not 0 <= modes <= len(internal):
+    if not 0 <= modes <= interior.count:
         raise InputError(
-            f"modes is {modes}, but the clamped body has {len(internal)} internal DOFs; ask for "
-            f"0 to {len(internal)} or refine the FE model"
+            f"modes is {modes}, but the clamped body has {interior.count} internal DOFs; ask for "
+            f"0 to {interior.count} or refine the FE model"
         )
     chosen = list(range(modes)) if select is None else [
         inputs.integer(mode, "select: one mode") for mode in inputs.items(
@@ -158,11 +119,10 @@ def _component_modes(
             f"select = {chosen} must name different modes among the {modes} computed, counted "
             "from 0; raise modes or correct it"
         )
-    interior = ClampedInterior(stiffness, mass, internal)
-    moved = motion.toarray()
-    constraint = moved - interior.displacement(stiffness @ moved)
+    moved, values = unit_motions
+    answers, on_means = interior.answer(-(stiffness @ moved), values)
     omega_squared, shapes = interior.vibrations(modes)
-    return ComponentModes(constraint, shapes[:, chosen], omega_squared[chosen]), interior
+    return ComponentModes(moved + answers, shapes[:, chosen], omega_squared[chosen], on_means)
 
 
 def _boundary_rows(rows: Sequence[int], size: int) -> NDArray:

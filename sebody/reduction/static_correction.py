@@ -18,28 +18,31 @@ from numpy.typing import NDArray
 
 from sebody.fem.model import FEModel
 from sebody.reduction.body import ReducedBody
+from sebody.reduction.boundary import Boundary
 from sebody.reduction.clamped import ClampedInterior
+from sebody.reduction.component import ComponentModes
 from sebody.reduction.integrals import MassIntegrals
 
 
-def static_correction(fe_model: FEModel, basis: NDArray, body: ReducedBody,
-                      interior: ClampedInterior) -> NDArray:
-    """Displacements (n_dofs, n_b + pairs) under the loads of unit inertia.
+def static_correction(fe_model: FEModel, boundary: Boundary, component: ComponentModes,
+                      interior: ClampedInterior, body: ReducedBody) -> NDArray:
+    """Displacements of the DOFs that the boundary leaves independent, under loads of unit inertia.
 
     The loads are ``M`` times the constraint modes, for unit accelerations of the n_b boundary
     coordinates, and minus those of centripetal accelerations of unit ``w_k w_l``, k <= l, about the
     mean of the boundary nodes; the latter are 0 of FE models whose points of mass are not known.
 
-    Parameters
-    ----------
-    basis : (n_dofs, n)
-        Shapes of the reduced coordinates: constraint modes, then internal modes.
+    Returns
+    -------
+    (n, n_b + pairs)
     """
-    held = basis.shape[1] - body.modes
-    modes, squares = basis[:, held:], np.diag(body.stiffness)[held:]
-    loads = np.hstack([fe_model.mass @ basis[:, :held], _spin_loads(fe_model, body)])
-    loads[np.setdiff1d(np.arange(len(loads)), interior.internal)] = 0.0
-    return interior.displacement(loads) - modes @ ((modes.T @ loads) / squares[:, None])
+    ties, held = boundary.ties, len(body.stiffness) - body.modes
+    modes = component.basis[:, held:]
+    loads = np.hstack([ties.project(fe_model.mass) @ component.basis[:, :held],
+                       ties.gather(_spin_loads(fe_model, body))])
+    loads[boundary.held] = 0.0
+    return (interior.displacement(loads)
+            - modes @ ((modes.T @ loads) / component.omega_squared[:, None]))
 
 
 def _spin_loads(fe_model: FEModel, body: ReducedBody) -> NDArray:

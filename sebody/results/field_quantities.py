@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 from sebody.results.field import Field
 from sebody.results.recording import Recording
 
-QUANTITIES = "position", "velocity", "acceleration", "displacement", "stress", "von_mises"
+QUANTITIES = ("position", "velocity", "acceleration", "displacement", "stress", "von_mises",
+              "section_forces")
 
 
 class FENodes:

@@ -59,15 +59,15 @@ def look_up(recording: Recording, name: str) -> NDArray:
     inside = fields.QUANTITIES if owner in fields.FENodes(recording) else ()
     near = get_close_matches(name, [*names(recording), *(f"{owner}.{q}" for q in inside)],
                              cutoff=ALIKE)
-    meant = f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
+    meant = f"did you mean {' or '.join(map(repr, near))}? " if near else ""
     if found:
-        raise InputError(f"{quantity!r} is unknown: " + "; ".join(
-            f"a {one.kind} has {', '.join(one.quantities)}" for one in found) + meant)
+        raise InputError(f"{quantity!r} is unknown: {meant}" + "; ".join(
+            f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
     *offers, of_fe_nodes = [one.offer.format(names=_listed(one, recording),
                                              quantities=_enumerated(one.quantities))
                             for one in OWNERS]
-    raise InputError(f"{name!r} is unknown: {'; '.join(offers)}; of the model "
-                     f"{', '.join(OF_MODEL)}{of_fe_nodes}{meant}")
+    raise InputError(f"{name!r} is unknown: {meant}{'; '.join(offers)}; of the model "
+                     f"{', '.join(OF_MODEL)}{of_fe_nodes}")
 
 
 def _listed(one: Owner, recording: Recording) -> str:

@@ -176,9 +176,9 @@ def test_histories_by_name():
     for quantity in ("position", "velocity", "acceleration", "displacement"):
         assert np.array_equal(result[f"body.node3.{quantity}"], getattr(field.at(3), quantity))
     for name, message in (
-            ("body.node3.speed", "'speed' is unknown: a node inside a body has position, velocity"),
+            ("body.node3.speed", "'speed' is unknown: .* a node inside a body has position, velo"),
             ("body.node3.velocty", "did you mean 'body.node3.velocity'"),
-            ("n0.postion", "'postion' is unknown: a node has .*; did you mean 'n0.position'"),
+            ("n0.postion", "'postion' is unknown: did you mean 'n0.position'"),
             ("body.node7.velocity", "'body.node7.velocity' is unknown: nodes are .*of FE nodes, "
                                     "<body>.node<k>, position, velocity"),
             ("body.node03.velocity", "is unknown: nodes are"),
