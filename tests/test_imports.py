@@ -22,16 +22,16 @@ ROOMS = {
     "engine": {"kernels"},
     "fem": set(),
     "reduction": {"fem"},
-    "io": {"fem"},
-    "model": {"kernels", "generated", "fem", "reduction"},     # of generated the options alone
+    "io": {"fem", "reduction"},
+    "model": {"kernels", "generated", "fem", "reduction", "io"},    # of generated the options alone
     "assembly": {"kernels", "generated", "engine", "reduction", "model"},   # the options likewise
     "results": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly"},
     "analysis": {"kernels", "generated", "engine", "reduction", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
-    "scenes": {"sebody", "fem", "reduction", "results"},
-    "studies": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly",
+    "scenes": {"sebody", "fem", "reduction", "io", "results"},
+    "studies": {"kernels", "generated", "engine", "fem", "reduction", "io", "model", "assembly",
                 "results", "analysis", "scenes"},
-    "cli": {"kernels", "sebody", "results", "analysis", "scenes", "studies"},
+    "cli": {"kernels", "reduction", "io", "sebody", "results", "analysis", "scenes", "studies"},
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}
@@ -39,11 +39,14 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
-PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "paper_figures"}
-OTHERS = {"hdf5": {"h5py"}, "tables": {"pandas", "xarray"}, "vtk_series": {"meshio"},
-          "film": {"PIL", "imageio"}}   # extras
+PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "picture", "paper_figures"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
+# modules of extras by room, and what they may import
+OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
+          "results/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
+          "results/vtk_series": {"meshio"}, "results/film": {"PIL", "imageio"},
+          "studies/places": {"distributed"}, "studies/table": {"pandas"}}
 
 
 def module(path: Path) -> str:
@@ -108,10 +111,10 @@ def test_imports_go_one_way(path):
 def test_packages_of_others(path):
     own = room(module(path))
     allowed = PACKAGES.get(own, RUNTIME) | {"sebody"}
-    allowed |= {"matplotlib"} if path.stem in PICTURES else set()
+    allowed |= {"matplotlib", "mpl_toolkits"} if path.stem in PICTURES else set()
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()
+    allowed |= OTHERS.get(f"{own}/{path.stem}", set())
     allowed |= {"sympy"} if path.stem in FORMULAS else set()
-    allowed |= OTHERS.get(path.stem, set()) if own == "results" else set()
     tops = {name.split(".")[0] for name in imported(path.read_text())}
     unknown = tops - allowed
     assert unknown <= (set() if own == "generated" else set(sys.stdlib_module_names)), unknown

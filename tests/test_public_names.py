@@ -22,9 +22,12 @@ ROOMS = {
     "sebody.fem": {"FEModel", "Section", "SolidStress", "StiffnessSection", "StressModes",
                    "circle", "frame", "hexahedral_block", "i_profile", "planar_beam", "rectangle",
                    "solid_stress", "straight_beam", "tube"},
-    "sebody.reduction": {"ComponentModes", "MeanFace", "ReducedBody", "RigidFace", "body_weights",
-                         "component_modes", "craig_bampton", "frame_weights"},
-    "sebody.io": set(),
+    "sebody.reduction": {"Accuracy", "ComponentModes", "MeanFace", "ReducedBody", "RigidFace",
+                         "body_weights", "component_modes", "craig_bampton", "frame_weights",
+                         "reduce"},
+    "sebody.io": {"BodyFile", "Mesh", "SOURCES", "Source", "from_ngsolve", "from_skfem",
+                  "import_body", "load_body",
+                  "read_body_file", "read_fe_model", "save_body", "write_sid"},
 }
 
 

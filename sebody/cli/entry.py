@@ -13,17 +13,21 @@ from sebody.cli import (
     bench,
     chart,
     check,
+    importing,
+    inspect,
     interrupts,
     listing,
     plot,
     report,
     run,
+    sweep,
     warm,
 )
 from sebody.errors import InputError, SebodyError
 
 # in the order of the help
-COMMANDS = (run, listing, plot, animate, report, check, bench, chart, atlas, warm)
+COMMANDS = (run, sweep, listing, plot, animate, report, importing, inspect, check, bench, chart,
+            atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -38,6 +38,8 @@ class Boundary:
         Which these are.
     mean_motions : tuple of (rows of translation, rows of rotation, MeanMotion)
         Of each mean face whose rotation matters: its rows in `means`, and what they are made of.
+    notes : tuple of str
+        What each boundary node is.
     """
 
     coordinates: NDArray
@@ -48,6 +50,7 @@ class Boundary:
     means: sparse.csr_array
     mean_columns: NDArray
     mean_motions: tuple[tuple[NDArray, NDArray, MeanMotion], ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def size(self) -> int:
@@ -135,7 +138,19 @@ def boundary_of(fe_model: FEModel, items: Items) -> Boundary:
         np.array(mean_columns, dtype=int),
         tuple((mean_rows[item]["translation"], mean_rows[item]["rotation"], motion)
               for item, motion in motions.items()
-              if len(mean_rows[item]["rotation"]) or motion.off_centre))
+              if len(mean_rows[item]["rotation"]) or motion.off_centre),
+        tuple(f"boundary node {k} is {_described(fe_model, item)}"
+              for k, (item, _) in enumerate(pairs)))
+
+
+def _described(fe_model: FEModel, item: int | RigidFace | MeanFace) -> str:
+    """An interface in words."""
+    if isinstance(item, RigidFace):
+        return f"a rigid face of {len(item.nodes)} nodes"
+    if isinstance(item, MeanFace):
+        how = {"area": "by area", "equal": "equal"}.get(str(item.weights), "given")
+        return f"the mean of {len(item.nodes)} nodes, weights {how}"
+    return f"FE {fe_model.node_name(item)}"
 
 
 def _mean_motion(fe_model: FEModel, face: MeanFace, keep: str) -> MeanMotion:

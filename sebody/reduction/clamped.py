@@ -66,6 +66,7 @@ class ClampedInterior:
         self._factor = FactoredStiffness(self._stiffness, free[internal],
                                          lambda row: name(internal[row]), _REMEDY)
         self._border()
+        self._known: tuple[NDArray, NDArray] | None = None
 
     @property
     def count(self) -> int:
@@ -134,25 +135,41 @@ class ClampedInterior:
         return self.answer(forces)[0]
 
     def vibrations(self, modes: int) -> tuple[NDArray, NDArray]:
-        """Lowest modes (5): omega^2 (m,) and mass-normalised shapes (n, m)."""
-        if modes == 0:
-            return np.zeros(0), np.zeros((self._size, 0))
-        size = len(self.internal)
-        # a few more, so that a repeated frequency is not cut in two
-        wanted = min(self.count, modes + 4)
-        if size <= _DENSE_LIMIT or wanted >= size:
-            omega_squared, inner = self._dense_modes(wanted)
-        else:
-            omega_squared, inner = self._sparse_modes(wanted)
+        """Lowest modes (5): omega^2 (m,) and mass-normalised shapes (n, m).
+
+        Raises
+        ------
+        InputError
+            Fewer motions that carry mass.
+        """
+        omega_squared, shapes = self.lowest(modes)
         if len(omega_squared) < modes:
             raise InputError(
                 f"modes is {modes}, but only {len(omega_squared)} internal motions carry mass; ask "
                 "for fewer"
             )
-        inner = inner @ canonical_turn(omega_squared, inner)
-        shapes = np.zeros((self._size, modes))
-        shapes[self.internal] = inner[:, :modes]
-        return omega_squared[:modes], shapes
+        return omega_squared, shapes
+
+    def lowest(self, modes: int) -> tuple[NDArray, NDArray]:
+        """The same, or all modes if there are fewer."""
+        if self._known is None or len(self._known[0]) < min(modes, self.count):
+            self._known = self._computed(modes)
+        shapes = np.zeros((self._size, min(modes, len(self._known[0]))))
+        shapes[self.internal] = self._known[1][:, :modes]
+        return self._known[0][:modes], shapes
+
+    def _computed(self, modes: int) -> tuple[NDArray, NDArray]:
+        """At least the lowest modes, of internal DOFs, in a form that a solver does not choose."""
+        if not modes:
+            return np.zeros(0), np.zeros((len(self.internal), 0))
+        # a few more, so that a repeated frequency is not cut in two
+        wanted = min(self.count, modes + 4)
+        size = len(self.internal)
+        if size <= _DENSE_LIMIT or wanted >= size:
+            omega_squared, inner = self._dense_modes(wanted)
+        else:
+            omega_squared, inner = self._sparse_modes(wanted)
+        return omega_squared, inner @ canonical_turn(omega_squared, inner)
 
     def _dense_modes(self, wanted: int) -> tuple[NDArray, NDArray]:
         # The inverse problem: low modes to full accuracy, and massless DOFs do no harm.

@@ -31,19 +31,48 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     component : ComponentModes
         Shapes of the reduced coordinates, in the DOFs that the boundary leaves independent.
     """
-    ties = boundary.ties
-    shapes = ties.spread(component.basis)
+    shapes = boundary.ties.spread(component.basis)
     invariants = None
     if fe_model.mass_field is not None:
         invariants, load_modes = _invariants(body, fe_model, boundary, component, interior)
         shapes = np.hstack([shapes, load_modes])
-    recovery = Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
-                        cells=fe_model.cells, labels=fe_model.labels, stress=fe_model.stress,
-                        outlines=fe_model.outlines)
+    notes = (*body.notes, _inertia_note(fe_model), _stiffening_note(invariants))
+    recovery = _recovery(fe_model, shapes)
     if fe_model.stress:
         static = static_correction(fe_model, boundary, component, interior, body)
-        recovery = replace(recovery, static=fe_model.by_nodes(ties.spread(static)))
-    return replace(body, invariants=invariants, recovery=recovery)
+        recovery = replace(recovery, static=fe_model.by_nodes(boundary.ties.spread(static)))
+    return replace(body, invariants=invariants, recovery=recovery, notes=notes)
+
+
+def with_shapes(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
+                component: ComponentModes) -> ReducedBody:
+    """The body with its shapes alone."""
+    return replace(body, recovery=_recovery(fe_model, boundary.ties.spread(component.basis)))
+
+
+def _recovery(fe_model: FEModel, shapes: NDArray) -> Recovery:
+    return Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
+                    cells=fe_model.cells, labels=fe_model.labels, stress=fe_model.stress,
+                    outlines=fe_model.outlines)
+
+
+def _inertia_note(fe_model: FEModel) -> str:
+    """What the inertia of the moving body is made of."""
+    if fe_model.mass_field is None:
+        return ("no exact inertia: the mass is not that of points at the nodes, as where nodal "
+                "rotations carry a consistent mass; give a mass_field for it")
+    dimension = fe_model.coordinates.shape[1]
+    turning = fe_model.rows[:, dimension:]
+    massless = turning.size and (turning >= 0).any() and fe_model.mass_field.rotation is None
+    return "exact inertia from the points of the mass" + (
+        "; nodal rotations carry none" if massless else "")
+
+
+def _stiffening_note(invariants: InertiaInvariants | None) -> str:
+    if invariants is None or not invariants.resultants + invariants.slaved:
+        return "no stiffening by stresses"
+    return (f"stiffening by stresses: {invariants.slaved} load modes, {invariants.resultants} "
+            "resultants of second order")
 
 
 def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,

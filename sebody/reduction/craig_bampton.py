@@ -12,21 +12,24 @@ from scipy import sparse
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel, fe_matrix
+from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.boundary import Items, boundary_of
+from sebody.reduction.boundary import Items
 from sebody.reduction.clamped import ClampedInterior
-from sebody.reduction.component import ComponentModes
-from sebody.reduction.constants import with_constants
+from sebody.reduction.component import ComponentModes, static_modes
+from sebody.reduction.methods import reduce
 
 
 def craig_bampton(
     fe_model: FEModel,
     boundary: Items,
-    modes: int,
+    modes: int | Accuracy,
     select: Sequence[int] | None = None,
     recover: Sequence[int] | None = None,
 ) -> ReducedBody:
     """Superelement of an FE model; no modes gives Guyan's reduction.
+
+    The same as `reduce` with its first method.
 
     Where the model knows the points of its mass, the body gets the constants of its exact inertia,
     and with a geometric stiffness those of its stiffening.
@@ -39,8 +42,8 @@ def craig_bampton(
         Boundary nodes, in the order wanted, and the triplets kept there. A triplet not kept is
         an internal DOF. In place of a node, a `RigidFace` ties FE nodes to a boundary node, and a
         `MeanFace` is the mean motion of FE nodes.
-    modes : int
-        Number of fixed-interface modes, from the lowest frequency up.
+    modes : int or Accuracy
+        Number of fixed-interface modes, from the lowest frequency up, or what they are to achieve.
     select : sequence of int, optional
         Which of these modes to keep, counted from 0; default all. Modes that the motion cannot
         excite (out of plane, torsion) can be left out.
@@ -54,16 +57,7 @@ def craig_bampton(
         Unknown or repeated boundary node, a triplet the nodes do not have, more modes than there
         are, or boundary nodes that leave a mechanism inside.
     """
-    inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
-    edge = boundary_of(fe_model, boundary)
-    stiffness, mass = (edge.ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
-    interior = ClampedInterior(stiffness, mass, edge.held, edge.means, edge.ties.rigid,
-                               edge.ties.lengths, edge.ties.name)
-    component = _component_modes(stiffness, interior, edge.unit_motions(), modes, select)
-    reduced = component.project(stiffness, mass)
-    body = ReducedBody(*reduced, edge.coordinates, edge.keeps, len(component.omega_squared))
-    body = with_constants(body, fe_model, edge, component, interior)
-    return body if recover is None else body.recovering(recover)
+    return reduce(fe_model, boundary, modes, "craig-bampton", select, recover)
 
 
 def component_modes(
@@ -97,32 +91,8 @@ def component_modes(
     moved = np.zeros((stiffness.shape[0], len(boundary_dofs)))
     moved[boundary_dofs, np.arange(len(boundary_dofs))] = 1.0
     interior = ClampedInterior(stiffness, mass, boundary_dofs)
-    return _component_modes(stiffness, interior, (moved, np.zeros((0, moved.shape[1]))), modes,
-                            select)
-
-
-def _component_modes(stiffness: sparse.csc_array, interior: ClampedInterior,
-                     unit_motions: tuple[NDArray, NDArray], modes: int,
-                     select: Sequence[int] | None) -> ComponentModes:
-    """Modes of an interior, and its answers to unit motions of the boundary."""
-    modes = inputs.integer(modes, "modes")
-    if not 0 <= modes <= interior.count:
-        raise InputError(
-            f"modes is {modes}, but the clamped body has {interior.count} internal DOFs; ask for "
-            f"0 to {interior.count} or refine the FE model"
-        )
-    chosen = list(range(modes)) if select is None else [
-        inputs.integer(mode, "select: one mode") for mode in inputs.items(
-            select, "select", "give a list of modes, counted from 0")]
-    if len(set(chosen)) != len(chosen) or not set(chosen) <= set(range(modes)):
-        raise InputError(
-            f"select = {chosen} must name different modes among the {modes} computed, counted "
-            "from 0; raise modes or correct it"
-        )
-    moved, values = unit_motions
-    answers, on_means = interior.answer(-(stiffness @ moved), values)
-    omega_squared, shapes = interior.vibrations(modes)
-    return ComponentModes(moved + answers, shapes[:, chosen], omega_squared[chosen], on_means)
+    static = static_modes(stiffness, interior, moved, np.zeros((0, moved.shape[1])))
+    return static.with_vibrations(interior, modes, select)
 
 
 def _boundary_rows(rows: Sequence[int], size: int) -> NDArray:
