@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.analysis.quality import remarks
 from sebody.analysis.softening import cautious_limit, divergence, first_frequency, reach
-from sebody.analysis.thresholds import ACCURATE, FLAT, LINEAR
+from sebody.analysis.thresholds import FAST, FLAT, LINEAR
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
-from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import RECORD
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
@@ -86,20 +85,19 @@ class Watch:
             self.say(key, message)
 
     def _compare(self, body: Superelement, spin: NDArray, speed: float) -> None:
-        if f"spin {body.name}" in self._said:
+        keys = f"spin {body.name}", f"fast {body.name}"
+        if keys[0] in self._said:
             return
         axis = np.array([0.0, 0.0, 1.0]) if body.body.planar else spin / speed
-        limit = spin_limit(body, spin / speed)
-        if speed * reach(body, axis) > limit:
-            self.say(f"spin {body.name}", f"spin {speed:.3g} rad/s is above the limit {limit:.3g} "
-                     f"of body {body.name!r}, whose stiffness does not grow with it: "
+        felt, limit = speed * reach(body, axis), divergence(body, axis)
+        if felt > limit:
+            self.say(keys[0], f"spin {speed:.3g} rad/s is above the limit {limit:.3g} of body "
+                     f"{body.name!r}, whose stiffness does not grow with it: {_remedy(body)}")
+        elif keys[1] not in self._said and felt > FAST * min(limit, first_frequency(body)):
+            self.say(keys[1], f"body {body.name!r} spins at {speed:.3g} rad/s, more than a quarter "
+                     f"of {_compared(limit, first_frequency(body))}: its stiffness does not grow "
+                     "with the spin, and frequencies are off by a per cent and more; "
                      f"{_remedy(body)}")
-        elif speed > accurate_spin(body):
-            error = 15.0 * (speed / accurate_spin(body) * ACCURATE) ** 2
-            self.say(f"matrices {body.name}", f"body {body.name!r} has inertia "
-                     f"{body.inertia!r} and does not stiffen: at the spin {speed:.3g} rad/s its "
-                     f"first frequency is off by about {error:.2g} %, from "
-                     f"{accurate_spin(body):.3g} rad/s on by more than 1 %: {_remedy(body)}")
 
 
 class Group(NamedTuple):
@@ -122,8 +120,7 @@ def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
                  if id(t) in numbering.triplets]
         key = id(body.body), body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in limits:
-            limits[key] = (np.inf if body.stiffening else
-                           min(cautious_limit(body), accurate_spin(body)))
+            limits[key] = np.inf if body.stiffening else FAST * cautious_limit(body)
         if parts:
             found.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True),
                                                      limits[key]))
@@ -160,16 +157,6 @@ def spin_limit(body: Superelement, axis: ArrayLike | None) -> float:
     return divergence(body, np.array([0.0, 0.0, 1.0]) if planar else axis)
 
 
-def accurate_spin(body: Superelement) -> float:
-    """Spin up to which a body with option D has its first frequency within 1 %.
-
-    A quarter of that frequency with one boundary node held; infinite for all other bodies.
-    """
-    option = INERTIA_OPTIONS[body.inertia]
-    alone = option.rates and not option.field
-    return ACCURATE * first_frequency(body) if alone else np.inf
-
-
 def _remedy(body: Superelement) -> str:
     """What to do about a spin."""
     if body.body.invariants is None:
@@ -179,6 +166,13 @@ def _remedy(body: Superelement) -> str:
     if body.body.invariants.stiffens:
         return "divide it in two, or let it stiffen with stiffening=True"
     return "divide it in two, or give its FE model a geometric stiffness"
+
+
+def _compared(limit: float, first: float) -> str:
+    """What a fast spin is compared with."""
+    if first < limit:
+        return f"{first:.3g}, the body's first frequency with one node held"
+    return f"{limit:.3g}, where it diverges"
 
 
 def _spread(body: Superelement) -> float:
