@@ -14,12 +14,11 @@ from sebody.kernels.dense import (
     add_block_times,
     add_rows_times,
     block_times,
+    clear,
     columns_times,
-    gather,
     inverse_3,
     rows_times,
     scale,
-    scatter,
 )
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.layout import (
@@ -44,6 +43,14 @@ from sebody.kernels.layout import (
     TANGENT,
     Part,
 )
+from sebody.kernels.packed_products import (
+    add_packed,
+    add_packed_times,
+    from_free,
+    packed_room,
+    packed_times,
+    to_free,
+)
 from sebody.kernels.pipeline import kernel_function
 from sebody.kernels.rotations import inverse_tangent_coefficients, inverse_tangent_second
 
@@ -57,30 +64,33 @@ ROTATIONS = 6      # first rotation among the local coordinates
 MODES = 12          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 117
+WORK_ROWS = 119
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (508, 168, 750, 18),
-              "column": (75, 228, 2420, 3)}
+OPERATIONS = {"residual": (583, 168, 750, 2),
+              "column": (150, 228, 2420, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
-    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
-    Part("kept", ("free",), "local coordinates that determine the others in the frame"),
+    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
+    Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
+    Part("axes", ("bound_free", "bound"),
+         "boundary coordinates that determine the others", columns=True),
+    Part("axes_back", ("bound", "bound_free"), "its transpose", columns=True),
+    Part("order", ("free",), "where these and the modes are among themselves"),
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
     Part("moment_rows", ("lines", "N"), "their transpose", columns=True),
-    Part("quadratics", ("N", "quadratic"),
-         "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
-    Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
-    Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
-    Part("Cz", ("free", "damped"), "reduced damping", columns=True),
-    Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
+    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
+    Part("of_rate", ("rated", "N", "N"), "K_k^T - K_k, K_k^T", packed=True),
+    Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
+    Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
+    Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
-    Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
+    Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "e380eed2a239"     # hash of sebody/kernels, which this file was made for
+ROOM = "5156c2efcd5c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -100,58 +110,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     eta = at(work, 8*row)
     etad = at(work, 9*row)
     gamma = at(work, 10*row)
-    z = at(work, 11*row)
-    zd = at(work, 12*row)
-    zdd = at(work, 13*row)
-    line0 = at(work, 14*row)
-    line1 = at(work, 15*row)
-    line2 = at(work, 16*row)
-    product0 = at(work, 17*row)
-    product1 = at(work, 18*row)
-    product2 = at(work, 19*row)
-    by_moment_columns = at(work, 20*row)
-    by_products = at(work, 21*row)
-    local = at(work, 22*row)
-    along = at(work, 23*row)
-    twice = at(work, 24*row)
-    by_E = at(work, 25*row)
-    by_Gy = at(work, 26*row)
-    s = at(work, 27*row)
-    h = at(work, 28*row)
-    moved = at(work, 29*row)
-    squares = at(work, 30*row)
-    dqe = at(work, 31*row)
-    dve = at(work, 32*row)
-    dae = at(work, 33*row)
-    e2s = at(work, 34*row)
-    by_place = at(work, 35*row)
-    by_rate = at(work, 36*row)
-    ones = at(work, 37*row)
-    by_followers = at(work, 38*row)
-    of_E = at(work, 39*row)
-    of_Gy = at(work, 40*row)
-    dy = at(work, 41*row)
-    dz = at(work, 42*row)
-    dlocal = at(work, 43*row)
-    dyd = at(work, 44*row)
-    dacc = at(work, 45*row)
-    deta = at(work, 46*row)
-    detad = at(work, 47*row)
-    dgamma = at(work, 48*row)
-    dzd = at(work, 49*row)
-    dzdd = at(work, 50*row)
-    ds = at(work, 51*row)
-    dh = at(work, 52*row)
-    dg = at(work, 53*row)
-    Zq = at(work, 54*row)
-    Zd = at(work, 66*row)
-    products = at(work, 78*row)
-    Za = at(work, 93*row)
-    more = at(work, 105*row)
-    Gy = at(work, (117 + 0*(n + 18))*row)
-    Lz = at(work, (117 + 1*(n + 18))*row)
-    Lv = at(work, (117 + 2*(n + 18))*row)
-    La = at(work, (117 + 3*(n + 18))*row)
+    unordered = at(work, 11*row)
+    z = at(work, 12*row)
+    zd = at(work, 13*row)
+    zdd = at(work, 14*row)
+    line0 = at(work, 15*row)
+    line1 = at(work, 16*row)
+    line2 = at(work, 17*row)
+    product0 = at(work, 18*row)
+    product1 = at(work, 19*row)
+    product3 = at(work, 20*row)
+    product2 = at(work, 21*row)
+    by_moment_columns = at(work, 22*row)
+    by_products = at(work, 23*row)
+    local = at(work, 24*row)
+    along = at(work, 25*row)
+    twice = at(work, 26*row)
+    by_E = at(work, 27*row)
+    by_Gy = at(work, 28*row)
+    s = at(work, 29*row)
+    h = at(work, 30*row)
+    moved = at(work, 31*row)
+    squares = at(work, 32*row)
+    dqe = at(work, 33*row)
+    dve = at(work, 34*row)
+    dae = at(work, 35*row)
+    e2s = at(work, 36*row)
+    by_place = at(work, 37*row)
+    by_rate = at(work, 38*row)
+    ones = at(work, 39*row)
+    by_followers = at(work, 40*row)
+    of_E = at(work, 41*row)
+    of_Gy = at(work, 42*row)
+    dy = at(work, 43*row)
+    dz = at(work, 44*row)
+    dlocal = at(work, 45*row)
+    dyd = at(work, 46*row)
+    dacc = at(work, 47*row)
+    deta = at(work, 48*row)
+    detad = at(work, 49*row)
+    dgamma = at(work, 50*row)
+    dzd = at(work, 51*row)
+    dzdd = at(work, 52*row)
+    ds = at(work, 53*row)
+    dh = at(work, 54*row)
+    dg = at(work, 55*row)
+    Zq = at(work, 56*row)
+    Zd = at(work, 68*row)
+    products = at(work, 80*row)
+    Za = at(work, 95*row)
+    more = at(work, 107*row)
+    Gy = at(work, (119 + 0*(n + 18))*row)
+    Lz = at(work, (119 + 1*(n + 18))*row)
+    Lv = at(work, (119 + 2*(n + 18))*row)
+    La = at(work, (119 + 3*(n + 18))*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
@@ -170,23 +182,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         masses = at(full, 1)
         sizes = at(masses, 1)
         slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])
-        free = n - 6
-        N = free + slaved
-        quadratic, slaving = 12*N, slaved*free
+        free, bound, bound_free = n - 6, MODES, MODES - 6
+        N, stretching = free + slaved, resultants + 1
         hn, hN, deep = padded(free), padded(N), padded(N + 6)
-        kept = at(sizes, 3)
-        c0 = at(kept, free)
+        turn = at(sizes, 3)
+        axes = at(turn, 9)
+        axes_back = at(axes, bound*padded(bound_free))
+        order = at(axes_back, bound_free*padded(bound))
+        c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
         moment_rows = at(moment_columns, 12*padded(N))
-        quadratics = at(moment_rows, N*padded(12))
-        Mz = at(quadratics, quadratic*padded(N))
-        Sz = at(Mz, N*padded(N))
-        Cz = at(Sz, free*padded(free))
-        followers = at(Cz, damped*padded(free))
-        lam = at(followers, slaving*padded(free))
+        of_place = at(moment_rows, N*padded(12))
+        of_rate = at(of_place, packed_room(9, N, N))
+        Mz = at(of_rate, packed_room(6, N, N))
+        Cz = at(Mz, packed_room(1, N, N))
+        followers = at(Cz, packed_room(damped, free, free))
+        lam = at(followers, packed_room(slaved, free, free))
         E = at(lam, resultants)
-        Ghat = at(E, resultants*padded(free))
+        stretched = at(E, resultants*padded(free))
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -481,15 +495,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
         gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
         # coordinates that determine the others, of y
-        gather(y, kept, z, free, hN)
+        to_free(y, axes, order, unordered, z, bound, bound_free, free, hN)
         # coordinates that determine the others, of eta
-        gather(eta, kept, zd, free, hN)
+        to_free(eta, axes, order, unordered, zd, bound, bound_free, free, hN)
         # coordinates that determine the others, of etad
-        gather(etad, kept, zdd, free, hN)
+        to_free(etad, axes, order, unordered, zdd, bound, bound_free, free, hN)
         # Q_b z, all b
-        block_times(followers, z, Zq, slaved*hn, free, slaved*hn)
+        packed_times(followers, z, Zq, slaved*hn)
         # Q_b zd, all b
-        block_times(followers, zd, Zd, slaved*hn, free, slaved*hn)
+        packed_times(followers, zd, Zd, slaved*hn)
         # eta_b = y . Q_b y / 2
         rows_times(Zq, z, at(z, free), free, slaved, hn)
         # half of it
@@ -507,13 +521,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # first moments and couplings of zdd
         columns_times(moment_rows, zdd, line2, 12, N)
         # J2_kl z and K_k^T z
-        block_times(quadratics, z, products, 9*hN, N, 12*hN)
-        # K_k^T zdot and (K_k^T - K_k) zdot
-        block_times(at(quadratics, 6*hN), zd, at(products, 9*hN), 6*hN, N, 12*hN)
+        packed_times(of_place, z, products, 9*hN)
+        # (K_k^T - K_k) zdot and K_k^T zdot
+        packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 6, hN)
         # quadratic parts, by zd
-        rows_times(products, zd, product1, N, 12, hN)
+        rows_times(products, zd, product1, N, 9, hN)
+        # quadratic parts, by zd
+        rows_times(at(products, 12*hN), zd, product3, N, 3, hN)
         # quadratic parts, by zdd
         rows_times(at(products, 6*hN), zdd, product2, N, 3, hN)
         # integrals over the body
@@ -533,7 +549,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         jzd_xx, jzd_yy, jzd_zz, jzd_xy, jzd_xz, jzd_yz = (product1[0], product1[1], product1[2],
             product1[3], product1[4], product1[5])
         uzd_x, uzd_y, uzd_z = product1[6], product1[7], product1[8]
-        vzd_x, vzd_y, vzd_z = product1[9], product1[10], product1[11]
+        vzd_x, vzd_y, vzd_z = product3[0], product3[1], product3[2]
         uzdd_x, uzdd_y, uzdd_z = product2[0], product2[1], product2[2]
         sum_c_x = S1z0_x + c0_x
         sum_c_y = S1z0_y + c0_y
@@ -565,64 +581,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         sum_coupled_x = vzd_x
         sum_coupled_y = vzd_y
         sum_coupled_z = vzd_z
-        # motion of the frame as a factor of local tangents
+        # motion of the frame in axes of the body, a factor of local tangents
+        turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+            turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        zdd[N] = a0_x - gamma_x
-        zdd[N + 1] = a0_y - gamma_y
-        zdd[N + 2] = a0_z - gamma_z
-        zdd[N + 3] = Om0d_x
-        zdd[N + 4] = Om0d_y
-        zdd[N + 5] = Om0d_z
-        zd[N] = Om0_x
-        zd[N + 1] = Om0_y
-        zd[N + 2] = Om0_z
+        t105 = a0_x - gamma_x
+        t106 = a0_y - gamma_y
+        t107 = a0_z - gamma_z
+        zdd[N] = t105*turn_xx + t106*turn_yx + t107*turn_zx
+        zdd[N + 1] = t105*turn_xy + t106*turn_yy + t107*turn_zy
+        zdd[N + 2] = t105*turn_xz + t106*turn_yz + t107*turn_zz
+        zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
+        zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
+        zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
+        zd[N] = Om0_x*turn_xx + Om0_y*turn_yx + Om0_z*turn_zx
+        zd[N + 1] = Om0_x*turn_xy + Om0_y*turn_yy + Om0_z*turn_zy
+        zd[N + 2] = Om0_x*turn_xz + Om0_y*turn_yz + Om0_z*turn_zz
         # factors of the force on a coordinate
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
-        t105 = Om0_x*Om0_x
-        t106 = Om0_y*Om0_y
-        t107 = Om0_z*Om0_z
-        t108 = Om0_x*Om0_y
-        t109 = Om0_x*Om0_z
-        t110 = Om0_y*Om0_z
+        turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+        spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
+        t108 = spin_x*spin_x
+        t109 = spin_y*spin_y
+        t110 = spin_z*spin_z
+        t111 = spin_x*spin_y
+        t112 = spin_x*spin_z
+        t113 = spin_y*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
-        by_moment_columns[3] = Om0d_x
-        by_moment_columns[4] = Om0d_y
-        by_moment_columns[5] = Om0d_z
-        by_moment_columns[6] = -0.5*t105
-        by_moment_columns[7] = -0.5*t106
-        by_moment_columns[8] = -0.5*t107
-        by_moment_columns[9] = -t108
-        by_moment_columns[10] = -t109
-        by_moment_columns[11] = -t110
-        by_products[0] = -t105
-        by_products[1] = -t106
-        by_products[2] = -t107
-        by_products[3] = -2*t108
-        by_products[4] = -2*t109
-        by_products[5] = -2*t110
-        by_products[6] = Om0d_x
-        by_products[7] = Om0d_y
-        by_products[8] = Om0d_z
-        by_products[9] = 0
-        by_products[10] = 0
-        by_products[11] = 0
-        by_products[12] = Om0_x
-        by_products[13] = Om0_y
-        by_products[14] = Om0_z
+        by_moment_columns[3] = turning_x
+        by_moment_columns[4] = turning_y
+        by_moment_columns[5] = turning_z
+        by_moment_columns[6] = -0.5*t108
+        by_moment_columns[7] = -0.5*t109
+        by_moment_columns[8] = -0.5*t110
+        by_moment_columns[9] = -t111
+        by_moment_columns[10] = -t112
+        by_moment_columns[11] = -t113
+        by_products[0] = -t108
+        by_products[1] = -t109
+        by_products[2] = -t110
+        by_products[3] = -2*t111
+        by_products[4] = -2*t112
+        by_products[5] = -2*t113
+        by_products[6] = turning_x
+        by_products[7] = turning_y
+        by_products[8] = turning_z
+        by_products[9] = spin_x
+        by_products[10] = spin_y
+        by_products[11] = spin_z
         # force on the coordinates: first moments, couplings, inertia at rest
         columns_times(moment_columns, by_moment_columns, local, N, 12)
         # of the deformed body
-        add_block_times(products, by_products, local, N, 15, hN)
+        add_block_times(products, by_products, local, N, 12, hN)
         # inertia force of deformation, Mbar zddot
-        add_block_times(Mz, zdd, local, N, N, hN)
-        # elastic force, Sbar y
-        add_block_times(Sz, z, local, free, free, hn)
+        add_packed_times(Mz, zdd, local)
         # damping force, Cbar ydot
-        add_block_times(Cz, zd, local, free, damped, hn)
-        # Ghat_e y, all e
-        block_times(Ghat, z, Gy, resultants*hn, free, resultants*hn)
+        add_packed_times(Cz, zd, local)
+        # Ghat_e y of all e, and Sbar y
+        packed_times(stretched, z, Gy, stretching*hn)
         # E_e . y
         rows_times(E, z, along, free, resultants, hn)
         # y . Ghat_e y
@@ -633,45 +651,52 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t111 = (0.5)*twice_e
-            t112 = 1/lam_e
-            by_E[e] = t111
-            by_Gy[e] = along_e + t111*t112
-            stiffened += t111*(along_e + (0.25)*t112*twice_e)
-        # their forces
+            t114 = (0.5)*twice_e
+            t115 = 1/lam_e
+            by_E[e] = t114
+            by_Gy[e] = along_e + t114*t115
+            stiffened += t114*(along_e + (0.25)*t115*twice_e)
+        # and of Sbar y
+        by_Gy[resultants] = 1
+        # forces of the resultants
         add_block_times(E, by_E, local, free, resultants, hn)
-        # and those of the geometric stiffness
-        add_block_times(Gy, by_Gy, local, free, resultants, hn)
+        # and those of the geometric stiffness, with Sbar y
+        add_block_times(Gy, by_Gy, local, free, stretching, hn)
         # forces on eta, pulled back
         add_block_times(Zq, at(local, free), local, free, slaved, hn)
-        # force and moment on the frame
+        # force and moment on the frame, in axes of the body
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
+        turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+        spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
         mass = masses[0]
-        t113 = 2*sum_cd_z
-        t114 = 2*Om0_z
-        t115 = Om0_x*sum_c_y - Om0_y*sum_c_x
-        t116 = -Om0_x*sum_c_z + Om0_z*sum_c_x
-        t117 = Om0_y*sum_c_z - Om0_z*sum_c_y
-        t118 = Om0_x*sum_J_xz + Om0_y*sum_J_yz + Om0_z*sum_J_zz
-        t119 = Om0_x*sum_J_xy + Om0_y*sum_J_yy + Om0_z*sum_J_yz
-        t120 = Om0_x*sum_J_xx + Om0_y*sum_J_xy + Om0_z*sum_J_xz
-        local[N] = (Om0_y*t113 + Om0_y*t115 - Om0_z*t116 + Om0d_y*sum_c_z - Om0d_z*sum_c_y +
-            felt_x*mass - sum_cd_y*t114 + sum_cdd_x)
-        local[N + 1] = (-Om0_x*t113 - Om0_x*t115 + Om0_z*t117 - Om0d_x*sum_c_z + Om0d_z*sum_c_x +
-            felt_y*mass + sum_cd_x*t114 + sum_cdd_y)
-        local[N + 2] = (2*Om0_x*sum_cd_y + Om0_x*t116 - 2*Om0_y*sum_cd_x - Om0_y*t117 +
-            Om0d_x*sum_c_y - Om0d_y*sum_c_x + felt_z*mass + sum_cdd_z)
-        local[N + 3] = (Om0_x*sum_Jd_xx + Om0_y*sum_Jd_xy + Om0_y*sum_spun_z + Om0_y*t118 +
-            Om0_z*sum_Jd_xz - Om0_z*sum_spun_y - Om0_z*t119 + Om0d_x*sum_J_xx + Om0d_y*sum_J_xy +
-            Om0d_z*sum_J_xz - felt_y*sum_c_z + felt_z*sum_c_y + sum_accelerated_x + sum_coupled_x)
-        local[N + 4] = (Om0_x*sum_Jd_xy - Om0_x*sum_spun_z - Om0_x*t118 + Om0_y*sum_Jd_yy +
-            Om0_z*sum_Jd_yz + Om0_z*sum_spun_x + Om0_z*t120 + Om0d_x*sum_J_xy + Om0d_y*sum_J_yy +
-            Om0d_z*sum_J_yz + felt_x*sum_c_z - felt_z*sum_c_x + sum_accelerated_y + sum_coupled_y)
-        local[N + 5] = (Om0_x*sum_Jd_xz + Om0_x*sum_spun_y + Om0_x*t119 + Om0_y*sum_Jd_yz -
-            Om0_y*sum_spun_x - Om0_y*t120 + Om0_z*sum_Jd_zz + Om0d_x*sum_J_xz + Om0d_y*sum_J_yz +
-            Om0d_z*sum_J_zz - felt_x*sum_c_y + felt_y*sum_c_x + sum_accelerated_z + sum_coupled_z)
+        t116 = 2*sum_cd_z
+        t117 = 2*spin_z
+        t118 = spin_x*sum_c_y - spin_y*sum_c_x
+        t119 = -spin_x*sum_c_z + spin_z*sum_c_x
+        t120 = spin_y*sum_c_z - spin_z*sum_c_y
+        t121 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+        t122 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+        t123 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+        local[N] = (felt_x*mass + spin_y*t116 + spin_y*t118 - spin_z*t119 - sum_c_y*turning_z +
+            sum_c_z*turning_y - sum_cd_y*t117 + sum_cdd_x)
+        local[N + 1] = (felt_y*mass - spin_x*t116 - spin_x*t118 + spin_z*t120 + sum_c_x*turning_z
+            - sum_c_z*turning_x + sum_cd_x*t117 + sum_cdd_y)
+        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t119 - 2*spin_y*sum_cd_x -
+            spin_y*t120 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+        local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy +
+            spin_y*sum_spun_z + spin_y*t121 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t122 +
+            sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z + sum_accelerated_x +
+            sum_coupled_x)
+        local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z -
+            spin_x*t121 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t123 +
+            sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z + sum_accelerated_y +
+            sum_coupled_y)
+        local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz + spin_x*sum_spun_y +
+            spin_x*t122 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t123 + spin_z*sum_Jd_zz +
+            sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z + sum_accelerated_z +
+            sum_coupled_z)
         # forces conjugate to y
-        scatter(local, kept, s, free, n)
+        from_free(local, axes_back, order, unordered, s, bound, bound_free, free)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -680,45 +705,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t121 = X_z + u_z
-            t122 = X_y + u_y
-            t123 = X_x + u_x
+            t124 = X_z + u_z
+            t125 = X_y + u_y
+            t126 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t121 - f_z*t122
-            W_y += -f_x*t121 + f_z*t123
-            W_z += f_x*t122 - f_y*t123
+            W_x += f_y*t124 - f_z*t125
+            W_y += -f_x*t124 + f_z*t126
+            W_z += f_x*t125 - f_y*t126
         # inertia and weight on the frame
+        turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+            turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         Rt_x, Rt_y, Rt_z = local[N], local[N + 1], local[N + 2]
         Rr_x, Rr_y, Rr_z = local[N + 3], local[N + 4], local[N + 5]
-        F_x += Rt_x
-        F_y += Rt_y
-        F_z += Rt_z
-        W_x += Rr_x
-        W_y += Rr_y
-        W_z += Rr_z
+        F_x += Rt_x*turn_xx + Rt_y*turn_xy + Rt_z*turn_xz
+        F_y += Rt_x*turn_yx + Rt_y*turn_yy + Rt_z*turn_yz
+        F_z += Rt_x*turn_zx + Rt_y*turn_zy + Rt_z*turn_zz
+        W_x += Rr_x*turn_xx + Rr_y*turn_xy + Rr_z*turn_xz
+        W_y += Rr_x*turn_yx + Rr_y*turn_yy + Rr_z*turn_yz
+        W_z += Rr_x*turn_zx + Rr_y*turn_zy + Rr_z*turn_zz
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t124 = -m_x*psi_y + m_y*psi_x
-            t125 = m_x*psi_z
-            t126 = -m_z*psi_x + t125
-            t127 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t124 + e0*psi_z*t126 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t124 - e0*psi_z*t127 - m_y + (0.5)*m_z*psi_x - 0.5*t125
-            W_z += -e0*psi_x*t126 + e0*psi_y*t127 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t127 = -m_x*psi_y + m_y*psi_x
+            t128 = m_x*psi_z
+            t129 = -m_z*psi_x + t128
+            t130 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t127 + e0*psi_z*t129 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t127 - e0*psi_z*t130 - m_y + (0.5)*m_z*psi_x - 0.5*t128
+            W_z += -e0*psi_x*t129 + e0*psi_y*t130 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t128 = W_x + rhs_x
-        t129 = W_y + rhs_y
-        t130 = W_z + rhs_z
-        wp_x = Bxx*t128 + Byx*t129 + Bzx*t130
-        wp_y = Bxy*t128 + Byy*t129 + Bzy*t130
-        wp_z = Bxz*t128 + Byz*t129 + Bzz*t130
+        t131 = W_x + rhs_x
+        t132 = W_y + rhs_y
+        t133 = W_z + rhs_z
+        wp_x = Bxx*t131 + Byx*t132 + Bzx*t133
+        wp_y = Bxy*t131 + Byy*t132 + Bzy*t133
+        wp_z = Bxz*t131 + Byz*t132 + Bzz*t133
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -741,83 +768,94 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t131 = m_y*psi_z
-            t132 = m_x*psi_y
-            t133 = m_y*psi_x - t132
-            t134 = e0*psi_y
-            t135 = m_x*psi_z
-            t136 = m_z*psi_x
-            t137 = t135 - t136
-            t138 = e0*psi_z
-            t139 = psi_y*wp_z
-            t140 = psi_z*wp_y
-            t141 = psi_x*wp_y
-            t142 = psi_y*wp_x
-            t143 = t141 - t142
-            t144 = psi_x*wp_z
-            t145 = psi_z*wp_x - t144
-            t146 = m_z*psi_y - t131
-            t147 = e0*psi_x
-            t148 = t139 - t140
-            g[j3] = (alpha_r*(t134*t143 - t138*t145 - 0.5*t139 + (0.5)*t140 + wp_x) + m_x -
-                0.5*m_z*psi_y + (0.5)*t131 + t133*t134 - t137*t138)
-            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t138*t148 - t143*t147 + (0.5)*t144 + wp_y) +
-                m_y - t133*t147 - 0.5*t135 + (0.5)*t136 + t138*t146)
-            g[j3 + 2] = (alpha_r*(-t134*t148 - 0.5*t141 + (0.5)*t142 + t145*t147 + wp_z) -
-                0.5*m_y*psi_x + m_z + (0.5)*t132 - t134*t146 + t137*t147)
+            t134 = m_y*psi_z
+            t135 = m_x*psi_y
+            t136 = m_y*psi_x - t135
+            t137 = e0*psi_y
+            t138 = m_x*psi_z
+            t139 = m_z*psi_x
+            t140 = t138 - t139
+            t141 = e0*psi_z
+            t142 = psi_y*wp_z
+            t143 = psi_z*wp_y
+            t144 = psi_x*wp_y
+            t145 = psi_y*wp_x
+            t146 = t144 - t145
+            t147 = psi_x*wp_z
+            t148 = psi_z*wp_x - t147
+            t149 = m_z*psi_y - t134
+            t150 = e0*psi_x
+            t151 = t142 - t143
+            g[j3] = (alpha_r*(t137*t146 - t141*t148 - 0.5*t142 + (0.5)*t143 + wp_x) + m_x -
+                0.5*m_z*psi_y + (0.5)*t134 + t136*t137 - t140*t141)
+            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t141*t151 - t146*t150 + (0.5)*t147 + wp_y) +
+                m_y - t136*t150 - 0.5*t138 + (0.5)*t139 + t141*t149)
+            g[j3 + 2] = (alpha_r*(-t137*t151 - 0.5*t144 + (0.5)*t145 + t148*t150 + wp_z) -
+                0.5*m_y*psi_x + m_z + (0.5)*t135 - t137*t149 + t140*t150)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
             g[k] = fm
         if task == ENERGY:
             # momentum of deformation, Mbar zdot
-            block_times(Mz, zd, moved, N, N, hN)
+            packed_times(Mz, zd, moved, 1*hN)
             # twice its energy
-            rows_times(moved, zd, squares, N, 1, hN)
-            # elastic force, Sbar y
-            block_times(Sz, z, moved, free, free, hn)
-            # twice its energy
-            rows_times(moved, z, at(squares, 1), free, 1, hn)
+            rows_times(moved, zd, at(squares, 0), N, 1, hN)
+            # twice that of Sbar y
+            rows_times(at(Gy, resultants*hn), z, at(squares, 1), free, 1, hn)
             # damping force, Cbar ydot
-            block_times(Cz, zd, moved, free, damped, hn)
+            packed_times(Cz, zd, moved, 1*hN)
             # its power
             rows_times(moved, zd, at(squares, 2), free, 1, hn)
             # energies, momentum and its moment about the origin
+            turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             moving = squares[0]
             elastic = squares[1]
-            t149 = Om0_y*sum_c_z - Om0_z*sum_c_y + sum_cd_x
-            t150 = -Om0_x*sum_c_z + Om0_z*sum_c_x + sum_cd_y
-            t151 = Om0_x*sum_c_y - Om0_y*sum_c_x + sum_cd_z
-            t152 = Om0_x*sum_J_xx + Om0_y*sum_J_xy + Om0_z*sum_J_xz
-            t153 = Om0_x*sum_J_xy + Om0_y*sum_J_yy + Om0_z*sum_J_yz
-            t154 = Om0_x*sum_J_xz + Om0_y*sum_J_yz + Om0_z*sum_J_zz
-            t155 = mass*x0_x
-            t156 = mass*x0_y
-            t157 = mass*x0_z
-            t158 = mass*v0_x + t149
-            t159 = mass*v0_y + t150
-            t160 = mass*v0_z + t151
-            t161 = R0_xx*t158 + R0_xy*t159 + R0_xz*t160
-            t162 = R0_yx*t158 + R0_yy*t159 + R0_yz*t160
-            t163 = R0_zx*t158 + R0_zy*t159 + R0_zz*t160
-            t164 = sum_c_y*v0_z - sum_c_z*v0_y + sum_spun_x + t152
-            t165 = -sum_c_x*v0_z + sum_c_z*v0_x + sum_spun_y + t153
-            t166 = sum_c_x*v0_y - sum_c_y*v0_x + sum_spun_z + t154
-            kinetic = (Om0_x*sum_spun_x + (0.5)*Om0_x*t152 + Om0_y*sum_spun_y + (0.5)*Om0_y*t153 +
-                Om0_z*sum_spun_z + (0.5)*Om0_z*t154 + (0.5)*mass*(v0_x*v0_x + v0_y*v0_y +
-                v0_z*v0_z) + (0.5)*moving + t149*v0_x + t150*v0_y + t151*v0_z)
+            t152 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            t153 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t154 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t155 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
+            t156 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
+            t157 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
+            t158 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
+            t159 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
+            t160 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
+            t161 = mass*x0_x
+            t162 = mass*x0_y
+            t163 = mass*x0_z
+            t164 = mass*t160 + t159
+            t165 = mass*t158 + t157
+            t166 = mass*t156 + t155
+            t167 = t164*turn_xx + t165*turn_xy + t166*turn_xz
+            t168 = t164*turn_yx + t165*turn_yy + t166*turn_yz
+            t169 = t164*turn_zx + t165*turn_zy + t166*turn_zz
+            t170 = R0_xx*t167 + R0_xy*t168 + R0_xz*t169
+            t171 = R0_yx*t167 + R0_yy*t168 + R0_yz*t169
+            t172 = R0_zx*t167 + R0_zy*t168 + R0_zz*t169
+            t173 = sum_c_y*t156 - sum_c_z*t158 + sum_spun_x + t152
+            t174 = -sum_c_x*t156 + sum_c_z*t160 + sum_spun_y + t153
+            t175 = sum_c_x*t158 - sum_c_y*t160 + sum_spun_z + t154
+            t176 = t173*turn_xx + t174*turn_xy + t175*turn_xz
+            t177 = t173*turn_yx + t174*turn_yy + t175*turn_yz
+            t178 = t173*turn_zx + t174*turn_zy + t175*turn_zz
+            kinetic = ((0.5)*mass*(t156*t156 + t158*t158 + t160*t160) + (0.5)*moving +
+                spin_x*sum_spun_x + (0.5)*spin_x*t152 + spin_y*sum_spun_y + (0.5)*spin_y*t153 +
+                spin_z*sum_spun_z + (0.5)*spin_z*t154 + t155*t156 + t157*t158 + t159*t160)
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(R0_xx*t155 + R0_yx*t156 + R0_zx*t157 + sum_c_x) -
-                gamma_y*(R0_xy*t155 + R0_yy*t156 + R0_zy*t157 + sum_c_y) - gamma_z*(R0_xz*t155 +
-                R0_yz*t156 + R0_zz*t157 + sum_c_z))
-            P_x = t161
-            P_y = t162
-            P_z = t163
-            H_x = R0_xx*t164 + R0_xy*t165 + R0_xz*t166 - t162*x0_z + t163*x0_y
-            H_y = R0_yx*t164 + R0_yy*t165 + R0_yz*t166 + t161*x0_z - t163*x0_x
-            H_z = R0_zx*t164 + R0_zy*t165 + R0_zz*t166 - t161*x0_y + t162*x0_x
+            potential = (-gamma_x*(R0_xx*t161 + R0_yx*t162 + R0_zx*t163 + sum_c_x*turn_xx +
+                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t161 + R0_yy*t162 + R0_zy*t163
+                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t161 +
+                R0_yz*t162 + R0_zz*t163 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
+            P_x = t170
+            P_y = t171
+            P_z = t172
+            H_x = R0_xx*t176 + R0_xy*t177 + R0_xz*t178 - t171*x0_z + t172*x0_y
+            H_y = R0_yx*t176 + R0_yy*t177 + R0_yz*t178 + t170*x0_z - t172*x0_x
+            H_z = R0_zx*t176 + R0_zy*t177 + R0_zz*t178 - t170*x0_y + t171*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -834,62 +872,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             # Q_b zdd, all b
-            block_times(followers, zdd, Za, slaved*hn, free, slaved*hn)
+            packed_times(followers, zdd, Za, slaved*hn)
             # second derivative of the coefficients of T^-1
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 e2s[j] = (inverse_tangent_second(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2]
                     * y[j3 + 2]))
             # J2_kl zdot
-            block_times(quadratics, zd, more, 6*hN, N, 12*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            block_times(at(quadratics, 6*hN), zdd, at(more, 6*hN), 6*hN, N, 12*hN)
+            packed_times(of_place, zd, more, 9*hN)
+            # (K_k^T - K_k) zddot and K_k^T zddot
+            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
             # factors of the local tangents
-            t167 = 2*Om0_x*c_geo
-            by_place[0] = -Om0_x*Om0_x*c_geo
-            by_place[1] = -Om0_y*Om0_y*c_geo
-            by_place[2] = -Om0_z*Om0_z*c_geo
-            by_place[3] = -Om0_y*t167
-            by_place[4] = -Om0_z*t167
-            by_place[5] = -2*Om0_y*Om0_z*c_geo
-            by_place[6] = Om0d_x*c_geo
-            by_place[7] = Om0d_y*c_geo
-            by_place[8] = Om0d_z*c_geo
-            by_place[9] = 0
-            by_place[10] = 0
-            by_place[11] = 0
-            by_rate[0] = 0
-            by_rate[1] = 0
-            by_rate[2] = 0
+            turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
+            t179 = 2*c_geo*spin_x
+            by_place[0] = -c_geo*spin_x*spin_x
+            by_place[1] = -c_geo*spin_y*spin_y
+            by_place[2] = -c_geo*spin_z*spin_z
+            by_place[3] = -spin_y*t179
+            by_place[4] = -spin_z*t179
+            by_place[5] = -2*c_geo*spin_y*spin_z
+            by_place[6] = c_geo*turning_x
+            by_place[7] = c_geo*turning_y
+            by_place[8] = c_geo*turning_z
+            by_rate[0] = spin_x
+            by_rate[1] = spin_y
+            by_rate[2] = spin_z
             by_rate[3] = 0
             by_rate[4] = 0
             by_rate[5] = 0
-            by_rate[6] = 0
-            by_rate[7] = 0
-            by_rate[8] = 0
-            by_rate[9] = Om0_x
-            by_rate[10] = Om0_y
-            by_rate[11] = Om0_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
                 on_eta = local[free + b]
                 by_followers[b] = c_geo*on_eta
-            # local tangents: columns of the coordinates
-            for j in range(N):
-                # by z
-                block_times(at(quadratics, j*12*hN), by_place, at(Lz, j*deep), N, 12, hN)
-                # by zdot
-                block_times(at(quadratics, j*12*hN), by_rate, at(Lv, j*deep), N, 12, hN)
-                # by zddot
-                block_times(at(Mz, j*hN), ones, at(La, j*deep), N, 1, hN)
-            # elastic and slaved parts
+            # local tangents
+            clear(Lz, N*deep)
+            # local tangents
+            clear(Lv, N*deep)
+            # local tangents
+            clear(La, N*deep)
+            # by z: J2_kl and K_k^T
+            add_packed(of_place, by_place, Lz, deep)
+            # forces on eta
+            add_packed(followers, by_followers, Lz, deep)
+            # by zdot: K_k^T - K_k
+            add_packed(of_rate, by_rate, Lv, deep)
+            # structural damping
+            add_packed(Cz, ones, Lv, deep)
+            # by zddot
+            add_packed(Mz, ones, La, deep)
+            # stiffness and geometric stiffness
+            add_packed(stretched, by_Gy, Lz, deep)
+            # changes of the resultants
             for j in range(free):
-                # stiffness
-                add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
-                # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep),
-                                free, slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]
@@ -897,20 +933,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gy_j = Gy[e*hn + j]
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
-                # change of the resultants
+                # their forces
                 add_block_times(E, of_E, at(Lz, j*deep), free, resultants, hn)
                 # the same
                 add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
-                # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free,
-                                resultants, hn)
-            # structural damping
-            for j in range(damped):
-                # a column
-                add_block_times(at(Cz, j*hn), ones, at(Lv, j*deep), free, 1, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
+                turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+                spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
                 row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
@@ -923,71 +954,75 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i], products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i], products[8*hN
                     + i])
-                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                row_w_x, row_w_y, row_w_z = (products[9*hN + i], products[10*hN + i],
                     products[11*hN + i])
-                row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
+                row_v_x, row_v_y, row_v_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[1*hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
-                t168 = Om0_x*row_S1_y
-                t169 = Om0_y*row_S1_x
-                t170 = t168 - t169
-                t171 = Om0_x*row_S1_z
-                t172 = Om0_z*row_S1_x - t171
-                t173 = Om0_y*row_S1_z
-                t174 = Om0_z*row_S1_y
-                t175 = t173 - t174
-                t176 = 2*Om0_x
-                t177 = 2*Om0_y
-                t178 = 2*Om0_z
-                t179 = -row_w_z
-                t180 = row_v_z + t179
-                t181 = row_h_xx + 2*row_j_xx
-                t182 = row_h_xy + 2*row_j_xy
-                t183 = row_h_xz + 2*row_j_xz
-                t184 = -row_w_y
-                t185 = row_v_y + t184
-                t186 = row_h_yz + 2*row_j_yz
-                t187 = row_h_zz + 2*row_j_zz
-                t188 = Om0_x*t183 + Om0_y*t186 + Om0_z*t187
-                t189 = row_h_yy + 2*row_j_yy
-                t190 = Om0_x*t182 + Om0_y*t189 + Om0_z*t186
-                t191 = -row_w_x
-                t192 = row_v_x + t191
-                t193 = Om0_x*t181 + Om0_y*t182 + Om0_z*t183
-                t194 = row_g_z + row_u_z
-                t195 = row_g_y + row_u_y
-                t196 = row_g_x + row_u_x
-                Lz[i*deep + N] = c_geo*(Om0_y*t170 - Om0_z*t172 + Om0d_y*row_S1_z - Om0d_z*row_S1_y)
-                Lz[i*deep + N + 1] = (c_geo*(-Om0_x*t170 + Om0_z*t175 - Om0d_x*row_S1_z +
-                    Om0d_z*row_S1_x))
-                Lz[i*deep + N + 2] = (c_geo*(Om0_x*t172 - Om0_y*t175 + Om0d_x*row_S1_y -
-                    Om0d_y*row_S1_x))
-                Lz[i*deep + N + 3] = (c_geo*(Om0_y*t180 + Om0_y*t188 - Om0_z*t185 - Om0_z*t190 +
-                    Om0d_x*t181 + Om0d_y*t182 + Om0d_z*t183 - felt_y*row_S1_z + felt_z*row_S1_y +
-                    row_jd_xx*t176 + row_jd_xy*t177 + row_jd_xz*t178 + row_ua_x - row_wa_x))
-                Lz[i*deep + N + 4] = (c_geo*(-Om0_x*t180 - Om0_x*t188 + Om0_z*t192 + Om0_z*t193 +
-                    Om0d_x*t182 + Om0d_y*t189 + Om0d_z*t186 + felt_x*row_S1_z - felt_z*row_S1_x +
-                    row_jd_xy*t176 + row_jd_yy*t177 + row_jd_yz*t178 + row_ua_y - row_wa_y))
-                Lz[i*deep + N + 5] = (c_geo*(Om0_x*t185 + Om0_x*t190 - Om0_y*t192 - Om0_y*t193 +
-                    Om0d_x*t183 + Om0d_y*t186 + Om0d_z*t187 - felt_x*row_S1_y + felt_y*row_S1_x +
-                    row_jd_xz*t176 + row_jd_yz*t177 + row_jd_zz*t178 + row_ua_z - row_wa_z))
-                Lv[i*deep + N] = 2*t173 - 2*t174
-                Lv[i*deep + N + 1] = 2*Om0_z*row_S1_x - 2*t171
-                Lv[i*deep + N + 2] = 2*t168 - 2*t169
-                Lv[i*deep + N + 3] = Om0_y*t194 - Om0_z*t195 + 2*row_v_x + t191 + t193
-                Lv[i*deep + N + 4] = -Om0_x*t194 + Om0_z*t196 + 2*row_v_y + t184 + t190
-                Lv[i*deep + N + 5] = Om0_x*t195 - Om0_y*t196 + 2*row_v_z + t179 + t188
+                row_wa_x, row_wa_y, row_wa_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
+                row_ua_x, row_ua_y, row_ua_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                t180 = row_S1_x*spin_z
+                t181 = row_S1_z*spin_x
+                t182 = t180 - t181
+                t183 = row_S1_x*spin_y
+                t184 = row_S1_y*spin_x - t183
+                t185 = row_S1_y*spin_z
+                t186 = row_S1_z*spin_y - t185
+                t187 = 2*spin_x
+                t188 = 2*spin_y
+                t189 = 2*spin_z
+                t190 = -row_w_z
+                t191 = row_v_z + t190
+                t192 = row_h_xx + 2*row_j_xx
+                t193 = row_h_xy + 2*row_j_xy
+                t194 = row_h_xz + 2*row_j_xz
+                t195 = -row_w_y
+                t196 = row_v_y + t195
+                t197 = row_h_yz + 2*row_j_yz
+                t198 = row_h_zz + 2*row_j_zz
+                t199 = spin_x*t194 + spin_y*t197 + spin_z*t198
+                t200 = row_h_yy + 2*row_j_yy
+                t201 = spin_x*t193 + spin_y*t200 + spin_z*t197
+                t202 = -row_w_x
+                t203 = row_v_x + t202
+                t204 = spin_x*t192 + spin_y*t193 + spin_z*t194
+                t205 = row_g_z + row_u_z
+                t206 = row_g_y + row_u_y
+                t207 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t184 -
+                    spin_z*t182))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t184
+                    + spin_z*t186))
+                Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
+                    spin_x*t182 - spin_y*t186))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t187 +
+                    row_jd_xy*t188 + row_jd_xz*t189 + row_ua_x - row_wa_x + spin_y*t191 +
+                    spin_y*t199 - spin_z*t196 - spin_z*t201 + t192*turning_x + t193*turning_y +
+                    t194*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t187 +
+                    row_jd_yy*t188 + row_jd_yz*t189 + row_ua_y - row_wa_y - spin_x*t191 -
+                    spin_x*t199 + spin_z*t203 + spin_z*t204 + t193*turning_x + t197*turning_z +
+                    t200*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t187 +
+                    row_jd_yz*t188 + row_jd_zz*t189 + row_ua_z - row_wa_z + spin_x*t196 +
+                    spin_x*t201 - spin_y*t203 - spin_y*t204 + t194*turning_x + t197*turning_y +
+                    t198*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t185
+                Lv[i*deep + N + 1] = 2*t180 - 2*t181
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t183
+                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t205 - spin_z*t206 + t202 + t204
+                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t205 + spin_z*t207 + t195 + t201
+                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t206 - spin_y*t207 + t190 + t199
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t196
-                La[i*deep + N + 4] = t195
-                La[i*deep + N + 5] = t194
+                La[i*deep + N + 3] = t207
+                La[i*deep + N + 4] = t206
+                La[i*deep + N + 5] = t205
             # local tangents: motion of the frame
             for i in range(N):
+                spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
                 row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
@@ -1000,16 +1035,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i], products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i], products[8*hN
                     + i])
-                row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
-                    products[14*hN + i])
-                t197 = row_h_xy + 2*row_j_xy
-                t198 = row_h_xz + 2*row_j_xz
-                t199 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = -Om0_x*(row_h_xx + 2*row_j_xx) - Om0_y*t197 - Om0_z*t198 + row_w_x
-                Lv[(N + 1)*deep + i] = (-Om0_x*t197 - Om0_y*(row_h_yy + 2*row_j_yy) - Om0_z*t199 +
-                    row_w_y)
-                Lv[(N + 2)*deep + i] = (-Om0_x*t198 - Om0_y*t199 - Om0_z*(row_h_zz + 2*row_j_zz) +
-                    row_w_z)
+                row_w_x, row_w_y, row_w_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
+                t208 = row_h_xy + 2*row_j_xy
+                t209 = row_h_xz + 2*row_j_xz
+                t210 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t208 -
+                    spin_z*t209)
+                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t208 - spin_y*(row_h_yy + 2*row_j_yy) -
+                    spin_z*t210)
+                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t209 - spin_y*t210 - spin_z*(row_h_zz +
+                    2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -1017,80 +1053,81 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 La[(N + 4)*deep + i] = row_g_y + row_u_y
                 La[(N + 5)*deep + i] = row_g_z + row_u_z
             # local tangents: force on the frame by its motion
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t200 = Om0_y*sum_c_y
-            t201 = Om0_z*sum_c_z
-            t202 = 2*sum_cd_z
-            t203 = Om0_x*sum_c_y
-            t204 = 2*sum_cd_y
-            t205 = Om0_z*sum_c_x
-            t206 = Om0_y*sum_J_xz
-            t207 = Om0_z*sum_J_xy
-            t208 = Om0_y*sum_J_yz
-            t209 = Om0_x*sum_J_xz
-            t210 = Om0_z*sum_J_zz + sum_spun_z
-            t211 = Om0_z*sum_J_yz
-            t212 = Om0_x*sum_J_xy
-            t213 = Om0_y*sum_J_yy + sum_spun_y
-            t214 = Om0_x*sum_c_x
-            t215 = 2*sum_cd_x
-            t216 = Om0_y*sum_c_z
-            t217 = Om0_x*sum_J_yz
-            t218 = Om0_z*sum_J_xz
-            t219 = Om0_y*sum_J_xy
-            t220 = Om0_x*sum_J_xx + sum_spun_x
-            t221 = -sum_c_y
-            t222 = -sum_c_z
-            t223 = -sum_c_x
-            Lv[N*deep + N] = t200 + t201
-            Lv[N*deep + N + 1] = Om0_y*sum_c_x - t202 - 2*t203
-            Lv[N*deep + N + 2] = -2*Om0_x*sum_c_z + t204 + t205
-            Lv[N*deep + N + 3] = sum_Jd_xx + t206 - t207
-            Lv[N*deep + N + 4] = Om0_z*sum_J_xx + sum_Jd_xy - t208 - 2*t209 - t210
-            Lv[N*deep + N + 5] = -Om0_y*sum_J_xx + sum_Jd_xz + t211 + 2*t212 + t213
-            Lv[(N + 1)*deep + N] = -2*Om0_y*sum_c_x + t202 + t203
-            Lv[(N + 1)*deep + N + 1] = t201 + t214
-            Lv[(N + 1)*deep + N + 2] = Om0_z*sum_c_y - t215 - 2*t216
-            Lv[(N + 1)*deep + N + 3] = -Om0_z*sum_J_yy + sum_Jd_xy + 2*t208 + t209 + t210
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t207 - t217
-            Lv[(N + 1)*deep + N + 5] = Om0_x*sum_J_yy + sum_Jd_yz - t218 - 2*t219 - t220
-            Lv[(N + 2)*deep + N] = Om0_x*sum_c_z - t204 - 2*t205
-            Lv[(N + 2)*deep + N + 1] = -2*Om0_z*sum_c_y + t215 + t216
-            Lv[(N + 2)*deep + N + 2] = t200 + t214
-            Lv[(N + 2)*deep + N + 3] = Om0_y*sum_J_zz + sum_Jd_xz - 2*t211 - t212 - t213
-            Lv[(N + 2)*deep + N + 4] = -Om0_x*sum_J_zz + sum_Jd_yz + 2*t218 + t219 + t220
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t206 + t217
+            t211 = spin_y*sum_c_y
+            t212 = spin_z*sum_c_z
+            t213 = 2*sum_cd_z
+            t214 = spin_x*sum_c_y
+            t215 = 2*sum_cd_y
+            t216 = spin_z*sum_c_x
+            t217 = spin_y*sum_J_xz
+            t218 = spin_z*sum_J_xy
+            t219 = spin_y*sum_J_yz
+            t220 = spin_x*sum_J_xz
+            t221 = spin_z*sum_J_zz + sum_spun_z
+            t222 = spin_z*sum_J_yz
+            t223 = spin_x*sum_J_xy
+            t224 = spin_y*sum_J_yy + sum_spun_y
+            t225 = spin_x*sum_c_x
+            t226 = 2*sum_cd_x
+            t227 = spin_y*sum_c_z
+            t228 = spin_x*sum_J_yz
+            t229 = spin_z*sum_J_xz
+            t230 = spin_y*sum_J_xy
+            t231 = spin_x*sum_J_xx + sum_spun_x
+            t232 = -sum_c_y
+            t233 = -sum_c_z
+            t234 = -sum_c_x
+            Lv[N*deep + N] = t211 + t212
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t213 - 2*t214
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t215 + t216
+            Lv[N*deep + N + 3] = sum_Jd_xx + t217 - t218
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t219 - 2*t220 - t221
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t222 + 2*t223 + t224
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t213 + t214
+            Lv[(N + 1)*deep + N + 1] = t212 + t225
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t226 - 2*t227
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t219 + t220 + t221
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t218 - t228
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t229 - 2*t230 - t231
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t215 - 2*t216
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t226 + t227
+            Lv[(N + 2)*deep + N + 2] = t211 + t225
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t222 - t223 - t224
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t229 + t230 + t231
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t217 + t228
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0
             La[N*deep + N + 2] = 0
             La[N*deep + N + 3] = 0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t221
+            La[N*deep + N + 5] = t232
             La[(N + 1)*deep + N] = 0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0
-            La[(N + 1)*deep + N + 3] = t222
+            La[(N + 1)*deep + N + 3] = t233
             La[(N + 1)*deep + N + 4] = 0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0
             La[(N + 2)*deep + N + 1] = 0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t223
+            La[(N + 2)*deep + N + 4] = t234
             La[(N + 2)*deep + N + 5] = 0
             La[(N + 3)*deep + N] = 0
-            La[(N + 3)*deep + N + 1] = t222
+            La[(N + 3)*deep + N + 1] = t233
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0
-            La[(N + 4)*deep + N + 2] = t223
+            La[(N + 4)*deep + N + 2] = t234
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t221
+            La[(N + 5)*deep + N] = t232
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1128,16 +1165,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t224 = -dth_x*psi_y + dth_y*psi_x
-                    t225 = dth_x*psi_z
-                    t226 = -dth_z*psi_x + t225
-                    t227 = -dth_y*psi_z + dth_z*psi_y
+                    t235 = -dth_x*psi_y + dth_y*psi_x
+                    t236 = dth_x*psi_z
+                    t237 = -dth_z*psi_x + t236
+                    t238 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t224 + e0*psi_z*t226))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t224 - e0*psi_z*t227
-                        - 0.5*t225))
+                        e0*psi_y*t235 + e0*psi_z*t237))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t235 - e0*psi_z*t238
+                        - 0.5*t236))
                     rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z -
-                        e0*psi_x*t226 + e0*psi_y*t227))
+                        e0*psi_x*t237 + e0*psi_y*t238))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1147,49 +1184,49 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t228 = X_y + u_y
-                    t229 = X_z + u_z
-                    t230 = X_x + u_x
-                    dy[i3] = -dth0_y*t229 + dth0_z*t228 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t229 - dth0_z*t230 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t228 + dth0_y*t230 - dx0_z + dx_z
+                    t239 = X_y + u_y
+                    t240 = X_z + u_z
+                    t241 = X_x + u_x
+                    dy[i3] = -dth0_y*t240 + dth0_z*t239 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t240 - dth0_z*t241 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t239 + dth0_y*t241 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t231 = dth0_y*psi_z
-                    t232 = dth_y*psi_z
-                    t233 = dth0_x*psi_y
-                    t234 = dth0_y*psi_x - t233
-                    t235 = e0*psi_y
-                    t236 = dth_x*psi_z
-                    t237 = dth_z*psi_x
-                    t238 = t236 - t237
-                    t239 = e0*psi_z
-                    t240 = dth_x*psi_y
-                    t241 = dth_y*psi_x - t240
-                    t242 = dth0_x*psi_z
-                    t243 = dth0_z*psi_x
-                    t244 = t242 - t243
-                    t245 = e0*psi_x
-                    t246 = dth_z*psi_y - t232
-                    t247 = dth0_z*psi_y - t231
+                    t242 = dth0_y*psi_z
+                    t243 = dth_y*psi_z
+                    t244 = dth0_x*psi_y
+                    t245 = dth0_y*psi_x - t244
+                    t246 = e0*psi_y
+                    t247 = dth_x*psi_z
+                    t248 = dth_z*psi_x
+                    t249 = t247 - t248
+                    t250 = e0*psi_z
+                    t251 = dth_x*psi_y
+                    t252 = dth_y*psi_x - t251
+                    t253 = dth0_x*psi_z
+                    t254 = dth0_z*psi_x
+                    t255 = t253 - t254
+                    t256 = e0*psi_x
+                    t257 = dth_z*psi_y - t243
+                    t258 = dth0_z*psi_y - t242
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t241 + e0*psi_z*t244 - 0.5*t231 - 0.5*t232 - t234*t235 -
-                        t238*t239)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t234*t245 + (0.5)*t236 - 0.5*t237 + t239*t246
-                        - t239*t247 - t241*t245 + (0.5)*t242 - 0.5*t243)
+                        e0*psi_y*t252 + e0*psi_z*t255 - 0.5*t242 - 0.5*t243 - t245*t246 -
+                        t249*t250)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t245*t256 + (0.5)*t247 - 0.5*t248 + t250*t257
+                        - t250*t258 - t252*t256 + (0.5)*t253 - 0.5*t254)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t238 + e0*psi_y*t247 - 0.5*t233 - t235*t246 - 0.5*t240 -
-                        t244*t245)
+                        e0*psi_x*t249 + e0*psi_y*t258 - 0.5*t244 - t246*t257 - 0.5*t251 -
+                        t255*t256)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # coordinates that determine the others, of dy
-                gather(dy, kept, dz, free, hN)
+                to_free(dy, axes, order, unordered, dz, bound, bound_free, free, hN)
                 # differential: eta_b
                 rows_times(Zq, dz, at(dz, free), free, slaved, hn)
                 # differential of the local forces by dz
@@ -1225,47 +1262,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t248 = -Om_x*psi_y + Om_y*psi_x
-                    t249 = dpsi_y*e0
-                    t250 = Om0_x*psi_z - Om0_z*psi_x
-                    t251 = dpsi_z*e0
-                    t252 = Om0_x*dpsi_z
-                    t253 = -Om0_z*dpsi_x + t252
-                    t254 = e0*psi_z
-                    t255 = -Om0_x*psi_y + Om0_y*psi_x
-                    t256 = Om_x*psi_z - Om_z*psi_x
-                    t257 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t258 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t259 = e0*psi_y
-                    t260 = Om_x*dpsi_z
-                    t261 = dOm_x*psi_z
-                    t262 = -Om_z*dpsi_x - dOm_z*psi_x + t260 + t261
-                    t263 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t264 = e1*t263
-                    t265 = psi_y*t264
-                    t266 = psi_z*t264
-                    t267 = dpsi_x*e0
-                    t268 = -Om_y*psi_z + Om_z*psi_y
-                    t269 = e0*psi_x
-                    t270 = -Om0_y*psi_z + Om0_z*psi_y
-                    t271 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t272 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t273 = psi_x*t264
+                    t259 = -Om_x*psi_y + Om_y*psi_x
+                    t260 = dpsi_y*e0
+                    t261 = Om0_x*psi_z - Om0_z*psi_x
+                    t262 = dpsi_z*e0
+                    t263 = Om0_x*dpsi_z
+                    t264 = -Om0_z*dpsi_x + t263
+                    t265 = e0*psi_z
+                    t266 = -Om0_x*psi_y + Om0_y*psi_x
+                    t267 = Om_x*psi_z - Om_z*psi_x
+                    t268 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t269 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t270 = e0*psi_y
+                    t271 = Om_x*dpsi_z
+                    t272 = dOm_x*psi_z
+                    t273 = -Om_z*dpsi_x - dOm_z*psi_x + t271 + t272
+                    t274 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t275 = e1*t274
+                    t276 = psi_y*t275
+                    t277 = psi_z*t275
+                    t278 = dpsi_x*e0
+                    t279 = -Om_y*psi_z + Om_z*psi_y
+                    t280 = e0*psi_x
+                    t281 = -Om0_y*psi_z + Om0_z*psi_y
+                    t282 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t283 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t284 = psi_x*t275
                     rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
                         - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t255 + dpsi_z*e0*t256 + e0*psi_y*t257 + e0*psi_z*t262 +
-                        e1*psi_y*t255*t263 + e1*psi_z*t256*t263 - t248*t249 - t248*t265 -
-                        t250*t251 - t250*t266 - t253*t254 - t258*t259))
+                        dpsi_y*e0*t266 + dpsi_z*e0*t267 + e0*psi_y*t268 + e0*psi_z*t273 +
+                        e1*psi_y*t266*t274 + e1*psi_z*t267*t274 - t259*t260 - t259*t276 -
+                        t261*t262 - t261*t277 - t264*t265 - t269*t270))
                     rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t248 + dpsi_z*e0*t270 + e0*psi_x*t258 +
-                        e0*psi_z*t271 + e1*psi_x*t248*t263 + e1*psi_z*t263*t270 - t251*t268 -
-                        0.5*t252 - t254*t272 - t255*t267 - t255*t273 - t257*t269 - 0.5*t260 -
-                        0.5*t261 - t266*t268))
+                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t259 + dpsi_z*e0*t281 + e0*psi_x*t269 +
+                        e0*psi_z*t282 + e1*psi_x*t259*t274 + e1*psi_z*t274*t281 - t262*t279 -
+                        0.5*t263 - t265*t283 - t266*t278 - t266*t284 - t268*t280 - 0.5*t271 -
+                        0.5*t272 - t277*t279))
                     rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
                         - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t250 + dpsi_y*e0*t268 + e0*psi_x*t253 + e0*psi_y*t272 +
-                        e1*psi_x*t250*t263 + e1*psi_y*t263*t268 - t249*t270 - t256*t267 -
-                        t256*t273 - t259*t271 - t262*t269 - t265*t270))
+                        dpsi_x*e0*t261 + dpsi_y*e0*t279 + e0*psi_x*t264 + e0*psi_y*t283 +
+                        e1*psi_x*t261*t274 + e1*psi_y*t274*t279 - t260*t281 - t267*t278 -
+                        t267*t284 - t270*t282 - t273*t280 - t276*t281))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1298,13 +1335,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t274 = X_y + u_y
-                    t275 = X_z + u_z
-                    t276 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t275 + dOm0_z*t274 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t275 - dOm0_z*t276 - dv0_y +
+                    t285 = X_y + u_y
+                    t286 = X_z + u_z
+                    t287 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t286 + dOm0_z*t285 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t286 - dOm0_z*t287 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t274 + dOm0_y*t276 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t285 + dOm0_y*t287 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1315,59 +1352,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t277 = Om0_y*dpsi_z
-                    t278 = Om_y*dpsi_z
-                    t279 = dOm0_y*psi_z
-                    t280 = dOm_y*psi_z
-                    t281 = -Om0_x*psi_y + Om0_y*psi_x
-                    t282 = dpsi_y*e0
-                    t283 = Om_x*psi_z - Om_z*psi_x
-                    t284 = dpsi_z*e0
-                    t285 = -Om_x*psi_y + Om_y*psi_x
-                    t286 = Om0_x*psi_z - Om0_z*psi_x
-                    t287 = Om0_x*dpsi_y
-                    t288 = dOm0_x*psi_y
-                    t289 = Om0_y*dpsi_x + dOm0_y*psi_x - t287 - t288
-                    t290 = e0*psi_y
-                    t291 = Om_x*dpsi_z
-                    t292 = dOm_x*psi_z
-                    t293 = Om_z*dpsi_x
-                    t294 = dOm_z*psi_x
-                    t295 = t291 + t292 - t293 - t294
-                    t296 = e0*psi_z
-                    t297 = Om_x*dpsi_y
-                    t298 = dOm_x*psi_y
-                    t299 = Om_y*dpsi_x + dOm_y*psi_x - t297 - t298
-                    t300 = Om0_x*dpsi_z
-                    t301 = dOm0_x*psi_z
-                    t302 = Om0_z*dpsi_x
-                    t303 = dOm0_z*psi_x
-                    t304 = t300 + t301 - t302 - t303
-                    t305 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t306 = e1*t305
-                    t307 = psi_y*t306
-                    t308 = psi_z*t306
-                    t309 = dpsi_x*e0
-                    t310 = -Om_y*psi_z + Om_z*psi_y
-                    t311 = -Om0_y*psi_z + Om0_z*psi_y
-                    t312 = e0*psi_x
-                    t313 = Om_z*dpsi_y + dOm_z*psi_y - t278 - t280
-                    t314 = Om0_z*dpsi_y + dOm0_z*psi_y - t277 - t279
-                    t315 = psi_x*t306
+                    t288 = Om0_y*dpsi_z
+                    t289 = Om_y*dpsi_z
+                    t290 = dOm0_y*psi_z
+                    t291 = dOm_y*psi_z
+                    t292 = -Om0_x*psi_y + Om0_y*psi_x
+                    t293 = dpsi_y*e0
+                    t294 = Om_x*psi_z - Om_z*psi_x
+                    t295 = dpsi_z*e0
+                    t296 = -Om_x*psi_y + Om_y*psi_x
+                    t297 = Om0_x*psi_z - Om0_z*psi_x
+                    t298 = Om0_x*dpsi_y
+                    t299 = dOm0_x*psi_y
+                    t300 = Om0_y*dpsi_x + dOm0_y*psi_x - t298 - t299
+                    t301 = e0*psi_y
+                    t302 = Om_x*dpsi_z
+                    t303 = dOm_x*psi_z
+                    t304 = Om_z*dpsi_x
+                    t305 = dOm_z*psi_x
+                    t306 = t302 + t303 - t304 - t305
+                    t307 = e0*psi_z
+                    t308 = Om_x*dpsi_y
+                    t309 = dOm_x*psi_y
+                    t310 = Om_y*dpsi_x + dOm_y*psi_x - t308 - t309
+                    t311 = Om0_x*dpsi_z
+                    t312 = dOm0_x*psi_z
+                    t313 = Om0_z*dpsi_x
+                    t314 = dOm0_z*psi_x
+                    t315 = t311 + t312 - t313 - t314
+                    t316 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t317 = e1*t316
+                    t318 = psi_y*t317
+                    t319 = psi_z*t317
+                    t320 = dpsi_x*e0
+                    t321 = -Om_y*psi_z + Om_z*psi_y
+                    t322 = -Om0_y*psi_z + Om0_z*psi_y
+                    t323 = e0*psi_x
+                    t324 = Om_z*dpsi_y + dOm_z*psi_y - t289 - t291
+                    t325 = Om0_z*dpsi_y + dOm0_z*psi_y - t288 - t290
+                    t326 = psi_x*t317
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t285 +
-                        dpsi_z*e0*t286 + e0*psi_y*t299 + e0*psi_z*t304 + e1*psi_y*t285*t305 +
-                        e1*psi_z*t286*t305 - 0.5*t277 - 0.5*t278 - 0.5*t279 - 0.5*t280 - t281*t282
-                        - t281*t307 - t283*t284 - t283*t308 - t289*t290 - t295*t296)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t281*t309 + t281*t315 + t284*t310 -
-                        t284*t311 - t285*t309 - t285*t315 + t289*t312 + (0.5)*t291 + (0.5)*t292 -
-                        0.5*t293 - 0.5*t294 + t296*t313 - t296*t314 - t299*t312 + (0.5)*t300 +
-                        (0.5)*t301 - 0.5*t302 - 0.5*t303 + t308*t310 - t308*t311)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t296 +
+                        dpsi_z*e0*t297 + e0*psi_y*t310 + e0*psi_z*t315 + e1*psi_y*t296*t316 +
+                        e1*psi_z*t297*t316 - 0.5*t288 - 0.5*t289 - 0.5*t290 - 0.5*t291 - t292*t293
+                        - t292*t318 - t294*t295 - t294*t319 - t300*t301 - t306*t307)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t292*t320 + t292*t326 + t295*t321 -
+                        t295*t322 - t296*t320 - t296*t326 + t300*t323 + (0.5)*t302 + (0.5)*t303 -
+                        0.5*t304 - 0.5*t305 + t307*t324 - t307*t325 - t310*t323 + (0.5)*t311 +
+                        (0.5)*t312 - 0.5*t313 - 0.5*t314 + t319*t321 - t319*t322)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t283 + dpsi_y*e0*t311 +
-                        e0*psi_x*t295 + e0*psi_y*t314 + e1*psi_x*t283*t305 + e1*psi_y*t305*t311 -
-                        t282*t310 - t286*t309 - t286*t315 - 0.5*t287 - 0.5*t288 - t290*t313 -
-                        0.5*t297 - 0.5*t298 - t304*t312 - t307*t310)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t294 + dpsi_y*e0*t322 +
+                        e0*psi_x*t306 + e0*psi_y*t325 + e1*psi_x*t294*t316 + e1*psi_y*t316*t322 -
+                        t293*t321 - t297*t320 - t297*t326 - 0.5*t298 - 0.5*t299 - t301*t324 -
+                        0.5*t308 - 0.5*t309 - t315*t323 - t318*t321)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1388,132 +1425,132 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t316 = (0.5)*dpsi_z
-                    t317 = e0*psi_y
-                    t318 = dpsi_y*e0
-                    t319 = 2*psi_x
-                    t320 = dpsi_x*t319
-                    t321 = 2*psi_y
-                    t322 = 2*psi_z
-                    t323 = dpsi_y*t321 + dpsi_z*t322 + t320
-                    t324 = e1*t323
-                    t325 = psi_y*t324
-                    t326 = dpsi_x*t317 + psi_x*t318 + psi_x*t325
-                    t327 = Om0d_y*alpha_r
-                    t328 = (0.5)*dpsi_y
-                    t329 = e0*psi_z
-                    t330 = dpsi_z*e0
-                    t331 = psi_z*t324
-                    t332 = dpsi_x*t329 + psi_x*t330 + psi_x*t331
-                    t333 = Om0d_z*alpha_r
-                    t334 = psi_z*psi_z*t324 + t322*t330
-                    t335 = psi_y*psi_y*t324 + t318*t321
-                    t336 = Om0d_x*alpha_r
-                    t337 = -Om_x*psi_y + Om_y*psi_x
-                    t338 = dep_y*e0
-                    t339 = Om0_x*psi_z - Om0_z*psi_x
-                    t340 = dep_z*e0
-                    t341 = Om0_x*ep_z - Om0_z*ep_x
-                    t342 = -Om0_x*psi_y + Om0_y*psi_x
-                    t343 = Om_x*psi_z - Om_z*psi_x
-                    t344 = -Om0_x*ep_y + Om0_y*ep_x
-                    t345 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t346 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t347 = e0*ep_y
-                    t348 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t349 = e0*ep_z
-                    t350 = Om0_x*dep_z
-                    t351 = dOm0_x*ep_z
-                    t352 = -Om0_z*dep_x - dOm0_z*ep_x + t350 + t351
-                    t353 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t354 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t355 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t356 = -Om0_x*dep_y + Om0_y*dep_x - dOm0_x*ep_y + dOm0_y*ep_x
-                    t357 = ep_x*t319 + ep_y*t321 + ep_z*t322
-                    t358 = e1*t357
-                    t359 = dpsi_y*t358
-                    t360 = dpsi_z*t358
-                    t361 = ep_y*t324
-                    t362 = ep_z*t324
-                    t363 = psi_y*t358
-                    t364 = psi_z*t358
-                    t365 = (-A_x*dpsi_y + A_y*dpsi_x - Om_x*dep_y + Om_y*dep_x - dA_x*psi_y +
+                    t327 = (0.5)*dpsi_z
+                    t328 = e0*psi_y
+                    t329 = dpsi_y*e0
+                    t330 = 2*psi_x
+                    t331 = dpsi_x*t330
+                    t332 = 2*psi_y
+                    t333 = 2*psi_z
+                    t334 = dpsi_y*t332 + dpsi_z*t333 + t331
+                    t335 = e1*t334
+                    t336 = psi_y*t335
+                    t337 = dpsi_x*t328 + psi_x*t329 + psi_x*t336
+                    t338 = Om0d_y*alpha_r
+                    t339 = (0.5)*dpsi_y
+                    t340 = e0*psi_z
+                    t341 = dpsi_z*e0
+                    t342 = psi_z*t335
+                    t343 = dpsi_x*t340 + psi_x*t341 + psi_x*t342
+                    t344 = Om0d_z*alpha_r
+                    t345 = psi_z*psi_z*t335 + t333*t341
+                    t346 = psi_y*psi_y*t335 + t329*t332
+                    t347 = Om0d_x*alpha_r
+                    t348 = -Om_x*psi_y + Om_y*psi_x
+                    t349 = dep_y*e0
+                    t350 = Om0_x*psi_z - Om0_z*psi_x
+                    t351 = dep_z*e0
+                    t352 = Om0_x*ep_z - Om0_z*ep_x
+                    t353 = -Om0_x*psi_y + Om0_y*psi_x
+                    t354 = Om_x*psi_z - Om_z*psi_x
+                    t355 = -Om0_x*ep_y + Om0_y*ep_x
+                    t356 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t357 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t358 = e0*ep_y
+                    t359 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t360 = e0*ep_z
+                    t361 = Om0_x*dep_z
+                    t362 = dOm0_x*ep_z
+                    t363 = -Om0_z*dep_x - dOm0_z*ep_x + t361 + t362
+                    t364 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t365 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t366 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t367 = -Om0_x*dep_y + Om0_y*dep_x - dOm0_x*ep_y + dOm0_y*ep_x
+                    t368 = ep_x*t330 + ep_y*t332 + ep_z*t333
+                    t369 = e1*t368
+                    t370 = dpsi_y*t369
+                    t371 = dpsi_z*t369
+                    t372 = ep_y*t335
+                    t373 = ep_z*t335
+                    t374 = psi_y*t369
+                    t375 = psi_z*t369
+                    t376 = (-A_x*dpsi_y + A_y*dpsi_x - Om_x*dep_y + Om_y*dep_x - dA_x*psi_y +
                         dA_y*psi_x - dOm_x*ep_y + dOm_y*ep_x)
-                    t366 = A_x*dpsi_z
-                    t367 = Om_x*dep_z
-                    t368 = dA_x*psi_z
-                    t369 = dOm_x*ep_z
-                    t370 = (-A_z*dpsi_x - Om_z*dep_x - dA_z*psi_x - dOm_z*ep_x + t366 + t367 +
-                        t368 + t369)
-                    t371 = (dep_x*t319 + dep_y*t321 + dep_z*t322 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                    t377 = A_x*dpsi_z
+                    t378 = Om_x*dep_z
+                    t379 = dA_x*psi_z
+                    t380 = dOm_x*ep_z
+                    t381 = (-A_z*dpsi_x - Om_z*dep_x - dA_z*psi_x - dOm_z*ep_x + t377 + t378 +
+                        t379 + t380)
+                    t382 = (dep_x*t330 + dep_y*t332 + dep_z*t333 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                         2*dpsi_z*ep_z)
-                    t372 = e1*t371
-                    t373 = psi_z*t372
-                    t374 = e2*t323*t357
-                    t375 = psi_z*t374
-                    t376 = (0.5)*dpsi_x
-                    t377 = psi_y*t330 + psi_z*t318 + psi_z*t325
-                    t378 = e0*t320 + psi_x*psi_x*t324
-                    t379 = dep_x*e0
-                    t380 = -Om_y*psi_z + Om_z*psi_y
-                    t381 = dpsi_x*e0
-                    t382 = -Om0_y*psi_z + Om0_z*psi_y
-                    t383 = -Om0_y*ep_z + Om0_z*ep_y
-                    t384 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t385 = e0*ep_x
-                    t386 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t387 = e0*psi_x
-                    t388 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t389 = -Om0_y*dep_z + Om0_z*dep_y - dOm0_y*ep_z + dOm0_z*ep_y
-                    t390 = dpsi_x*t358
-                    t391 = ep_x*t324
-                    t392 = psi_x*t324
-                    t393 = psi_x*t358
-                    t394 = (-A_y*dpsi_z + A_z*dpsi_y - Om_y*dep_z + Om_z*dep_y - dA_y*psi_z +
+                    t383 = e1*t382
+                    t384 = psi_z*t383
+                    t385 = e2*t334*t368
+                    t386 = psi_z*t385
+                    t387 = (0.5)*dpsi_x
+                    t388 = psi_y*t341 + psi_z*t329 + psi_z*t336
+                    t389 = e0*t331 + psi_x*psi_x*t335
+                    t390 = dep_x*e0
+                    t391 = -Om_y*psi_z + Om_z*psi_y
+                    t392 = dpsi_x*e0
+                    t393 = -Om0_y*psi_z + Om0_z*psi_y
+                    t394 = -Om0_y*ep_z + Om0_z*ep_y
+                    t395 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t396 = e0*ep_x
+                    t397 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t398 = e0*psi_x
+                    t399 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t400 = -Om0_y*dep_z + Om0_z*dep_y - dOm0_y*ep_z + dOm0_z*ep_y
+                    t401 = dpsi_x*t369
+                    t402 = ep_x*t335
+                    t403 = psi_x*t335
+                    t404 = psi_x*t369
+                    t405 = (-A_y*dpsi_z + A_z*dpsi_y - Om_y*dep_z + Om_z*dep_y - dA_y*psi_z +
                         dA_z*psi_y - dOm_y*ep_z + dOm_z*ep_y)
-                    t395 = psi_x*t372
-                    t396 = psi_x*t374
-                    rhs_x += (-alpha_r*((0.5)*A_y*dpsi_z - A_z*t328 + (0.5)*Om0_y*dep_z -
+                    t406 = psi_x*t383
+                    t407 = psi_x*t385
+                    rhs_x += (-alpha_r*((0.5)*A_y*dpsi_z - A_z*t339 + (0.5)*Om0_y*dep_z -
                         0.5*Om0_z*dep_y + (0.5)*Om_y*dep_z - 0.5*Om_z*dep_y - dA_x +
                         (0.5)*dA_y*psi_z - 0.5*dA_z*psi_y + (0.5)*dOm0_y*ep_z - 0.5*dOm0_z*ep_y +
-                        (0.5)*dOm_y*ep_z - 0.5*dOm_z*ep_y + dep_y*e0*t342 + dep_z*e0*t343 +
-                        dpsi_y*e0*t344 + dpsi_y*e1*t342*t357 + dpsi_z*e0*t353 +
-                        dpsi_z*e1*t343*t357 + e0*ep_y*t354 + e0*ep_z*t355 + e0*psi_y*t356 +
-                        e0*psi_z*t370 + e1*ep_y*t323*t342 + e1*ep_z*t323*t343 + e1*psi_y*t323*t344
-                        + e1*psi_y*t342*t371 + e1*psi_y*t354*t357 + e1*psi_z*t323*t353 +
-                        e1*psi_z*t343*t371 + e1*psi_z*t355*t357 + e2*psi_y*t323*t342*t357 +
-                        e2*psi_z*t323*t343*t357 - psi_y*t337*t372 - psi_y*t337*t374 - t317*t365 -
-                        t318*t345 - t325*t345 - t329*t352 - t330*t341 - t331*t341 - t337*t338 -
-                        t337*t359 - t337*t361 - t339*t340 - t339*t360 - t339*t362 - t339*t373 -
-                        t339*t375 - t346*t347 - t346*t363 - t348*t349 - t348*t364) - t327*(t316 +
-                        t326) - t333*(-t328 + t332) - t336*(-t334 - t335))
+                        (0.5)*dOm_y*ep_z - 0.5*dOm_z*ep_y + dep_y*e0*t353 + dep_z*e0*t354 +
+                        dpsi_y*e0*t355 + dpsi_y*e1*t353*t368 + dpsi_z*e0*t364 +
+                        dpsi_z*e1*t354*t368 + e0*ep_y*t365 + e0*ep_z*t366 + e0*psi_y*t367 +
+                        e0*psi_z*t381 + e1*ep_y*t334*t353 + e1*ep_z*t334*t354 + e1*psi_y*t334*t355
+                        + e1*psi_y*t353*t382 + e1*psi_y*t365*t368 + e1*psi_z*t334*t364 +
+                        e1*psi_z*t354*t382 + e1*psi_z*t366*t368 + e2*psi_y*t334*t353*t368 +
+                        e2*psi_z*t334*t354*t368 - psi_y*t348*t383 - psi_y*t348*t385 - t328*t376 -
+                        t329*t356 - t336*t356 - t340*t363 - t341*t352 - t342*t352 - t348*t349 -
+                        t348*t370 - t348*t372 - t350*t351 - t350*t371 - t350*t373 - t350*t384 -
+                        t350*t386 - t357*t358 - t357*t374 - t359*t360 - t359*t375) - t338*(t327 +
+                        t337) - t344*(-t339 + t343) - t347*(-t345 - t346))
                     rhs_y += (-alpha_r*((0.5)*A_z*dpsi_x + (0.5)*Om0_z*dep_x + (0.5)*Om_z*dep_x -
                         dA_y + (0.5)*dA_z*psi_x + (0.5)*dOm0_z*ep_x + (0.5)*dOm_z*ep_x +
-                        dep_x*e0*t337 + dep_z*e0*t382 + dpsi_x*e0*t345 + dpsi_x*e1*t337*t357 +
-                        dpsi_z*e0*t383 + dpsi_z*e1*t357*t382 + e0*ep_x*t346 + e0*ep_z*t388 +
-                        e0*psi_x*t365 + e0*psi_z*t389 + e1*ep_x*t323*t337 + e1*ep_z*t323*t382 +
-                        e1*psi_x*t323*t345 + e1*psi_x*t337*t371 + e1*psi_x*t346*t357 +
-                        e1*psi_z*t323*t383 + e1*psi_z*t357*t388 + e1*psi_z*t371*t382 +
-                        e2*psi_x*t323*t337*t357 + e2*psi_z*t323*t357*t382 - t329*t394 - t330*t384
-                        - t331*t384 - t340*t380 - t342*t379 - t342*t390 - t342*t391 - t342*t395 -
-                        t342*t396 - t344*t381 - t344*t392 - t349*t386 - 0.5*t350 - 0.5*t351 -
-                        t354*t385 - t354*t393 - t356*t387 - t360*t380 - t362*t380 - t364*t386 -
-                        0.5*t366 - 0.5*t367 - 0.5*t368 - 0.5*t369 - t373*t380 - t375*t380) -
-                        t327*(-t334 - t378) - t333*(t376 + t377) - t336*(-t316 + t326))
+                        dep_x*e0*t348 + dep_z*e0*t393 + dpsi_x*e0*t356 + dpsi_x*e1*t348*t368 +
+                        dpsi_z*e0*t394 + dpsi_z*e1*t368*t393 + e0*ep_x*t357 + e0*ep_z*t399 +
+                        e0*psi_x*t376 + e0*psi_z*t400 + e1*ep_x*t334*t348 + e1*ep_z*t334*t393 +
+                        e1*psi_x*t334*t356 + e1*psi_x*t348*t382 + e1*psi_x*t357*t368 +
+                        e1*psi_z*t334*t394 + e1*psi_z*t368*t399 + e1*psi_z*t382*t393 +
+                        e2*psi_x*t334*t348*t368 + e2*psi_z*t334*t368*t393 - t340*t405 - t341*t395
+                        - t342*t395 - t351*t391 - t353*t390 - t353*t401 - t353*t402 - t353*t406 -
+                        t353*t407 - t355*t392 - t355*t403 - t360*t397 - 0.5*t361 - 0.5*t362 -
+                        t365*t396 - t365*t404 - t367*t398 - t371*t391 - t373*t391 - t375*t397 -
+                        0.5*t377 - 0.5*t378 - 0.5*t379 - 0.5*t380 - t384*t391 - t386*t391) -
+                        t338*(-t345 - t389) - t344*(t387 + t388) - t347*(-t327 + t337))
                     rhs_z += (-alpha_r*((0.5)*A_x*dpsi_y - 0.5*A_y*dpsi_x + (0.5)*Om0_x*dep_y -
                         0.5*Om0_y*dep_x + (0.5)*Om_x*dep_y - 0.5*Om_y*dep_x + (0.5)*dA_x*psi_y -
                         0.5*dA_y*psi_x - dA_z + (0.5)*dOm0_x*ep_y - 0.5*dOm0_y*ep_x +
-                        (0.5)*dOm_x*ep_y - 0.5*dOm_y*ep_x + dep_x*e0*t339 + dep_y*e0*t380 +
-                        dpsi_x*e0*t341 + dpsi_x*e1*t339*t357 + dpsi_y*e0*t384 +
-                        dpsi_y*e1*t357*t380 + e0*ep_x*t348 + e0*ep_y*t386 + e0*psi_x*t352 +
-                        e0*psi_y*t394 + e1*ep_x*t323*t339 + e1*ep_y*t323*t380 + e1*psi_x*t323*t341
-                        + e1*psi_x*t339*t371 + e1*psi_x*t348*t357 + e1*psi_y*t323*t384 +
-                        e1*psi_y*t357*t386 + e1*psi_y*t371*t380 + e2*psi_x*t323*t339*t357 +
-                        e2*psi_y*t323*t357*t380 - psi_y*t372*t382 - psi_y*t374*t382 - t317*t389 -
-                        t318*t383 - t325*t383 - t338*t382 - t343*t379 - t343*t390 - t343*t391 -
-                        t343*t395 - t343*t396 - t347*t388 - t353*t381 - t353*t392 - t355*t385 -
-                        t355*t393 - t359*t382 - t361*t382 - t363*t388 - t370*t387) - t327*(-t376 +
-                        t377) - t333*(-t335 - t378) - t336*(t328 + t332))
+                        (0.5)*dOm_x*ep_y - 0.5*dOm_y*ep_x + dep_x*e0*t350 + dep_y*e0*t391 +
+                        dpsi_x*e0*t352 + dpsi_x*e1*t350*t368 + dpsi_y*e0*t395 +
+                        dpsi_y*e1*t368*t391 + e0*ep_x*t359 + e0*ep_y*t397 + e0*psi_x*t363 +
+                        e0*psi_y*t405 + e1*ep_x*t334*t350 + e1*ep_y*t334*t391 + e1*psi_x*t334*t352
+                        + e1*psi_x*t350*t382 + e1*psi_x*t359*t368 + e1*psi_y*t334*t395 +
+                        e1*psi_y*t368*t397 + e1*psi_y*t382*t391 + e2*psi_x*t334*t350*t368 +
+                        e2*psi_y*t334*t368*t391 - psi_y*t383*t393 - psi_y*t385*t393 - t328*t400 -
+                        t329*t394 - t336*t394 - t349*t393 - t354*t390 - t354*t401 - t354*t402 -
+                        t354*t406 - t354*t407 - t358*t399 - t364*t392 - t364*t403 - t366*t396 -
+                        t366*t404 - t370*t393 - t372*t393 - t374*t399 - t381*t398) - t338*(-t387 +
+                        t388) - t344*(-t346 - t389) - t347*(t339 + t343))
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1528,21 +1565,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t397 = X_y + u_y
-                    t398 = X_z + u_z
-                    t399 = X_x + u_x
+                    t408 = X_y + u_y
+                    t409 = X_z + u_z
+                    t410 = X_x + u_x
                     detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
                         Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
                         dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t398 + dOm0d_z*t397 - da0_x + dacc_x)
+                        dOm0d_y*t409 + dOm0d_z*t408 - da0_x + dacc_x)
                     detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                         Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                         dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t398 - dOm0d_z*t399 - da0_y + dacc_y)
+                        dOm0d_x*t409 - dOm0d_z*t410 - da0_y + dacc_y)
                     detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                         Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                         dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t397 + dOm0d_y*t399 - da0_z + dacc_z)
+                        dOm0d_x*t408 + dOm0d_y*t410 - da0_z + dacc_z)
                 # differential: rate: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1557,144 +1594,144 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t400 = A_y*dpsi_z
-                    t401 = Om0_y*dep_z
-                    t402 = Om0d_y*dpsi_z
-                    t403 = Om_y*dep_z
-                    t404 = dA_y*psi_z
-                    t405 = dOm0_y*ep_z
-                    t406 = dOm0d_y*psi_z
-                    t407 = dOm_y*ep_z
-                    t408 = -Om0_x*psi_y + Om0_y*psi_x
-                    t409 = dep_y*e0
-                    t410 = Om_x*psi_z - Om_z*psi_x
-                    t411 = dep_z*e0
-                    t412 = -Om_x*psi_y + Om_y*psi_x
-                    t413 = Om0_x*psi_z - Om0_z*psi_x
-                    t414 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t415 = dpsi_y*e0
-                    t416 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t417 = dpsi_z*e0
-                    t418 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t419 = e0*ep_y
-                    t420 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t421 = e0*ep_z
-                    t422 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t423 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t424 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t425 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t426 = 2*psi_x
-                    t427 = 2*psi_y
-                    t428 = 2*psi_z
-                    t429 = ep_x*t426 + ep_y*t427 + ep_z*t428
-                    t430 = e1*t429
-                    t431 = dpsi_y*t430
-                    t432 = dpsi_z*t430
-                    t433 = dpsi_x*t426 + dpsi_y*t427 + dpsi_z*t428
-                    t434 = e1*t433
-                    t435 = ep_y*t434
-                    t436 = ep_z*t434
-                    t437 = psi_y*t434
-                    t438 = psi_y*t430
-                    t439 = psi_z*t434
-                    t440 = psi_z*t430
-                    t441 = Om0_x*dep_y
-                    t442 = Om0d_x*dpsi_y
-                    t443 = dOm0_x*ep_y
-                    t444 = dOm0d_x*psi_y
-                    t445 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t441 -
-                        t442 - t443 - t444)
-                    t446 = e0*psi_y
-                    t447 = A_x*dpsi_z
-                    t448 = Om_x*dep_z
-                    t449 = dA_x*psi_z
-                    t450 = dOm_x*ep_z
-                    t451 = A_z*dpsi_x
-                    t452 = Om_z*dep_x
-                    t453 = dA_z*psi_x
-                    t454 = dOm_z*ep_x
-                    t455 = t447 + t448 + t449 + t450 - t451 - t452 - t453 - t454
-                    t456 = e0*psi_z
-                    t457 = A_x*dpsi_y
-                    t458 = Om_x*dep_y
-                    t459 = dA_x*psi_y
-                    t460 = dOm_x*ep_y
-                    t461 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t457 - t458 - t459
-                        - t460)
-                    t462 = Om0_x*dep_z
-                    t463 = Om0d_x*dpsi_z
-                    t464 = dOm0_x*ep_z
-                    t465 = dOm0d_x*psi_z
-                    t466 = Om0_z*dep_x
-                    t467 = Om0d_z*dpsi_x
-                    t468 = dOm0_z*ep_x
-                    t469 = dOm0d_z*psi_x
-                    t470 = t462 + t463 + t464 + t465 - t466 - t467 - t468 - t469
-                    t471 = (dep_x*t426 + dep_y*t427 + dep_z*t428 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                    t411 = A_y*dpsi_z
+                    t412 = Om0_y*dep_z
+                    t413 = Om0d_y*dpsi_z
+                    t414 = Om_y*dep_z
+                    t415 = dA_y*psi_z
+                    t416 = dOm0_y*ep_z
+                    t417 = dOm0d_y*psi_z
+                    t418 = dOm_y*ep_z
+                    t419 = -Om0_x*psi_y + Om0_y*psi_x
+                    t420 = dep_y*e0
+                    t421 = Om_x*psi_z - Om_z*psi_x
+                    t422 = dep_z*e0
+                    t423 = -Om_x*psi_y + Om_y*psi_x
+                    t424 = Om0_x*psi_z - Om0_z*psi_x
+                    t425 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
+                    t426 = dpsi_y*e0
+                    t427 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t428 = dpsi_z*e0
+                    t429 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t430 = e0*ep_y
+                    t431 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t432 = e0*ep_z
+                    t433 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t434 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
+                    t435 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t436 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t437 = 2*psi_x
+                    t438 = 2*psi_y
+                    t439 = 2*psi_z
+                    t440 = ep_x*t437 + ep_y*t438 + ep_z*t439
+                    t441 = e1*t440
+                    t442 = dpsi_y*t441
+                    t443 = dpsi_z*t441
+                    t444 = dpsi_x*t437 + dpsi_y*t438 + dpsi_z*t439
+                    t445 = e1*t444
+                    t446 = ep_y*t445
+                    t447 = ep_z*t445
+                    t448 = psi_y*t445
+                    t449 = psi_y*t441
+                    t450 = psi_z*t445
+                    t451 = psi_z*t441
+                    t452 = Om0_x*dep_y
+                    t453 = Om0d_x*dpsi_y
+                    t454 = dOm0_x*ep_y
+                    t455 = dOm0d_x*psi_y
+                    t456 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t452 -
+                        t453 - t454 - t455)
+                    t457 = e0*psi_y
+                    t458 = A_x*dpsi_z
+                    t459 = Om_x*dep_z
+                    t460 = dA_x*psi_z
+                    t461 = dOm_x*ep_z
+                    t462 = A_z*dpsi_x
+                    t463 = Om_z*dep_x
+                    t464 = dA_z*psi_x
+                    t465 = dOm_z*ep_x
+                    t466 = t458 + t459 + t460 + t461 - t462 - t463 - t464 - t465
+                    t467 = e0*psi_z
+                    t468 = A_x*dpsi_y
+                    t469 = Om_x*dep_y
+                    t470 = dA_x*psi_y
+                    t471 = dOm_x*ep_y
+                    t472 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t468 - t469 - t470
+                        - t471)
+                    t473 = Om0_x*dep_z
+                    t474 = Om0d_x*dpsi_z
+                    t475 = dOm0_x*ep_z
+                    t476 = dOm0d_x*psi_z
+                    t477 = Om0_z*dep_x
+                    t478 = Om0d_z*dpsi_x
+                    t479 = dOm0_z*ep_x
+                    t480 = dOm0d_z*psi_x
+                    t481 = t473 + t474 + t475 + t476 - t477 - t478 - t479 - t480
+                    t482 = (dep_x*t437 + dep_y*t438 + dep_z*t439 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                         2*dpsi_z*ep_z)
-                    t472 = e1*t471
-                    t473 = t408*t472
-                    t474 = psi_z*t472
-                    t475 = e2*t429*t433
-                    t476 = t408*t475
-                    t477 = psi_z*t475
-                    t478 = dep_x*e0
-                    t479 = -Om_y*psi_z + Om_z*psi_y
-                    t480 = -Om0_y*psi_z + Om0_z*psi_y
-                    t481 = dpsi_x*e0
-                    t482 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t483 = e0*ep_x
-                    t484 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t485 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t486 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t487 = dpsi_x*t430
-                    t488 = ep_x*t434
-                    t489 = psi_x*t434
-                    t490 = psi_x*t430
-                    t491 = e0*psi_x
-                    t492 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t400 - t403 - t404
-                        - t407)
-                    t493 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t401 -
-                        t402 - t405 - t406)
-                    t494 = psi_x*t472
-                    t495 = psi_x*t475
+                    t483 = e1*t482
+                    t484 = t419*t483
+                    t485 = psi_z*t483
+                    t486 = e2*t440*t444
+                    t487 = t419*t486
+                    t488 = psi_z*t486
+                    t489 = dep_x*e0
+                    t490 = -Om_y*psi_z + Om_z*psi_y
+                    t491 = -Om0_y*psi_z + Om0_z*psi_y
+                    t492 = dpsi_x*e0
+                    t493 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t494 = e0*ep_x
+                    t495 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t496 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
+                    t497 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t498 = dpsi_x*t441
+                    t499 = ep_x*t445
+                    t500 = psi_x*t445
+                    t501 = psi_x*t441
+                    t502 = e0*psi_x
+                    t503 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t411 - t414 - t415
+                        - t418)
+                    t504 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t412 -
+                        t413 - t416 - t417)
+                    t505 = psi_x*t483
+                    t506 = psi_x*t486
                     detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
                         (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t412 + dep_z*e0*t413 +
-                        dpsi_y*e0*t422 + dpsi_y*e1*t412*t429 + dpsi_z*e0*t423 +
-                        dpsi_z*e1*t413*t429 + e0*ep_y*t424 + e0*ep_z*t425 + e0*psi_y*t461 +
-                        e0*psi_z*t470 + e1*ep_y*t412*t433 + e1*ep_z*t413*t433 + e1*psi_y*t412*t471
-                        + e1*psi_y*t422*t433 + e1*psi_y*t424*t429 + e1*psi_z*t413*t471 +
-                        e1*psi_z*t423*t433 + e1*psi_z*t425*t429 + e2*psi_y*t412*t429*t433 +
-                        e2*psi_z*t413*t429*t433 - psi_y*t473 - psi_y*t476 - 0.5*t400 - 0.5*t401 -
-                        0.5*t402 - 0.5*t403 - 0.5*t404 - 0.5*t405 - 0.5*t406 - 0.5*t407 -
-                        t408*t409 - t408*t431 - t408*t435 - t410*t411 - t410*t432 - t410*t436 -
-                        t410*t474 - t410*t477 - t414*t415 - t414*t437 - t416*t417 - t416*t439 -
-                        t418*t419 - t418*t438 - t420*t421 - t420*t440 - t445*t446 - t455*t456)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t473 + psi_x*t476 + t408*t478 +
-                        t408*t487 + t408*t488 + t411*t479 - t411*t480 - t412*t478 - t412*t487 -
-                        t412*t488 - t412*t494 - t412*t495 + t414*t481 + t414*t489 + t417*t482 -
-                        t417*t485 + t418*t483 + t418*t490 + t421*t484 - t421*t486 - t422*t481 -
-                        t422*t489 - t424*t483 - t424*t490 + t432*t479 - t432*t480 + t436*t479 -
-                        t436*t480 + t439*t482 - t439*t485 + t440*t484 - t440*t486 + t445*t491 +
-                        (0.5)*t447 + (0.5)*t448 + (0.5)*t449 + (0.5)*t450 - 0.5*t451 - 0.5*t452 -
-                        0.5*t453 - 0.5*t454 + t456*t492 - t456*t493 - t461*t491 + (0.5)*t462 +
-                        (0.5)*t463 + (0.5)*t464 + (0.5)*t465 - 0.5*t466 - 0.5*t467 - 0.5*t468 -
-                        0.5*t469 + t474*t479 - t474*t480 + t477*t479 - t477*t480)
+                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t423 + dep_z*e0*t424 +
+                        dpsi_y*e0*t433 + dpsi_y*e1*t423*t440 + dpsi_z*e0*t434 +
+                        dpsi_z*e1*t424*t440 + e0*ep_y*t435 + e0*ep_z*t436 + e0*psi_y*t472 +
+                        e0*psi_z*t481 + e1*ep_y*t423*t444 + e1*ep_z*t424*t444 + e1*psi_y*t423*t482
+                        + e1*psi_y*t433*t444 + e1*psi_y*t435*t440 + e1*psi_z*t424*t482 +
+                        e1*psi_z*t434*t444 + e1*psi_z*t436*t440 + e2*psi_y*t423*t440*t444 +
+                        e2*psi_z*t424*t440*t444 - psi_y*t484 - psi_y*t487 - 0.5*t411 - 0.5*t412 -
+                        0.5*t413 - 0.5*t414 - 0.5*t415 - 0.5*t416 - 0.5*t417 - 0.5*t418 -
+                        t419*t420 - t419*t442 - t419*t446 - t421*t422 - t421*t443 - t421*t447 -
+                        t421*t485 - t421*t488 - t425*t426 - t425*t448 - t427*t428 - t427*t450 -
+                        t429*t430 - t429*t449 - t431*t432 - t431*t451 - t456*t457 - t466*t467)
+                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t484 + psi_x*t487 + t419*t489 +
+                        t419*t498 + t419*t499 + t422*t490 - t422*t491 - t423*t489 - t423*t498 -
+                        t423*t499 - t423*t505 - t423*t506 + t425*t492 + t425*t500 + t428*t493 -
+                        t428*t496 + t429*t494 + t429*t501 + t432*t495 - t432*t497 - t433*t492 -
+                        t433*t500 - t435*t494 - t435*t501 + t443*t490 - t443*t491 + t447*t490 -
+                        t447*t491 + t450*t493 - t450*t496 + t451*t495 - t451*t497 + t456*t502 +
+                        (0.5)*t458 + (0.5)*t459 + (0.5)*t460 + (0.5)*t461 - 0.5*t462 - 0.5*t463 -
+                        0.5*t464 - 0.5*t465 + t467*t503 - t467*t504 - t472*t502 + (0.5)*t473 +
+                        (0.5)*t474 + (0.5)*t475 + (0.5)*t476 - 0.5*t477 - 0.5*t478 - 0.5*t479 -
+                        0.5*t480 + t485*t490 - t485*t491 + t488*t490 - t488*t491)
                     detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
                         (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t410 +
-                        dep_y*e0*t480 + dpsi_x*e0*t416 + dpsi_x*e1*t410*t429 + dpsi_y*e0*t485 +
-                        dpsi_y*e1*t429*t480 + e0*ep_x*t420 + e0*ep_y*t486 + e0*psi_x*t455 +
-                        e0*psi_y*t493 + e1*ep_x*t410*t433 + e1*ep_y*t433*t480 + e1*psi_x*t410*t471
-                        + e1*psi_x*t416*t433 + e1*psi_x*t420*t429 + e1*psi_y*t429*t486 +
-                        e1*psi_y*t433*t485 + e1*psi_y*t471*t480 + e2*psi_x*t410*t429*t433 +
-                        e2*psi_y*t429*t433*t480 - psi_y*t472*t479 - psi_y*t475*t479 - t409*t479 -
-                        t413*t478 - t413*t487 - t413*t488 - t413*t494 - t413*t495 - t415*t482 -
-                        t419*t484 - t423*t481 - t423*t489 - t425*t483 - t425*t490 - t431*t479 -
-                        t435*t479 - t437*t482 - t438*t484 - 0.5*t441 - 0.5*t442 - 0.5*t443 -
-                        0.5*t444 - t446*t492 - 0.5*t457 - 0.5*t458 - 0.5*t459 - 0.5*t460 -
-                        t470*t491)
+                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t421 +
+                        dep_y*e0*t491 + dpsi_x*e0*t427 + dpsi_x*e1*t421*t440 + dpsi_y*e0*t496 +
+                        dpsi_y*e1*t440*t491 + e0*ep_x*t431 + e0*ep_y*t497 + e0*psi_x*t466 +
+                        e0*psi_y*t504 + e1*ep_x*t421*t444 + e1*ep_y*t444*t491 + e1*psi_x*t421*t482
+                        + e1*psi_x*t427*t444 + e1*psi_x*t431*t440 + e1*psi_y*t440*t497 +
+                        e1*psi_y*t444*t496 + e1*psi_y*t482*t491 + e2*psi_x*t421*t440*t444 +
+                        e2*psi_y*t440*t444*t491 - psi_y*t483*t490 - psi_y*t486*t490 - t420*t490 -
+                        t424*t489 - t424*t498 - t424*t499 - t424*t505 - t424*t506 - t426*t493 -
+                        t430*t495 - t434*t492 - t434*t500 - t436*t494 - t436*t501 - t442*t490 -
+                        t446*t490 - t448*t493 - t449*t495 - 0.5*t452 - 0.5*t453 - 0.5*t454 -
+                        0.5*t455 - t457*t503 - 0.5*t468 - 0.5*t469 - 0.5*t470 - 0.5*t471 -
+                        t481*t502)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1704,12 +1741,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
                 dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
                 dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
-                # coordinates that determine the others, of dy
-                gather(dy, kept, dz, free, hN)
                 # coordinates that determine the others, of deta
-                gather(deta, kept, dzd, free, hN)
+                to_free(deta, axes, order, unordered, dzd, bound, bound_free, free, hN)
                 # coordinates that determine the others, of detad
-                gather(detad, kept, dzdd, free, hN)
+                to_free(detad, axes, order, unordered, dzdd, bound, bound_free, free, hN)
                 # differential: rates of eta
                 rows_times(Zq, dzd, at(dzd, free), free, slaved, hn)
                 # of Q_b y
@@ -1722,17 +1757,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 add_rows_times(Zd, dzd, at(dzdd, free), free, slaved, hn)
                 # of Q_b y
                 add_rows_times(Za, dz, at(dzdd, free), free, slaved, hn)
-                # differential: motion of the frame as a factor of local tangents
+                # differential: motion of the frame in axes of the body, a factor of local tangents
+                turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                    turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
+                    turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                dzdd[N] = da0_x - dgamma_x
-                dzdd[N + 1] = da0_y - dgamma_y
-                dzdd[N + 2] = da0_z - dgamma_z
-                dzdd[N + 3] = dOm0d_x
-                dzdd[N + 4] = dOm0d_y
-                dzdd[N + 5] = dOm0d_z
-                dzd[N] = dOm0_x
-                dzd[N + 1] = dOm0_y
-                dzd[N + 2] = dOm0_z
+                t507 = da0_x - dgamma_x
+                t508 = da0_y - dgamma_y
+                t509 = da0_z - dgamma_z
+                dzdd[N] = t507*turn_xx + t508*turn_yx + t509*turn_zx
+                dzdd[N + 1] = t507*turn_xy + t508*turn_yy + t509*turn_zy
+                dzdd[N + 2] = t507*turn_xz + t508*turn_yz + t509*turn_zz
+                dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
+                dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
+                dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
+                dzd[N] = dOm0_x*turn_xx + dOm0_y*turn_yx + dOm0_z*turn_zx
+                dzd[N + 1] = dOm0_x*turn_xy + dOm0_y*turn_yy + dOm0_z*turn_zy
+                dzd[N + 2] = dOm0_x*turn_xz + dOm0_y*turn_yz + dOm0_z*turn_zz
                 # differential of the local forces by dzd
                 add_block_times(Lv, dzd, dlocal, N + 6, N + 3, deep)
                 # differential of the local forces by dzdd
@@ -1740,7 +1781,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # forces on eta, pulled back
                 add_block_times(Zq, at(dlocal, free), dlocal, free, slaved, hn)
                 # forces conjugate to y
-                scatter(dlocal, kept, ds, free, n)
+                from_free(dlocal, axes_back, order, unordered, ds, bound, bound_free, free)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -1751,24 +1792,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t496 = X_z + u_z
-                    t497 = X_y + u_y
-                    t498 = X_x + u_x
+                    t510 = X_z + u_z
+                    t511 = X_y + u_y
+                    t512 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t496 - df_z*t497 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t496 + df_z*t498 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t497 - df_y*t498 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t510 - df_z*t511 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t510 + df_z*t512 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t511 - df_y*t512 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
+                turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                    turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
+                    turn[8])
                 dRt_x, dRt_y, dRt_z = dlocal[N], dlocal[N + 1], dlocal[N + 2]
                 dRr_x, dRr_y, dRr_z = dlocal[N + 3], dlocal[N + 4], dlocal[N + 5]
-                dF_x += dRt_x
-                dF_y += dRt_y
-                dF_z += dRt_z
-                dW_x += dRr_x
-                dW_y += dRr_y
-                dW_z += dRr_z
+                dF_x += dRt_x*turn_xx + dRt_y*turn_xy + dRt_z*turn_xz
+                dF_y += dRt_x*turn_yx + dRt_y*turn_yy + dRt_z*turn_yz
+                dF_z += dRt_x*turn_zx + dRt_y*turn_zy + dRt_z*turn_zz
+                dW_x += dRr_x*turn_xx + dRr_y*turn_xy + dRr_z*turn_xz
+                dW_y += dRr_x*turn_yx + dRr_y*turn_yy + dRr_z*turn_yz
+                dW_z += dRr_x*turn_zx + dRr_y*turn_zy + dRr_z*turn_zz
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1778,25 +1822,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t499 = -m_x*psi_y + m_y*psi_x
-                    t500 = m_x*psi_z - m_z*psi_x
-                    t501 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t502 = dm_x*psi_z
-                    t503 = dpsi_z*m_x
-                    t504 = -dm_z*psi_x - dpsi_x*m_z + t502 + t503
-                    t505 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t506 = e1*t505
-                    t507 = -m_y*psi_z + m_z*psi_y
-                    t508 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t499 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t500 + (0.5)*dpsi_z*m_y - e0*psi_y*t501 +
-                        e0*psi_z*t504 + e1*psi_z*t500*t505 - psi_y*t499*t506)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t499 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t507 + e0*psi_x*t501 - e0*psi_z*t508 + e1*psi_x*t499*t505 -
-                        psi_z*t506*t507 - 0.5*t502 - 0.5*t503)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t500 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t507 + (0.5)*dpsi_y*m_x - e0*psi_x*t504 +
-                        e0*psi_y*t508 + e1*psi_y*t505*t507 - psi_x*t500*t506)
+                    t513 = -m_x*psi_y + m_y*psi_x
+                    t514 = m_x*psi_z - m_z*psi_x
+                    t515 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t516 = dm_x*psi_z
+                    t517 = dpsi_z*m_x
+                    t518 = -dm_z*psi_x - dpsi_x*m_z + t516 + t517
+                    t519 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t520 = e1*t519
+                    t521 = -m_y*psi_z + m_z*psi_y
+                    t522 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t513 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t514 + (0.5)*dpsi_z*m_y - e0*psi_y*t515 +
+                        e0*psi_z*t518 + e1*psi_z*t514*t519 - psi_y*t513*t520)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t513 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t521 + e0*psi_x*t515 - e0*psi_z*t522 + e1*psi_x*t513*t519 -
+                        psi_z*t520*t521 - 0.5*t516 - 0.5*t517)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t514 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t521 + (0.5)*dpsi_y*m_x - e0*psi_x*t518 +
+                        e0*psi_y*t522 + e1*psi_y*t519*t521 - psi_x*t514*t520)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1806,33 +1850,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t509 = dpsi_y*wp_z
-                    t510 = dpsi_z*wp_y
-                    t511 = psi_x*wp_y - psi_y*wp_x
-                    t512 = e0*t511
-                    t513 = dpsi_x*wp_y
-                    t514 = dpsi_y*wp_x
-                    t515 = e0*(t513 - t514)
-                    t516 = -psi_x*wp_z + psi_z*wp_x
-                    t517 = dpsi_x*wp_z
-                    t518 = dpsi_z*wp_x - t517
-                    t519 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t520 = e1*t519
-                    t521 = t511*t520
-                    t522 = psi_y*wp_z - psi_z*wp_y
-                    t523 = t509 - t510
-                    rhs_x += (-alpha_r*(dpsi_y*t512 - dpsi_z*e0*t516 - e0*psi_z*t518 + psi_y*t515
-                        + psi_y*t521 - psi_z*t516*t520 + (0.5)*t509 - 0.5*t510))
-                    rhs_y += (-alpha_r*(-dpsi_x*t512 + dpsi_z*e0*t522 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t523 + e1*psi_z*t519*t522 - psi_x*t515 - psi_x*t521 - 0.5*t517))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t516 - dpsi_y*e0*t522 + e0*psi_x*t518 -
-                        e0*psi_y*t523 + psi_x*t516*t520 - psi_y*t520*t522 + (0.5)*t513 - 0.5*t514))
-                t524 = dW_x + rhs_x
-                t525 = dW_y + rhs_y
-                t526 = dW_z + rhs_z
-                dwp_x = Bxx*t524 + Byx*t525 + Bzx*t526
-                dwp_y = Bxy*t524 + Byy*t525 + Bzy*t526
-                dwp_z = Bxz*t524 + Byz*t525 + Bzz*t526
+                    t523 = dpsi_y*wp_z
+                    t524 = dpsi_z*wp_y
+                    t525 = psi_x*wp_y - psi_y*wp_x
+                    t526 = e0*t525
+                    t527 = dpsi_x*wp_y
+                    t528 = dpsi_y*wp_x
+                    t529 = e0*(t527 - t528)
+                    t530 = -psi_x*wp_z + psi_z*wp_x
+                    t531 = dpsi_x*wp_z
+                    t532 = dpsi_z*wp_x - t531
+                    t533 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t534 = e1*t533
+                    t535 = t525*t534
+                    t536 = psi_y*wp_z - psi_z*wp_y
+                    t537 = t523 - t524
+                    rhs_x += (-alpha_r*(dpsi_y*t526 - dpsi_z*e0*t530 - e0*psi_z*t532 + psi_y*t529
+                        + psi_y*t535 - psi_z*t530*t534 + (0.5)*t523 - 0.5*t524))
+                    rhs_y += (-alpha_r*(-dpsi_x*t526 + dpsi_z*e0*t536 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t537 + e1*psi_z*t533*t536 - psi_x*t529 - psi_x*t535 - 0.5*t531))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t530 - dpsi_y*e0*t536 + e0*psi_x*t532 -
+                        e0*psi_y*t537 + psi_x*t530*t534 - psi_y*t534*t536 + (0.5)*t527 - 0.5*t528))
+                t538 = dW_x + rhs_x
+                t539 = dW_y + rhs_y
+                t540 = dW_z + rhs_z
+                dwp_x = Bxx*t538 + Byx*t539 + Bzx*t540
+                dwp_y = Bxy*t538 + Byy*t539 + Bzy*t540
+                dwp_z = Bxz*t538 + Byz*t539 + Bzz*t540
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1859,58 +1903,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t527 = dm_y*psi_z
-                    t528 = dpsi_z*m_y
-                    t529 = -m_x*psi_y + m_y*psi_x
-                    t530 = dpsi_y*e0
-                    t531 = m_x*psi_z - m_z*psi_x
-                    t532 = dpsi_z*e0
-                    t533 = dm_x*psi_y
-                    t534 = dpsi_y*m_x
-                    t535 = dm_y*psi_x + dpsi_x*m_y - t533 - t534
-                    t536 = e0*psi_y
-                    t537 = dm_x*psi_z
-                    t538 = dpsi_z*m_x
-                    t539 = dm_z*psi_x
-                    t540 = dpsi_x*m_z
-                    t541 = t537 + t538 - t539 - t540
-                    t542 = e0*psi_z
-                    t543 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t544 = psi_y*t543
-                    t545 = psi_z*t543
-                    t546 = dpsi_y*wp_z
-                    t547 = dpsi_z*wp_y
-                    t548 = dwp_y*psi_z
-                    t549 = dwp_z*psi_y
-                    t550 = psi_x*wp_y - psi_y*wp_x
-                    t551 = -psi_x*wp_z + psi_z*wp_x
-                    t552 = dpsi_x*wp_y
-                    t553 = dwp_y*psi_x
-                    t554 = dpsi_y*wp_x
-                    t555 = dwp_x*psi_y
-                    t556 = t552 + t553 - t554 - t555
-                    t557 = dpsi_x*wp_z
-                    t558 = dwp_z*psi_x
-                    t559 = dpsi_z*wp_x + dwp_x*psi_z - t557 - t558
-                    t560 = -m_y*psi_z + m_z*psi_y
-                    t561 = dpsi_x*e0
-                    t562 = dm_z*psi_y + dpsi_y*m_z - t527 - t528
-                    t563 = e0*psi_x
-                    t564 = psi_x*t543
-                    t565 = psi_y*wp_z - psi_z*wp_y
-                    t566 = t546 - t547 - t548 + t549
-                    dg[j3] = (alpha_r*(dwp_x + t530*t550 - t532*t551 + t536*t556 - t542*t559 +
-                        t544*t550 - t545*t551 - 0.5*t546 + (0.5)*t547 + (0.5)*t548 - 0.5*t549) +
-                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t527 + (0.5)*t528 +
-                        t529*t530 + t529*t544 - t531*t532 - t531*t545 + t535*t536 - t541*t542)
-                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t532*t565
-                        + t542*t566 + t545*t565 - t550*t561 - t550*t564 - t556*t563 + (0.5)*t557 +
-                        (0.5)*t558) + dm_y - t529*t561 - t529*t564 + t532*t560 - t535*t563 -
-                        0.5*t537 - 0.5*t538 + (0.5)*t539 + (0.5)*t540 + t542*t562 + t545*t560)
-                    dg[j3 + 2] = (alpha_r*(dwp_z - t530*t565 - t536*t566 - t544*t565 + t551*t561 +
-                        t551*t564 - 0.5*t552 - 0.5*t553 + (0.5)*t554 + (0.5)*t555 + t559*t563) -
-                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t530*t560 + t531*t561 + t531*t564
-                        + (0.5)*t533 + (0.5)*t534 - t536*t562 + t541*t563 - t544*t560)
+                    t541 = dm_y*psi_z
+                    t542 = dpsi_z*m_y
+                    t543 = -m_x*psi_y + m_y*psi_x
+                    t544 = dpsi_y*e0
+                    t545 = m_x*psi_z - m_z*psi_x
+                    t546 = dpsi_z*e0
+                    t547 = dm_x*psi_y
+                    t548 = dpsi_y*m_x
+                    t549 = dm_y*psi_x + dpsi_x*m_y - t547 - t548
+                    t550 = e0*psi_y
+                    t551 = dm_x*psi_z
+                    t552 = dpsi_z*m_x
+                    t553 = dm_z*psi_x
+                    t554 = dpsi_x*m_z
+                    t555 = t551 + t552 - t553 - t554
+                    t556 = e0*psi_z
+                    t557 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t558 = psi_y*t557
+                    t559 = psi_z*t557
+                    t560 = dpsi_y*wp_z
+                    t561 = dpsi_z*wp_y
+                    t562 = dwp_y*psi_z
+                    t563 = dwp_z*psi_y
+                    t564 = psi_x*wp_y - psi_y*wp_x
+                    t565 = -psi_x*wp_z + psi_z*wp_x
+                    t566 = dpsi_x*wp_y
+                    t567 = dwp_y*psi_x
+                    t568 = dpsi_y*wp_x
+                    t569 = dwp_x*psi_y
+                    t570 = t566 + t567 - t568 - t569
+                    t571 = dpsi_x*wp_z
+                    t572 = dwp_z*psi_x
+                    t573 = dpsi_z*wp_x + dwp_x*psi_z - t571 - t572
+                    t574 = -m_y*psi_z + m_z*psi_y
+                    t575 = dpsi_x*e0
+                    t576 = dm_z*psi_y + dpsi_y*m_z - t541 - t542
+                    t577 = e0*psi_x
+                    t578 = psi_x*t557
+                    t579 = psi_y*wp_z - psi_z*wp_y
+                    t580 = t560 - t561 - t562 + t563
+                    dg[j3] = (alpha_r*(dwp_x + t544*t564 - t546*t565 + t550*t570 - t556*t573 +
+                        t558*t564 - t559*t565 - 0.5*t560 + (0.5)*t561 + (0.5)*t562 - 0.5*t563) +
+                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t541 + (0.5)*t542 +
+                        t543*t544 + t543*t558 - t545*t546 - t545*t559 + t549*t550 - t555*t556)
+                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t546*t579
+                        + t556*t580 + t559*t579 - t564*t575 - t564*t578 - t570*t577 + (0.5)*t571 +
+                        (0.5)*t572) + dm_y - t543*t575 - t543*t578 + t546*t574 - t549*t577 -
+                        0.5*t551 - 0.5*t552 + (0.5)*t553 + (0.5)*t554 + t556*t576 + t559*t574)
+                    dg[j3 + 2] = (alpha_r*(dwp_z - t544*t579 - t550*t580 - t558*t579 + t565*t575 +
+                        t565*t578 - 0.5*t566 - 0.5*t567 + (0.5)*t568 + (0.5)*t569 + t573*t577) -
+                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t544*t574 + t545*t575 + t545*t578
+                        + (0.5)*t547 + (0.5)*t548 - t550*t576 + t555*t577 - t558*t574)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -154,10 +154,11 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
             "full": [_filled(body)], "masses": [reduced.total_mass], **damping}
     if not INERTIA_OPTIONS[body.inertia].field:
         return values
-    conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts_of(body), values)
+    counts = counts_of(body)
+    conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts, values)
     values.pop("C", None)
     return values | floating_constants(reduced.invariants.about(origin), reduced.stiffness,
-                                       conditions, reduced.damping)
+                                       conditions, counts, reduced.damping)
 
 
 def _filled(body: Superelement) -> int:

@@ -18,6 +18,7 @@ from sebody.kernels.layout import (
     ContractError,
     Counts,
     Row,
+    bound_counts,
     first_mode,
     floating_counts,
     superelement_counts,
@@ -130,9 +131,10 @@ def counts_of(body: Superelement) -> Counts:
                                  reduced.planar, _width(body))
     if not INERTIA_OPTIONS[body.inertia].field:
         return counts
-    return counts | floating_counts(reduced.planar, _width(body), reduced.invariants.slaved,
-                                    reduced.invariants.resultants,
-                                    reduced.damping is not None)
+    return counts | bound_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
+                                 reduced.planar) | floating_counts(
+        reduced.planar, _width(body), reduced.invariants.slaved, reduced.invariants.resultants,
+        reduced.damping is not None)
 
 
 def _width(body: Superelement) -> int:

@@ -72,3 +72,11 @@ def test_everyday_mechanisms_run_in_every_place(monkeypatch, capsys):
     found = json.loads(capsys.readouterr().out)["door"]
     assert list(found) == list(bench.PLACES)
     assert all(one["microseconds"] > 0.0 and one["cuts"] == 0 for one in found.values())
+
+
+def test_inertia_options_are_compared(capsys):
+    imported("bench_inertia").main(["--json"], 2, ())
+    (name, row), = json.loads(capsys.readouterr().out).items()
+    assert (name, row["coordinates"], row["resultants"]) == ("planar 8", 8, 1)
+    assert all(min(row[what].values()) > 0.0 for what in ("residual", "matrix"))
+    assert list(row["residual"]) == ["b", "plain c", "c"]

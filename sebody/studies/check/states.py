@@ -23,6 +23,7 @@ from sebody.kernels.layout import (
     RESIDUAL,
     TANGENT,
     Row,
+    bound_counts,
     first_mode,
     first_rotation,
     floating_counts,
@@ -106,7 +107,8 @@ class Case(NamedTuple):
     def counts(self) -> dict[str, int]:
         """The counts that sizes of the constants are products of."""
         return superelement_counts(
-            self.n_positions, self.n_rotations, self.planar, self.n) | floating_counts(
+            self.n_positions, self.n_rotations, self.planar, self.n) | bound_counts(
+            self.n_positions, self.n_rotations, self.planar) | floating_counts(
             self.planar, self.n, self.slaved, self.resultants, self.damped)
 
     @property
