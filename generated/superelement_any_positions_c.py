@@ -74,8 +74,8 @@ WORK_ROWS = 119
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (743, 303, 410, 2),
-              "column": (150, 456, 1229, 3)}
+OPERATIONS = {"residual": (743, 263, 410, 2),
+              "column": (150, 381, 1229, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
     Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
@@ -96,7 +96,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "5156c2efcd5c"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -377,24 +377,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
+        # rate: rates of the elastic displacements, the frame held
+        for i in range(N_POSITIONS):
+            i3 = 3*i
+            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
+            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+            etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
+                Om0_z*vs_y - a0_x + acc_x)
+            etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
+                Om0_z*vs_x - a0_y + acc_y)
+            etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
+                Om0_y*vs_x - a0_z + acc_z)
         # rate: sum w_j X_j x (rate of r_j) = 0
         rhs_x = rhs_y = rhs_z = 0.0
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            t35 = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x + Om0_y*vs_x -
-                a0_z + acc_z)
-            t36 = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x -
-                a0_y + acc_y)
-            t37 = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y -
-                a0_x + acc_x)
-            rhs_x += -fit*(X_y*t35 - X_z*t36)
-            rhs_y += -fit*(-X_x*t35 + X_z*t37)
-            rhs_z += -fit*(X_x*t36 - X_y*t37)
+            eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
+            t35 = eud_z*fit
+            rhs_x += -X_y*t35 + X_z*eud_y*fit
+            rhs_y += X_x*t35 - X_z*eud_x*fit
+            rhs_z += -X_x*eud_y*fit + X_y*eud_x*fit
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -403,18 +408,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            t38 = X_y + u_y
-            t39 = X_z + u_z
-            t40 = X_x + u_x
-            etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t39 + Om0d_z*t38 - a0_x + acc_x)
-            etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t39 - Om0d_z*t40 - a0_y + acc_y)
-            etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t38 + Om0d_y*t40 - a0_z + acc_z)
+            eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
+            t36 = X_y + u_y
+            t37 = X_z + u_z
+            t38 = X_x + u_x
+            etad[i3] = -Om0d_y*t37 + Om0d_z*t36 + eud_x
+            etad[i3 + 1] = Om0d_x*t37 - Om0d_z*t38 + eud_y
+            etad[i3 + 2] = -Om0d_x*t36 + Om0d_y*t38 + eud_z
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -424,56 +424,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t41 = A_y*psi_z
-            t42 = Om0_y*ep_z
-            t43 = Om0d_y*psi_z
-            t44 = Om_y*ep_z
-            t45 = -Om_x*psi_y + Om_y*psi_x
-            t46 = e0*ep_y
-            t47 = Om0_x*psi_z - Om0_z*psi_x
-            t48 = e0*ep_z
-            t49 = -Om0_x*psi_y + Om0_y*psi_x
-            t50 = Om_x*psi_z - Om_z*psi_x
-            t51 = A_x*psi_y
-            t52 = Om_x*ep_y
-            t53 = A_y*psi_x + Om_y*ep_x - t51 - t52
-            t54 = e0*psi_y
-            t55 = Om0_x*ep_z
-            t56 = Om0d_x*psi_z
-            t57 = Om0_z*ep_x
-            t58 = Om0d_z*psi_x
-            t59 = t55 + t56 - t57 - t58
-            t60 = e0*psi_z
-            t61 = Om0_x*ep_y
-            t62 = Om0d_x*psi_y
-            t63 = Om0_y*ep_x + Om0d_y*psi_x - t61 - t62
-            t64 = A_x*psi_z
-            t65 = Om_x*ep_z
-            t66 = A_z*psi_x
-            t67 = Om_z*ep_x
-            t68 = t64 + t65 - t66 - t67
-            t69 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t70 = e1*t69
-            t71 = psi_y*t70
-            t72 = psi_z*t70
-            t73 = e0*ep_x
-            t74 = -Om_y*psi_z + Om_z*psi_y
-            t75 = -Om0_y*psi_z + Om0_z*psi_y
-            t76 = e0*psi_x
-            t77 = A_z*psi_y + Om_z*ep_y - t41 - t44
-            t78 = Om0_z*ep_y + Om0d_z*psi_y - t42 - t43
-            t79 = psi_x*t70
+            t39 = A_y*psi_z
+            t40 = Om0_y*ep_z
+            t41 = Om0d_y*psi_z
+            t42 = Om_y*ep_z
+            t43 = -Om_x*psi_y + Om_y*psi_x
+            t44 = e0*ep_y
+            t45 = Om0_x*psi_z - Om0_z*psi_x
+            t46 = e0*ep_z
+            t47 = -Om0_x*psi_y + Om0_y*psi_x
+            t48 = Om_x*psi_z - Om_z*psi_x
+            t49 = A_x*psi_y
+            t50 = Om_x*ep_y
+            t51 = A_y*psi_x + Om_y*ep_x - t49 - t50
+            t52 = e0*psi_y
+            t53 = Om0_x*ep_z
+            t54 = Om0d_x*psi_z
+            t55 = Om0_z*ep_x
+            t56 = Om0d_z*psi_x
+            t57 = t53 + t54 - t55 - t56
+            t58 = e0*psi_z
+            t59 = Om0_x*ep_y
+            t60 = Om0d_x*psi_y
+            t61 = Om0_y*ep_x + Om0d_y*psi_x - t59 - t60
+            t62 = A_x*psi_z
+            t63 = Om_x*ep_z
+            t64 = A_z*psi_x
+            t65 = Om_z*ep_x
+            t66 = t62 + t63 - t64 - t65
+            t67 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
+            t68 = e1*t67
+            t69 = psi_y*t68
+            t70 = psi_z*t68
+            t71 = e0*ep_x
+            t72 = -Om_y*psi_z + Om_z*psi_y
+            t73 = -Om0_y*psi_z + Om0_z*psi_y
+            t74 = e0*psi_x
+            t75 = A_z*psi_y + Om_z*ep_y - t39 - t42
+            t76 = Om0_z*ep_y + Om0d_z*psi_y - t40 - t41
+            t77 = psi_x*t68
             etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t41 - 0.5*t42 - 0.5*t43 - 0.5*t44 + t45*t46 + t45*t71 -
-                t46*t49 + t47*t48 + t47*t72 - t48*t50 - t49*t71 - t50*t72 + t53*t54 - t54*t63 +
-                t59*t60 - t60*t68)
-            etad[j3 + 1] = (A_y - Om0d_y - t45*t73 - t45*t79 + t48*t74 - t48*t75 + t49*t73 +
-                t49*t79 - t53*t76 + (0.5)*t55 + (0.5)*t56 - 0.5*t57 - 0.5*t58 + t60*t77 - t60*t78
-                + t63*t76 + (0.5)*t64 + (0.5)*t65 - 0.5*t66 - 0.5*t67 + t72*t74 - t72*t75)
+                (0.5)*Om_z*ep_y - 0.5*t39 - 0.5*t40 - 0.5*t41 - 0.5*t42 + t43*t44 + t43*t69 -
+                t44*t47 + t45*t46 + t45*t70 - t46*t48 - t47*t69 - t48*t70 + t51*t52 - t52*t61 +
+                t57*t58 - t58*t66)
+            etad[j3 + 1] = (A_y - Om0d_y - t43*t71 - t43*t77 + t46*t72 - t46*t73 + t47*t71 +
+                t47*t77 - t51*t74 + (0.5)*t53 + (0.5)*t54 - 0.5*t55 - 0.5*t56 + t58*t75 - t58*t76
+                + t61*t74 + (0.5)*t62 + (0.5)*t63 - 0.5*t64 - 0.5*t65 + t70*t72 - t70*t73)
             etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t50 + e0*ep_y*t75 + e0*psi_x*t68 + e0*psi_y*t78 +
-                e1*psi_x*t50*t69 + e1*psi_y*t69*t75 - t46*t74 - t47*t73 - t47*t79 - 0.5*t51 -
-                0.5*t52 - t54*t77 - t59*t76 - 0.5*t61 - 0.5*t62 - t71*t74)
+                + (0.5)*Om_y*ep_x + e0*ep_x*t48 + e0*ep_y*t73 + e0*psi_x*t66 + e0*psi_y*t76 +
+                e1*psi_x*t48*t67 + e1*psi_y*t67*t73 - t44*t72 - t45*t71 - t45*t77 - 0.5*t49 -
+                0.5*t50 - t52*t75 - t57*t74 - 0.5*t59 - 0.5*t60 - t69*t72)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -574,12 +574,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        t80 = a0_x - gamma_x
-        t81 = a0_y - gamma_y
-        t82 = a0_z - gamma_z
-        zdd[N] = t80*turn_xx + t81*turn_yx + t82*turn_zx
-        zdd[N + 1] = t80*turn_xy + t81*turn_yy + t82*turn_zy
-        zdd[N + 2] = t80*turn_xz + t81*turn_yz + t82*turn_zz
+        t78 = a0_x - gamma_x
+        t79 = a0_y - gamma_y
+        t80 = a0_z - gamma_z
+        zdd[N] = t78*turn_xx + t79*turn_yx + t80*turn_zx
+        zdd[N + 1] = t78*turn_xy + t79*turn_yy + t80*turn_zy
+        zdd[N + 2] = t78*turn_xz + t79*turn_yz + t80*turn_zz
         zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
         zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
         zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
@@ -590,30 +590,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-        t83 = spin_x*spin_x
-        t84 = spin_y*spin_y
-        t85 = spin_z*spin_z
-        t86 = spin_x*spin_y
-        t87 = spin_x*spin_z
-        t88 = spin_y*spin_z
+        t81 = spin_x*spin_x
+        t82 = spin_y*spin_y
+        t83 = spin_z*spin_z
+        t84 = spin_x*spin_y
+        t85 = spin_x*spin_z
+        t86 = spin_y*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
         by_moment_columns[3] = turning_x
         by_moment_columns[4] = turning_y
         by_moment_columns[5] = turning_z
-        by_moment_columns[6] = -0.5*t83
-        by_moment_columns[7] = -0.5*t84
-        by_moment_columns[8] = -0.5*t85
-        by_moment_columns[9] = -t86
-        by_moment_columns[10] = -t87
-        by_moment_columns[11] = -t88
-        by_products[0] = -t83
-        by_products[1] = -t84
-        by_products[2] = -t85
-        by_products[3] = -2*t86
-        by_products[4] = -2*t87
-        by_products[5] = -2*t88
+        by_moment_columns[6] = -0.5*t81
+        by_moment_columns[7] = -0.5*t82
+        by_moment_columns[8] = -0.5*t83
+        by_moment_columns[9] = -t84
+        by_moment_columns[10] = -t85
+        by_moment_columns[11] = -t86
+        by_products[0] = -t81
+        by_products[1] = -t82
+        by_products[2] = -t83
+        by_products[3] = -2*t84
+        by_products[4] = -2*t85
+        by_products[5] = -2*t86
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
@@ -640,11 +640,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t89 = (0.5)*twice_e
-            t90 = 1/lam_e
-            by_E[e] = t89
-            by_Gy[e] = along_e + t89*t90
-            stiffened += t89*(along_e + (0.25)*t90*twice_e)
+            t87 = (0.5)*twice_e
+            t88 = 1/lam_e
+            by_E[e] = t87
+            by_Gy[e] = along_e + t87*t88
+            stiffened += t87*(along_e + (0.25)*t88*twice_e)
         # and of Sbar y
         by_Gy[resultants] = 1
         # forces of the resultants
@@ -658,30 +658,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
         mass = masses[0]
-        t91 = 2*sum_cd_z
-        t92 = 2*spin_z
-        t93 = spin_x*sum_c_y - spin_y*sum_c_x
-        t94 = -spin_x*sum_c_z + spin_z*sum_c_x
-        t95 = spin_y*sum_c_z - spin_z*sum_c_y
-        t96 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-        t97 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-        t98 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-        local[N] = (felt_x*mass + spin_y*t91 + spin_y*t93 - spin_z*t94 - sum_c_y*turning_z +
-            sum_c_z*turning_y - sum_cd_y*t92 + sum_cdd_x)
-        local[N + 1] = (felt_y*mass - spin_x*t91 - spin_x*t93 + spin_z*t95 + sum_c_x*turning_z -
-            sum_c_z*turning_x + sum_cd_x*t92 + sum_cdd_y)
-        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t94 - 2*spin_y*sum_cd_x -
-            spin_y*t95 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+        t89 = 2*sum_cd_z
+        t90 = 2*spin_z
+        t91 = spin_x*sum_c_y - spin_y*sum_c_x
+        t92 = -spin_x*sum_c_z + spin_z*sum_c_x
+        t93 = spin_y*sum_c_z - spin_z*sum_c_y
+        t94 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+        t95 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+        t96 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+        local[N] = (felt_x*mass + spin_y*t89 + spin_y*t91 - spin_z*t92 - sum_c_y*turning_z +
+            sum_c_z*turning_y - sum_cd_y*t90 + sum_cdd_x)
+        local[N + 1] = (felt_y*mass - spin_x*t89 - spin_x*t91 + spin_z*t93 + sum_c_x*turning_z -
+            sum_c_z*turning_x + sum_cd_x*t90 + sum_cdd_y)
+        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t92 - 2*spin_y*sum_cd_x -
+            spin_y*t93 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
         local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy +
-            spin_y*sum_spun_z + spin_y*t96 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t97 +
+            spin_y*sum_spun_z + spin_y*t94 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t95 +
             sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z + sum_accelerated_x +
             sum_coupled_x)
         local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z -
-            spin_x*t96 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t98 +
+            spin_x*t94 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t96 +
             sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z + sum_accelerated_y +
             sum_coupled_y)
         local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz + spin_x*sum_spun_y +
-            spin_x*t97 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t98 + spin_z*sum_Jd_zz +
+            spin_x*t95 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t96 + spin_z*sum_Jd_zz +
             sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z + sum_accelerated_z +
             sum_coupled_z)
         # forces conjugate to y
@@ -694,15 +694,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t99 = X_z + u_z
-            t100 = X_y + u_y
-            t101 = X_x + u_x
+            t97 = X_z + u_z
+            t98 = X_y + u_y
+            t99 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t99 - f_z*t100
-            W_y += -f_x*t99 + f_z*t101
-            W_z += f_x*t100 - f_y*t101
+            W_x += f_y*t97 - f_z*t98
+            W_y += -f_x*t97 + f_z*t99
+            W_z += f_x*t98 - f_y*t99
         # inertia and weight on the frame
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -720,29 +720,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t102 = -m_x*psi_y + m_y*psi_x
-            t103 = m_x*psi_z
-            t104 = -m_z*psi_x + t103
-            t105 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t102 + e0*psi_z*t104 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t102 - e0*psi_z*t105 - m_y + (0.5)*m_z*psi_x - 0.5*t103
-            W_z += -e0*psi_x*t104 + e0*psi_y*t105 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t100 = -m_x*psi_y + m_y*psi_x
+            t101 = m_x*psi_z
+            t102 = -m_z*psi_x + t101
+            t103 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t100 + e0*psi_z*t102 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t100 - e0*psi_z*t103 - m_y + (0.5)*m_z*psi_x - 0.5*t101
+            W_z += -e0*psi_x*t102 + e0*psi_y*t103 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t106 = W_x + rhs_x
-        t107 = W_y + rhs_y
-        t108 = W_z + rhs_z
-        wp_x = Bxx*t106 + Byx*t107 + Bzx*t108
-        wp_y = Bxy*t106 + Byy*t107 + Bzy*t108
-        wp_z = Bxz*t106 + Byz*t107 + Bzz*t108
+        t104 = W_x + rhs_x
+        t105 = W_y + rhs_y
+        t106 = W_z + rhs_z
+        wp_x = Bxx*t104 + Byx*t105 + Bzx*t106
+        wp_y = Bxy*t104 + Byy*t105 + Bzy*t106
+        wp_z = Bxz*t104 + Byz*t105 + Bzz*t106
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t109 = fit*wp_z
-            F_x += -X_y*t109 + X_z*fit*wp_y
-            F_y += X_x*t109 - X_z*fit*wp_x
+            t107 = fit*wp_z
+            F_x += -X_y*t107 + X_z*fit*wp_y
+            F_y += X_x*t107 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -751,10 +751,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t110 = fit*wp_z
-            t111 = X_z*fit
-            h[i3] = F_x*alpha + X_y*t110 + f_x - t111*wp_y
-            h[i3 + 1] = F_y*alpha - X_x*t110 + f_y + t111*wp_x
+            t108 = fit*wp_z
+            t109 = X_z*fit
+            h[i3] = F_x*alpha + X_y*t108 + f_x - t109*wp_y
+            h[i3 + 1] = F_y*alpha - X_x*t108 + f_y + t109*wp_x
             h[i3 + 2] = F_z*alpha + X_x*fit*wp_y - X_y*fit*wp_x + f_z
         # force on the nodes
         for i in range(N_POSITIONS):
@@ -769,17 +769,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t112 = m_y*psi_z
-            t113 = m_x*psi_y
-            t114 = e0*(m_y*psi_x - t113)
-            t115 = m_x*psi_z
-            t116 = m_z*psi_x
-            t117 = t115 - t116
-            t118 = e0*psi_z
-            t119 = m_z*psi_y - t112
-            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t114 + (0.5)*t112 - t117*t118
-            g[j3 + 1] = m_y - psi_x*t114 - 0.5*t115 + (0.5)*t116 + t118*t119
-            g[j3 + 2] = e0*psi_x*t117 - e0*psi_y*t119 - 0.5*m_y*psi_x + m_z + (0.5)*t113
+            t110 = m_y*psi_z
+            t111 = m_x*psi_y
+            t112 = e0*(m_y*psi_x - t111)
+            t113 = m_x*psi_z
+            t114 = m_z*psi_x
+            t115 = t113 - t114
+            t116 = e0*psi_z
+            t117 = m_z*psi_y - t110
+            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t112 + (0.5)*t110 - t115*t116
+            g[j3 + 1] = m_y - psi_x*t112 - 0.5*t113 + (0.5)*t114 + t116*t117
+            g[j3 + 2] = e0*psi_x*t115 - e0*psi_y*t117 - 0.5*m_y*psi_x + m_z + (0.5)*t111
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -803,47 +803,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             moving = squares[0]
             elastic = squares[1]
-            t120 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-            t121 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-            t122 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-            t123 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
-            t124 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
-            t125 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
-            t126 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
-            t127 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
-            t128 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
-            t129 = mass*x0_x
-            t130 = mass*x0_y
-            t131 = mass*x0_z
-            t132 = mass*t128 + t127
-            t133 = mass*t126 + t125
-            t134 = mass*t124 + t123
-            t135 = t132*turn_xx + t133*turn_xy + t134*turn_xz
-            t136 = t132*turn_yx + t133*turn_yy + t134*turn_yz
-            t137 = t132*turn_zx + t133*turn_zy + t134*turn_zz
-            t138 = R0_xx*t135 + R0_xy*t136 + R0_xz*t137
-            t139 = R0_yx*t135 + R0_yy*t136 + R0_yz*t137
-            t140 = R0_zx*t135 + R0_zy*t136 + R0_zz*t137
-            t141 = sum_c_y*t124 - sum_c_z*t126 + sum_spun_x + t120
-            t142 = -sum_c_x*t124 + sum_c_z*t128 + sum_spun_y + t121
-            t143 = sum_c_x*t126 - sum_c_y*t128 + sum_spun_z + t122
-            t144 = t141*turn_xx + t142*turn_xy + t143*turn_xz
-            t145 = t141*turn_yx + t142*turn_yy + t143*turn_yz
-            t146 = t141*turn_zx + t142*turn_zy + t143*turn_zz
-            kinetic = ((0.5)*mass*(t124*t124 + t126*t126 + t128*t128) + (0.5)*moving +
-                spin_x*sum_spun_x + (0.5)*spin_x*t120 + spin_y*sum_spun_y + (0.5)*spin_y*t121 +
-                spin_z*sum_spun_z + (0.5)*spin_z*t122 + t123*t124 + t125*t126 + t127*t128)
+            t118 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            t119 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t120 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t121 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
+            t122 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
+            t123 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
+            t124 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
+            t125 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
+            t126 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
+            t127 = mass*x0_x
+            t128 = mass*x0_y
+            t129 = mass*x0_z
+            t130 = mass*t126 + t125
+            t131 = mass*t124 + t123
+            t132 = mass*t122 + t121
+            t133 = t130*turn_xx + t131*turn_xy + t132*turn_xz
+            t134 = t130*turn_yx + t131*turn_yy + t132*turn_yz
+            t135 = t130*turn_zx + t131*turn_zy + t132*turn_zz
+            t136 = R0_xx*t133 + R0_xy*t134 + R0_xz*t135
+            t137 = R0_yx*t133 + R0_yy*t134 + R0_yz*t135
+            t138 = R0_zx*t133 + R0_zy*t134 + R0_zz*t135
+            t139 = sum_c_y*t122 - sum_c_z*t124 + sum_spun_x + t118
+            t140 = -sum_c_x*t122 + sum_c_z*t126 + sum_spun_y + t119
+            t141 = sum_c_x*t124 - sum_c_y*t126 + sum_spun_z + t120
+            t142 = t139*turn_xx + t140*turn_xy + t141*turn_xz
+            t143 = t139*turn_yx + t140*turn_yy + t141*turn_yz
+            t144 = t139*turn_zx + t140*turn_zy + t141*turn_zz
+            kinetic = ((0.5)*mass*(t122*t122 + t124*t124 + t126*t126) + (0.5)*moving +
+                spin_x*sum_spun_x + (0.5)*spin_x*t118 + spin_y*sum_spun_y + (0.5)*spin_y*t119 +
+                spin_z*sum_spun_z + (0.5)*spin_z*t120 + t121*t122 + t123*t124 + t125*t126)
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(R0_xx*t129 + R0_yx*t130 + R0_zx*t131 + sum_c_x*turn_xx +
-                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t129 + R0_yy*t130 + R0_zy*t131
-                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t129 +
-                R0_yz*t130 + R0_zz*t131 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
-            P_x = t138
-            P_y = t139
-            P_z = t140
-            H_x = R0_xx*t144 + R0_xy*t145 + R0_xz*t146 - t139*x0_z + t140*x0_y
-            H_y = R0_yx*t144 + R0_yy*t145 + R0_yz*t146 + t138*x0_z - t140*x0_x
-            H_z = R0_zx*t144 + R0_zy*t145 + R0_zz*t146 - t138*x0_y + t139*x0_x
+            potential = (-gamma_x*(R0_xx*t127 + R0_yx*t128 + R0_zx*t129 + sum_c_x*turn_xx +
+                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t127 + R0_yy*t128 + R0_zy*t129
+                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t127 +
+                R0_yz*t128 + R0_zz*t129 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
+            P_x = t136
+            P_y = t137
+            P_z = t138
+            H_x = R0_xx*t142 + R0_xy*t143 + R0_xz*t144 - t137*x0_z + t138*x0_y
+            H_y = R0_yx*t142 + R0_yy*t143 + R0_yz*t144 + t136*x0_z - t138*x0_x
+            H_z = R0_zx*t142 + R0_zy*t143 + R0_zz*t144 - t136*x0_y + t137*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -873,12 +873,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t147 = 2*c_geo*spin_x
+            t145 = 2*c_geo*spin_x
             by_place[0] = -c_geo*spin_x*spin_x
             by_place[1] = -c_geo*spin_y*spin_y
             by_place[2] = -c_geo*spin_z*spin_z
-            by_place[3] = -spin_y*t147
-            by_place[4] = -spin_z*t147
+            by_place[3] = -spin_y*t145
+            by_place[4] = -spin_z*t145
             by_place[5] = -2*c_geo*spin_y*spin_z
             by_place[6] = c_geo*turning_x
             by_place[7] = c_geo*turning_y
@@ -950,64 +950,64 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     more[1*hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_wa_x, row_wa_y, row_wa_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
                 row_ua_x, row_ua_y, row_ua_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
-                t148 = row_S1_x*spin_z
-                t149 = row_S1_z*spin_x
-                t150 = t148 - t149
-                t151 = row_S1_x*spin_y
-                t152 = row_S1_y*spin_x - t151
-                t153 = row_S1_y*spin_z
-                t154 = row_S1_z*spin_y - t153
-                t155 = 2*spin_x
-                t156 = 2*spin_y
-                t157 = 2*spin_z
-                t158 = -row_w_z
-                t159 = row_v_z + t158
-                t160 = row_h_xx + 2*row_j_xx
-                t161 = row_h_xy + 2*row_j_xy
-                t162 = row_h_xz + 2*row_j_xz
-                t163 = -row_w_y
-                t164 = row_v_y + t163
-                t165 = row_h_yz + 2*row_j_yz
-                t166 = row_h_zz + 2*row_j_zz
-                t167 = spin_x*t162 + spin_y*t165 + spin_z*t166
-                t168 = row_h_yy + 2*row_j_yy
-                t169 = spin_x*t161 + spin_y*t168 + spin_z*t165
-                t170 = -row_w_x
-                t171 = row_v_x + t170
-                t172 = spin_x*t160 + spin_y*t161 + spin_z*t162
-                t173 = row_g_z + row_u_z
-                t174 = row_g_y + row_u_y
-                t175 = row_g_x + row_u_x
-                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t152 -
-                    spin_z*t150))
-                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t152
-                    + spin_z*t154))
+                t146 = row_S1_x*spin_z
+                t147 = row_S1_z*spin_x
+                t148 = t146 - t147
+                t149 = row_S1_x*spin_y
+                t150 = row_S1_y*spin_x - t149
+                t151 = row_S1_y*spin_z
+                t152 = row_S1_z*spin_y - t151
+                t153 = 2*spin_x
+                t154 = 2*spin_y
+                t155 = 2*spin_z
+                t156 = -row_w_z
+                t157 = row_v_z + t156
+                t158 = row_h_xx + 2*row_j_xx
+                t159 = row_h_xy + 2*row_j_xy
+                t160 = row_h_xz + 2*row_j_xz
+                t161 = -row_w_y
+                t162 = row_v_y + t161
+                t163 = row_h_yz + 2*row_j_yz
+                t164 = row_h_zz + 2*row_j_zz
+                t165 = spin_x*t160 + spin_y*t163 + spin_z*t164
+                t166 = row_h_yy + 2*row_j_yy
+                t167 = spin_x*t159 + spin_y*t166 + spin_z*t163
+                t168 = -row_w_x
+                t169 = row_v_x + t168
+                t170 = spin_x*t158 + spin_y*t159 + spin_z*t160
+                t171 = row_g_z + row_u_z
+                t172 = row_g_y + row_u_y
+                t173 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t150 -
+                    spin_z*t148))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t150
+                    + spin_z*t152))
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
-                    spin_x*t150 - spin_y*t154))
-                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t155 +
-                    row_jd_xy*t156 + row_jd_xz*t157 + row_ua_x - row_wa_x + spin_y*t159 +
-                    spin_y*t167 - spin_z*t164 - spin_z*t169 + t160*turning_x + t161*turning_y +
-                    t162*turning_z))
-                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t155 +
-                    row_jd_yy*t156 + row_jd_yz*t157 + row_ua_y - row_wa_y - spin_x*t159 -
-                    spin_x*t167 + spin_z*t171 + spin_z*t172 + t161*turning_x + t165*turning_z +
-                    t168*turning_y))
-                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t155 +
-                    row_jd_yz*t156 + row_jd_zz*t157 + row_ua_z - row_wa_z + spin_x*t164 +
-                    spin_x*t169 - spin_y*t171 - spin_y*t172 + t162*turning_x + t165*turning_y +
-                    t166*turning_z))
-                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t153
-                Lv[i*deep + N + 1] = 2*t148 - 2*t149
-                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t151
-                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t173 - spin_z*t174 + t170 + t172
-                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t173 + spin_z*t175 + t163 + t169
-                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t174 - spin_y*t175 + t158 + t167
+                    spin_x*t148 - spin_y*t152))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t153 +
+                    row_jd_xy*t154 + row_jd_xz*t155 + row_ua_x - row_wa_x + spin_y*t157 +
+                    spin_y*t165 - spin_z*t162 - spin_z*t167 + t158*turning_x + t159*turning_y +
+                    t160*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t153 +
+                    row_jd_yy*t154 + row_jd_yz*t155 + row_ua_y - row_wa_y - spin_x*t157 -
+                    spin_x*t165 + spin_z*t169 + spin_z*t170 + t159*turning_x + t163*turning_z +
+                    t166*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t153 +
+                    row_jd_yz*t154 + row_jd_zz*t155 + row_ua_z - row_wa_z + spin_x*t162 +
+                    spin_x*t167 - spin_y*t169 - spin_y*t170 + t160*turning_x + t163*turning_y +
+                    t164*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t151
+                Lv[i*deep + N + 1] = 2*t146 - 2*t147
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t149
+                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t171 - spin_z*t172 + t168 + t170
+                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t171 + spin_z*t173 + t161 + t167
+                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t172 - spin_y*t173 + t156 + t165
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t175
-                La[i*deep + N + 4] = t174
-                La[i*deep + N + 5] = t173
+                La[i*deep + N + 3] = t173
+                La[i*deep + N + 4] = t172
+                La[i*deep + N + 5] = t171
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -1025,14 +1025,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     + i])
                 row_w_x, row_w_y, row_w_z = (products[9*hN + i], products[10*hN + i],
                     products[11*hN + i])
-                t176 = row_h_xy + 2*row_j_xy
-                t177 = row_h_xz + 2*row_j_xz
-                t178 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t176 -
-                    spin_z*t177)
-                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t176 - spin_y*(row_h_yy + 2*row_j_yy) -
-                    spin_z*t178)
-                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t177 - spin_y*t178 - spin_z*(row_h_zz +
+                t174 = row_h_xy + 2*row_j_xy
+                t175 = row_h_xz + 2*row_j_xz
+                t176 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t174 -
+                    spin_z*t175)
+                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t174 - spin_y*(row_h_yy + 2*row_j_yy) -
+                    spin_z*t176)
+                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t175 - spin_y*t176 - spin_z*(row_h_zz +
                     2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
@@ -1043,79 +1043,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t179 = spin_y*sum_c_y
-            t180 = spin_z*sum_c_z
-            t181 = 2*sum_cd_z
-            t182 = spin_x*sum_c_y
-            t183 = 2*sum_cd_y
-            t184 = spin_z*sum_c_x
-            t185 = spin_y*sum_J_xz
-            t186 = spin_z*sum_J_xy
-            t187 = spin_y*sum_J_yz
-            t188 = spin_x*sum_J_xz
-            t189 = spin_z*sum_J_zz + sum_spun_z
-            t190 = spin_z*sum_J_yz
-            t191 = spin_x*sum_J_xy
-            t192 = spin_y*sum_J_yy + sum_spun_y
-            t193 = spin_x*sum_c_x
-            t194 = 2*sum_cd_x
-            t195 = spin_y*sum_c_z
-            t196 = spin_x*sum_J_yz
-            t197 = spin_z*sum_J_xz
-            t198 = spin_y*sum_J_xy
-            t199 = spin_x*sum_J_xx + sum_spun_x
-            t200 = -sum_c_y
-            t201 = -sum_c_z
-            t202 = -sum_c_x
-            Lv[N*deep + N] = t179 + t180
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t181 - 2*t182
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t183 + t184
-            Lv[N*deep + N + 3] = sum_Jd_xx + t185 - t186
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t187 - 2*t188 - t189
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t190 + 2*t191 + t192
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t181 + t182
-            Lv[(N + 1)*deep + N + 1] = t180 + t193
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t194 - 2*t195
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t187 + t188 + t189
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t186 - t196
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t197 - 2*t198 - t199
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t183 - 2*t184
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t194 + t195
-            Lv[(N + 2)*deep + N + 2] = t179 + t193
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t190 - t191 - t192
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t197 + t198 + t199
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t185 + t196
+            t177 = spin_y*sum_c_y
+            t178 = spin_z*sum_c_z
+            t179 = 2*sum_cd_z
+            t180 = spin_x*sum_c_y
+            t181 = 2*sum_cd_y
+            t182 = spin_z*sum_c_x
+            t183 = spin_y*sum_J_xz
+            t184 = spin_z*sum_J_xy
+            t185 = spin_y*sum_J_yz
+            t186 = spin_x*sum_J_xz
+            t187 = spin_z*sum_J_zz + sum_spun_z
+            t188 = spin_z*sum_J_yz
+            t189 = spin_x*sum_J_xy
+            t190 = spin_y*sum_J_yy + sum_spun_y
+            t191 = spin_x*sum_c_x
+            t192 = 2*sum_cd_x
+            t193 = spin_y*sum_c_z
+            t194 = spin_x*sum_J_yz
+            t195 = spin_z*sum_J_xz
+            t196 = spin_y*sum_J_xy
+            t197 = spin_x*sum_J_xx + sum_spun_x
+            t198 = -sum_c_y
+            t199 = -sum_c_z
+            t200 = -sum_c_x
+            Lv[N*deep + N] = t177 + t178
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t179 - 2*t180
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t181 + t182
+            Lv[N*deep + N + 3] = sum_Jd_xx + t183 - t184
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t185 - 2*t186 - t187
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t188 + 2*t189 + t190
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t179 + t180
+            Lv[(N + 1)*deep + N + 1] = t178 + t191
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t192 - 2*t193
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t185 + t186 + t187
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t184 - t194
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t195 - 2*t196 - t197
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t181 - 2*t182
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t192 + t193
+            Lv[(N + 2)*deep + N + 2] = t177 + t191
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t188 - t189 - t190
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t195 + t196 + t197
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t183 + t194
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0
             La[N*deep + N + 2] = 0
             La[N*deep + N + 3] = 0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t200
+            La[N*deep + N + 5] = t198
             La[(N + 1)*deep + N] = 0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0
-            La[(N + 1)*deep + N + 3] = t201
+            La[(N + 1)*deep + N + 3] = t199
             La[(N + 1)*deep + N + 4] = 0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0
             La[(N + 2)*deep + N + 1] = 0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t202
+            La[(N + 2)*deep + N + 4] = t200
             La[(N + 2)*deep + N + 5] = 0
             La[(N + 3)*deep + N] = 0
-            La[(N + 3)*deep + N + 1] = t201
+            La[(N + 3)*deep + N + 1] = t199
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0
-            La[(N + 4)*deep + N + 2] = t202
+            La[(N + 4)*deep + N + 2] = t200
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t200
+            La[(N + 5)*deep + N] = t198
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1152,12 +1152,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t203 = -dx0_z + dx_z
-                    t204 = -dx0_y + dx_y
-                    t205 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t203 - X_z*t204)
-                    rhs_y += -fit*(-X_x*t203 + X_z*t205)
-                    rhs_z += -fit*(X_x*t204 - X_y*t205)
+                    t201 = -dx0_z + dx_z
+                    t202 = -dx0_y + dx_y
+                    t203 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t201 - X_z*t202)
+                    rhs_y += -fit*(-X_x*t201 + X_z*t203)
+                    rhs_z += -fit*(X_x*t202 - X_y*t203)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1167,43 +1167,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t206 = X_y + u_y
-                    t207 = X_z + u_z
-                    t208 = X_x + u_x
-                    dy[i3] = -dth0_y*t207 + dth0_z*t206 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t207 - dth0_z*t208 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t206 + dth0_y*t208 - dx0_z + dx_z
+                    t204 = X_y + u_y
+                    t205 = X_z + u_z
+                    t206 = X_x + u_x
+                    dy[i3] = -dth0_y*t205 + dth0_z*t204 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t205 - dth0_z*t206 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t204 + dth0_y*t206 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t209 = dth0_y*psi_z
-                    t210 = dth_y*psi_z
-                    t211 = dth0_x*psi_y
-                    t212 = dth0_y*psi_x - t211
-                    t213 = e0*psi_y
-                    t214 = dth_x*psi_z
-                    t215 = dth_z*psi_x
-                    t216 = t214 - t215
-                    t217 = e0*psi_z
-                    t218 = dth_x*psi_y
-                    t219 = dth_y*psi_x - t218
-                    t220 = dth0_x*psi_z
-                    t221 = dth0_z*psi_x
-                    t222 = t220 - t221
-                    t223 = e0*psi_x
-                    t224 = dth_z*psi_y - t210
-                    t225 = dth0_z*psi_y - t209
+                    t207 = dth0_y*psi_z
+                    t208 = dth_y*psi_z
+                    t209 = dth0_x*psi_y
+                    t210 = dth0_y*psi_x - t209
+                    t211 = e0*psi_y
+                    t212 = dth_x*psi_z
+                    t213 = dth_z*psi_x
+                    t214 = t212 - t213
+                    t215 = e0*psi_z
+                    t216 = dth_x*psi_y
+                    t217 = dth_y*psi_x - t216
+                    t218 = dth0_x*psi_z
+                    t219 = dth0_z*psi_x
+                    t220 = t218 - t219
+                    t221 = e0*psi_x
+                    t222 = dth_z*psi_y - t208
+                    t223 = dth0_z*psi_y - t207
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t219 + e0*psi_z*t222 - 0.5*t209 - 0.5*t210 - t212*t213 -
-                        t216*t217)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t212*t223 + (0.5)*t214 - 0.5*t215 + t217*t224
-                        - t217*t225 - t219*t223 + (0.5)*t220 - 0.5*t221)
+                        e0*psi_y*t217 + e0*psi_z*t220 - 0.5*t207 - 0.5*t208 - t210*t211 -
+                        t214*t215)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t210*t221 + (0.5)*t212 - 0.5*t213 + t215*t222
+                        - t215*t223 - t217*t221 + (0.5)*t218 - 0.5*t219)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t216 + e0*psi_y*t225 - 0.5*t211 - t213*t224 - 0.5*t218 -
-                        t222*t223)
+                        e0*psi_x*t214 + e0*psi_y*t223 - 0.5*t209 - t211*t222 - 0.5*t216 -
+                        t220*t221)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1251,12 +1251,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t226 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t227 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t228 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t226 - X_z*t227)
-                    rhs_y += -fit*(-X_x*t226 + X_z*t228)
-                    rhs_z += -fit*(X_x*t227 - X_y*t228)
+                    t224 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t225 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t226 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t224 - X_z*t225)
+                    rhs_y += -fit*(-X_x*t224 + X_z*t226)
+                    rhs_z += -fit*(X_x*t225 - X_y*t226)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1289,13 +1289,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t229 = X_y + u_y
-                    t230 = X_z + u_z
-                    t231 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t230 + dOm0_z*t229 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t230 - dOm0_z*t231 - dv0_y +
+                    t227 = X_y + u_y
+                    t228 = X_z + u_z
+                    t229 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t228 + dOm0_z*t227 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t228 - dOm0_z*t229 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t229 + dOm0_y*t231 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t227 + dOm0_y*t229 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1306,99 +1306,103 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t232 = Om0_y*dpsi_z
-                    t233 = Om_y*dpsi_z
-                    t234 = dOm0_y*psi_z
-                    t235 = dOm_y*psi_z
-                    t236 = -Om0_x*psi_y + Om0_y*psi_x
-                    t237 = dpsi_y*e0
-                    t238 = Om_x*psi_z - Om_z*psi_x
-                    t239 = dpsi_z*e0
-                    t240 = -Om_x*psi_y + Om_y*psi_x
-                    t241 = Om0_x*psi_z - Om0_z*psi_x
-                    t242 = Om0_x*dpsi_y
-                    t243 = dOm0_x*psi_y
-                    t244 = Om0_y*dpsi_x + dOm0_y*psi_x - t242 - t243
-                    t245 = e0*psi_y
-                    t246 = Om_x*dpsi_z
-                    t247 = dOm_x*psi_z
-                    t248 = Om_z*dpsi_x
-                    t249 = dOm_z*psi_x
-                    t250 = t246 + t247 - t248 - t249
-                    t251 = e0*psi_z
-                    t252 = Om_x*dpsi_y
-                    t253 = dOm_x*psi_y
-                    t254 = Om_y*dpsi_x + dOm_y*psi_x - t252 - t253
-                    t255 = Om0_x*dpsi_z
-                    t256 = dOm0_x*psi_z
-                    t257 = Om0_z*dpsi_x
-                    t258 = dOm0_z*psi_x
-                    t259 = t255 + t256 - t257 - t258
-                    t260 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t261 = e1*t260
-                    t262 = psi_y*t261
-                    t263 = psi_z*t261
-                    t264 = dpsi_x*e0
-                    t265 = -Om_y*psi_z + Om_z*psi_y
-                    t266 = -Om0_y*psi_z + Om0_z*psi_y
-                    t267 = e0*psi_x
-                    t268 = Om_z*dpsi_y + dOm_z*psi_y - t233 - t235
-                    t269 = Om0_z*dpsi_y + dOm0_z*psi_y - t232 - t234
-                    t270 = psi_x*t261
+                    t230 = Om0_y*dpsi_z
+                    t231 = Om_y*dpsi_z
+                    t232 = dOm0_y*psi_z
+                    t233 = dOm_y*psi_z
+                    t234 = -Om0_x*psi_y + Om0_y*psi_x
+                    t235 = dpsi_y*e0
+                    t236 = Om_x*psi_z - Om_z*psi_x
+                    t237 = dpsi_z*e0
+                    t238 = -Om_x*psi_y + Om_y*psi_x
+                    t239 = Om0_x*psi_z - Om0_z*psi_x
+                    t240 = Om0_x*dpsi_y
+                    t241 = dOm0_x*psi_y
+                    t242 = Om0_y*dpsi_x + dOm0_y*psi_x - t240 - t241
+                    t243 = e0*psi_y
+                    t244 = Om_x*dpsi_z
+                    t245 = dOm_x*psi_z
+                    t246 = Om_z*dpsi_x
+                    t247 = dOm_z*psi_x
+                    t248 = t244 + t245 - t246 - t247
+                    t249 = e0*psi_z
+                    t250 = Om_x*dpsi_y
+                    t251 = dOm_x*psi_y
+                    t252 = Om_y*dpsi_x + dOm_y*psi_x - t250 - t251
+                    t253 = Om0_x*dpsi_z
+                    t254 = dOm0_x*psi_z
+                    t255 = Om0_z*dpsi_x
+                    t256 = dOm0_z*psi_x
+                    t257 = t253 + t254 - t255 - t256
+                    t258 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t259 = e1*t258
+                    t260 = psi_y*t259
+                    t261 = psi_z*t259
+                    t262 = dpsi_x*e0
+                    t263 = -Om_y*psi_z + Om_z*psi_y
+                    t264 = -Om0_y*psi_z + Om0_z*psi_y
+                    t265 = e0*psi_x
+                    t266 = Om_z*dpsi_y + dOm_z*psi_y - t231 - t233
+                    t267 = Om0_z*dpsi_y + dOm0_z*psi_y - t230 - t232
+                    t268 = psi_x*t259
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t240 +
-                        dpsi_z*e0*t241 + e0*psi_y*t254 + e0*psi_z*t259 + e1*psi_y*t240*t260 +
-                        e1*psi_z*t241*t260 - 0.5*t232 - 0.5*t233 - 0.5*t234 - 0.5*t235 - t236*t237
-                        - t236*t262 - t238*t239 - t238*t263 - t244*t245 - t250*t251)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t236*t264 + t236*t270 + t239*t265 -
-                        t239*t266 - t240*t264 - t240*t270 + t244*t267 + (0.5)*t246 + (0.5)*t247 -
-                        0.5*t248 - 0.5*t249 + t251*t268 - t251*t269 - t254*t267 + (0.5)*t255 +
-                        (0.5)*t256 - 0.5*t257 - 0.5*t258 + t263*t265 - t263*t266)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t238 +
+                        dpsi_z*e0*t239 + e0*psi_y*t252 + e0*psi_z*t257 + e1*psi_y*t238*t258 +
+                        e1*psi_z*t239*t258 - 0.5*t230 - 0.5*t231 - 0.5*t232 - 0.5*t233 - t234*t235
+                        - t234*t260 - t236*t237 - t236*t261 - t242*t243 - t248*t249)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t234*t262 + t234*t268 + t237*t263 -
+                        t237*t264 - t238*t262 - t238*t268 + t242*t265 + (0.5)*t244 + (0.5)*t245 -
+                        0.5*t246 - 0.5*t247 + t249*t266 - t249*t267 - t252*t265 + (0.5)*t253 +
+                        (0.5)*t254 - 0.5*t255 - 0.5*t256 + t261*t263 - t261*t264)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t238 + dpsi_y*e0*t266 +
-                        e0*psi_x*t250 + e0*psi_y*t269 + e1*psi_x*t238*t260 + e1*psi_y*t260*t266 -
-                        t237*t265 - t241*t264 - t241*t270 - 0.5*t242 - 0.5*t243 - t245*t268 -
-                        0.5*t252 - 0.5*t253 - t259*t267 - t262*t265)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t236 + dpsi_y*e0*t264 +
+                        e0*psi_x*t248 + e0*psi_y*t267 + e1*psi_x*t236*t258 + e1*psi_y*t258*t264 -
+                        t235*t263 - t239*t262 - t239*t268 - 0.5*t240 - 0.5*t241 - t243*t266 -
+                        0.5*t250 - 0.5*t251 - t257*t265 - t260*t263)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
+                # differential: rate: rates of the elastic displacements, the frame held
+                for i in range(N_POSITIONS):
+                    i3 = 3*i
+                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
+                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
+                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
+                    detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
+                        Om0_z*dv0_y + Om0_z*dvs_y - dOm0_y*eu_z + dOm0_y*v0_z - dOm0_y*vs_z +
+                        dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - da0_x + dacc_x)
+                    detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
+                        Om0_z*dv0_x - Om0_z*dvs_x + dOm0_x*eu_z - dOm0_x*v0_z + dOm0_x*vs_z -
+                        dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x - da0_y + dacc_y)
+                    detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
+                        Om0_y*dv0_x + Om0_y*dvs_x - dOm0_x*eu_y + dOm0_x*v0_y - dOm0_x*vs_y +
+                        dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x - da0_z + dacc_z)
                 # differential: rate: sum w_j X_j x (rate of r_j) = 0
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
-                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t271 = Om0d_y*fit
-                    t272 = X_y*t271
-                    t273 = Om0d_z*fit
-                    t274 = X_z*t273
-                    t275 = X_y*du_y
-                    t276 = X_z*du_z
-                    t277 = Om0d_x*fit
-                    t278 = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x - Om0_y*dv0_x +
-                        Om0_y*dvs_x - dOm0_x*eu_y + dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x -
-                        dOm0_y*v0_x + dOm0_y*vs_x - da0_z + dacc_z)
-                    t279 = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x + Om0_z*dv0_x -
-                        Om0_z*dvs_x + dOm0_x*eu_z - dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x +
-                        dOm0_z*v0_x - dOm0_z*vs_x - da0_y + dacc_y)
-                    t280 = X_x*t277
-                    t281 = X_x*du_x
-                    t282 = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y - Om0_z*dv0_y +
-                        Om0_z*dvs_y - dOm0_y*eu_z + dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y -
-                        dOm0_z*v0_y + dOm0_z*vs_y - da0_x + dacc_x)
-                    rhs_x += (-du_x*t272 - du_x*t274 - fit*(X_y*t278 - X_z*t279) - t277*(-t275 -
-                        t276))
-                    rhs_y += (-du_y*t274 - du_y*t280 - fit*(-X_x*t278 + X_z*t282) - t271*(-t276 -
-                        t281))
-                    rhs_z += (-du_z*t272 - du_z*t280 - fit*(X_x*t279 - X_y*t282) - t273*(-t275 -
-                        t281))
+                    deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
+                    t269 = Om0d_y*fit
+                    t270 = X_y*t269
+                    t271 = X_z*fit
+                    t272 = Om0d_z*t271
+                    t273 = X_y*du_y
+                    t274 = X_z*du_z
+                    t275 = Om0d_x*fit
+                    t276 = X_x*t275
+                    t277 = X_x*du_x
+                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t270 - du_x*t272 -
+                        t275*(-t273 - t274))
+                    rhs_y += (X_x*deud_z*fit - deud_x*t271 - du_y*t272 - du_y*t276 - t269*(-t274 -
+                        t277))
+                    rhs_z += (-Om0d_z*fit*(-t273 - t277) - X_x*deud_y*fit + X_y*deud_x*fit -
+                        du_z*t270 - du_z*t276)
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1407,27 +1411,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
-                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t283 = X_y + u_y
-                    t284 = X_z + u_z
-                    t285 = X_x + u_x
-                    detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
-                        Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
-                        dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t284 + dOm0d_z*t283 - da0_x + dacc_x)
-                    detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
-                        Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
-                        dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t284 - dOm0d_z*t285 - da0_y + dacc_y)
-                    detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
-                        Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
-                        dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t283 + dOm0d_y*t285 - da0_z + dacc_z)
+                    deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
+                    t278 = X_y + u_y
+                    t279 = X_z + u_z
+                    t280 = X_x + u_x
+                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t279 + dOm0d_z*t278 + deud_x
+                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t279 - dOm0d_z*t280 + deud_y
+                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t278 + dOm0d_y*t280 +
+                        deud_z)
                 # differential: rate: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1442,144 +1434,144 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t286 = A_y*dpsi_z
-                    t287 = Om0_y*dep_z
-                    t288 = Om0d_y*dpsi_z
-                    t289 = Om_y*dep_z
-                    t290 = dA_y*psi_z
-                    t291 = dOm0_y*ep_z
-                    t292 = dOm0d_y*psi_z
-                    t293 = dOm_y*ep_z
-                    t294 = -Om0_x*psi_y + Om0_y*psi_x
-                    t295 = dep_y*e0
-                    t296 = Om_x*psi_z - Om_z*psi_x
-                    t297 = dep_z*e0
-                    t298 = -Om_x*psi_y + Om_y*psi_x
-                    t299 = Om0_x*psi_z - Om0_z*psi_x
-                    t300 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t301 = dpsi_y*e0
-                    t302 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t303 = dpsi_z*e0
-                    t304 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t305 = e0*ep_y
-                    t306 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t307 = e0*ep_z
-                    t308 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t309 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t310 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t311 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t312 = 2*psi_x
-                    t313 = 2*psi_y
-                    t314 = 2*psi_z
-                    t315 = ep_x*t312 + ep_y*t313 + ep_z*t314
-                    t316 = e1*t315
-                    t317 = dpsi_y*t316
-                    t318 = dpsi_z*t316
-                    t319 = dpsi_x*t312 + dpsi_y*t313 + dpsi_z*t314
-                    t320 = e1*t319
-                    t321 = ep_y*t320
-                    t322 = ep_z*t320
-                    t323 = psi_y*t320
-                    t324 = psi_y*t316
-                    t325 = psi_z*t320
-                    t326 = psi_z*t316
-                    t327 = Om0_x*dep_y
-                    t328 = Om0d_x*dpsi_y
-                    t329 = dOm0_x*ep_y
-                    t330 = dOm0d_x*psi_y
-                    t331 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t327 -
-                        t328 - t329 - t330)
-                    t332 = e0*psi_y
-                    t333 = A_x*dpsi_z
-                    t334 = Om_x*dep_z
-                    t335 = dA_x*psi_z
-                    t336 = dOm_x*ep_z
-                    t337 = A_z*dpsi_x
-                    t338 = Om_z*dep_x
-                    t339 = dA_z*psi_x
-                    t340 = dOm_z*ep_x
-                    t341 = t333 + t334 + t335 + t336 - t337 - t338 - t339 - t340
-                    t342 = e0*psi_z
-                    t343 = A_x*dpsi_y
-                    t344 = Om_x*dep_y
-                    t345 = dA_x*psi_y
-                    t346 = dOm_x*ep_y
-                    t347 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t343 - t344 - t345
-                        - t346)
-                    t348 = Om0_x*dep_z
-                    t349 = Om0d_x*dpsi_z
-                    t350 = dOm0_x*ep_z
-                    t351 = dOm0d_x*psi_z
-                    t352 = Om0_z*dep_x
-                    t353 = Om0d_z*dpsi_x
-                    t354 = dOm0_z*ep_x
-                    t355 = dOm0d_z*psi_x
-                    t356 = t348 + t349 + t350 + t351 - t352 - t353 - t354 - t355
-                    t357 = (dep_x*t312 + dep_y*t313 + dep_z*t314 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                    t281 = A_y*dpsi_z
+                    t282 = Om0_y*dep_z
+                    t283 = Om0d_y*dpsi_z
+                    t284 = Om_y*dep_z
+                    t285 = dA_y*psi_z
+                    t286 = dOm0_y*ep_z
+                    t287 = dOm0d_y*psi_z
+                    t288 = dOm_y*ep_z
+                    t289 = -Om0_x*psi_y + Om0_y*psi_x
+                    t290 = dep_y*e0
+                    t291 = Om_x*psi_z - Om_z*psi_x
+                    t292 = dep_z*e0
+                    t293 = -Om_x*psi_y + Om_y*psi_x
+                    t294 = Om0_x*psi_z - Om0_z*psi_x
+                    t295 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
+                    t296 = dpsi_y*e0
+                    t297 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t298 = dpsi_z*e0
+                    t299 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t300 = e0*ep_y
+                    t301 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t302 = e0*ep_z
+                    t303 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t304 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
+                    t305 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t306 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t307 = 2*psi_x
+                    t308 = 2*psi_y
+                    t309 = 2*psi_z
+                    t310 = ep_x*t307 + ep_y*t308 + ep_z*t309
+                    t311 = e1*t310
+                    t312 = dpsi_y*t311
+                    t313 = dpsi_z*t311
+                    t314 = dpsi_x*t307 + dpsi_y*t308 + dpsi_z*t309
+                    t315 = e1*t314
+                    t316 = ep_y*t315
+                    t317 = ep_z*t315
+                    t318 = psi_y*t315
+                    t319 = psi_y*t311
+                    t320 = psi_z*t315
+                    t321 = psi_z*t311
+                    t322 = Om0_x*dep_y
+                    t323 = Om0d_x*dpsi_y
+                    t324 = dOm0_x*ep_y
+                    t325 = dOm0d_x*psi_y
+                    t326 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t322 -
+                        t323 - t324 - t325)
+                    t327 = e0*psi_y
+                    t328 = A_x*dpsi_z
+                    t329 = Om_x*dep_z
+                    t330 = dA_x*psi_z
+                    t331 = dOm_x*ep_z
+                    t332 = A_z*dpsi_x
+                    t333 = Om_z*dep_x
+                    t334 = dA_z*psi_x
+                    t335 = dOm_z*ep_x
+                    t336 = t328 + t329 + t330 + t331 - t332 - t333 - t334 - t335
+                    t337 = e0*psi_z
+                    t338 = A_x*dpsi_y
+                    t339 = Om_x*dep_y
+                    t340 = dA_x*psi_y
+                    t341 = dOm_x*ep_y
+                    t342 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t338 - t339 - t340
+                        - t341)
+                    t343 = Om0_x*dep_z
+                    t344 = Om0d_x*dpsi_z
+                    t345 = dOm0_x*ep_z
+                    t346 = dOm0d_x*psi_z
+                    t347 = Om0_z*dep_x
+                    t348 = Om0d_z*dpsi_x
+                    t349 = dOm0_z*ep_x
+                    t350 = dOm0d_z*psi_x
+                    t351 = t343 + t344 + t345 + t346 - t347 - t348 - t349 - t350
+                    t352 = (dep_x*t307 + dep_y*t308 + dep_z*t309 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                         2*dpsi_z*ep_z)
-                    t358 = e1*t357
-                    t359 = t294*t358
-                    t360 = psi_z*t358
-                    t361 = e2*t315*t319
-                    t362 = t294*t361
-                    t363 = psi_z*t361
-                    t364 = dep_x*e0
-                    t365 = -Om_y*psi_z + Om_z*psi_y
-                    t366 = -Om0_y*psi_z + Om0_z*psi_y
-                    t367 = dpsi_x*e0
-                    t368 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t369 = e0*ep_x
-                    t370 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t371 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t372 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t373 = dpsi_x*t316
-                    t374 = ep_x*t320
-                    t375 = psi_x*t320
-                    t376 = psi_x*t316
-                    t377 = e0*psi_x
-                    t378 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t286 - t289 - t290
-                        - t293)
-                    t379 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t287 -
-                        t288 - t291 - t292)
-                    t380 = psi_x*t358
-                    t381 = psi_x*t361
+                    t353 = e1*t352
+                    t354 = t289*t353
+                    t355 = psi_z*t353
+                    t356 = e2*t310*t314
+                    t357 = t289*t356
+                    t358 = psi_z*t356
+                    t359 = dep_x*e0
+                    t360 = -Om_y*psi_z + Om_z*psi_y
+                    t361 = -Om0_y*psi_z + Om0_z*psi_y
+                    t362 = dpsi_x*e0
+                    t363 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t364 = e0*ep_x
+                    t365 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t366 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
+                    t367 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t368 = dpsi_x*t311
+                    t369 = ep_x*t315
+                    t370 = psi_x*t315
+                    t371 = psi_x*t311
+                    t372 = e0*psi_x
+                    t373 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t281 - t284 - t285
+                        - t288)
+                    t374 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t282 -
+                        t283 - t286 - t287)
+                    t375 = psi_x*t353
+                    t376 = psi_x*t356
                     detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
                         (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t298 + dep_z*e0*t299 +
-                        dpsi_y*e0*t308 + dpsi_y*e1*t298*t315 + dpsi_z*e0*t309 +
-                        dpsi_z*e1*t299*t315 + e0*ep_y*t310 + e0*ep_z*t311 + e0*psi_y*t347 +
-                        e0*psi_z*t356 + e1*ep_y*t298*t319 + e1*ep_z*t299*t319 + e1*psi_y*t298*t357
-                        + e1*psi_y*t308*t319 + e1*psi_y*t310*t315 + e1*psi_z*t299*t357 +
-                        e1*psi_z*t309*t319 + e1*psi_z*t311*t315 + e2*psi_y*t298*t315*t319 +
-                        e2*psi_z*t299*t315*t319 - psi_y*t359 - psi_y*t362 - 0.5*t286 - 0.5*t287 -
-                        0.5*t288 - 0.5*t289 - 0.5*t290 - 0.5*t291 - 0.5*t292 - 0.5*t293 -
-                        t294*t295 - t294*t317 - t294*t321 - t296*t297 - t296*t318 - t296*t322 -
-                        t296*t360 - t296*t363 - t300*t301 - t300*t323 - t302*t303 - t302*t325 -
-                        t304*t305 - t304*t324 - t306*t307 - t306*t326 - t331*t332 - t341*t342)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t359 + psi_x*t362 + t294*t364 +
-                        t294*t373 + t294*t374 + t297*t365 - t297*t366 - t298*t364 - t298*t373 -
-                        t298*t374 - t298*t380 - t298*t381 + t300*t367 + t300*t375 + t303*t368 -
-                        t303*t371 + t304*t369 + t304*t376 + t307*t370 - t307*t372 - t308*t367 -
-                        t308*t375 - t310*t369 - t310*t376 + t318*t365 - t318*t366 + t322*t365 -
-                        t322*t366 + t325*t368 - t325*t371 + t326*t370 - t326*t372 + t331*t377 +
-                        (0.5)*t333 + (0.5)*t334 + (0.5)*t335 + (0.5)*t336 - 0.5*t337 - 0.5*t338 -
-                        0.5*t339 - 0.5*t340 + t342*t378 - t342*t379 - t347*t377 + (0.5)*t348 +
-                        (0.5)*t349 + (0.5)*t350 + (0.5)*t351 - 0.5*t352 - 0.5*t353 - 0.5*t354 -
-                        0.5*t355 + t360*t365 - t360*t366 + t363*t365 - t363*t366)
+                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t293 + dep_z*e0*t294 +
+                        dpsi_y*e0*t303 + dpsi_y*e1*t293*t310 + dpsi_z*e0*t304 +
+                        dpsi_z*e1*t294*t310 + e0*ep_y*t305 + e0*ep_z*t306 + e0*psi_y*t342 +
+                        e0*psi_z*t351 + e1*ep_y*t293*t314 + e1*ep_z*t294*t314 + e1*psi_y*t293*t352
+                        + e1*psi_y*t303*t314 + e1*psi_y*t305*t310 + e1*psi_z*t294*t352 +
+                        e1*psi_z*t304*t314 + e1*psi_z*t306*t310 + e2*psi_y*t293*t310*t314 +
+                        e2*psi_z*t294*t310*t314 - psi_y*t354 - psi_y*t357 - 0.5*t281 - 0.5*t282 -
+                        0.5*t283 - 0.5*t284 - 0.5*t285 - 0.5*t286 - 0.5*t287 - 0.5*t288 -
+                        t289*t290 - t289*t312 - t289*t316 - t291*t292 - t291*t313 - t291*t317 -
+                        t291*t355 - t291*t358 - t295*t296 - t295*t318 - t297*t298 - t297*t320 -
+                        t299*t300 - t299*t319 - t301*t302 - t301*t321 - t326*t327 - t336*t337)
+                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t354 + psi_x*t357 + t289*t359 +
+                        t289*t368 + t289*t369 + t292*t360 - t292*t361 - t293*t359 - t293*t368 -
+                        t293*t369 - t293*t375 - t293*t376 + t295*t362 + t295*t370 + t298*t363 -
+                        t298*t366 + t299*t364 + t299*t371 + t302*t365 - t302*t367 - t303*t362 -
+                        t303*t370 - t305*t364 - t305*t371 + t313*t360 - t313*t361 + t317*t360 -
+                        t317*t361 + t320*t363 - t320*t366 + t321*t365 - t321*t367 + t326*t372 +
+                        (0.5)*t328 + (0.5)*t329 + (0.5)*t330 + (0.5)*t331 - 0.5*t332 - 0.5*t333 -
+                        0.5*t334 - 0.5*t335 + t337*t373 - t337*t374 - t342*t372 + (0.5)*t343 +
+                        (0.5)*t344 + (0.5)*t345 + (0.5)*t346 - 0.5*t347 - 0.5*t348 - 0.5*t349 -
+                        0.5*t350 + t355*t360 - t355*t361 + t358*t360 - t358*t361)
                     detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
                         (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t296 +
-                        dep_y*e0*t366 + dpsi_x*e0*t302 + dpsi_x*e1*t296*t315 + dpsi_y*e0*t371 +
-                        dpsi_y*e1*t315*t366 + e0*ep_x*t306 + e0*ep_y*t372 + e0*psi_x*t341 +
-                        e0*psi_y*t379 + e1*ep_x*t296*t319 + e1*ep_y*t319*t366 + e1*psi_x*t296*t357
-                        + e1*psi_x*t302*t319 + e1*psi_x*t306*t315 + e1*psi_y*t315*t372 +
-                        e1*psi_y*t319*t371 + e1*psi_y*t357*t366 + e2*psi_x*t296*t315*t319 +
-                        e2*psi_y*t315*t319*t366 - psi_y*t358*t365 - psi_y*t361*t365 - t295*t365 -
-                        t299*t364 - t299*t373 - t299*t374 - t299*t380 - t299*t381 - t301*t368 -
-                        t305*t370 - t309*t367 - t309*t375 - t311*t369 - t311*t376 - t317*t365 -
-                        t321*t365 - t323*t368 - t324*t370 - 0.5*t327 - 0.5*t328 - 0.5*t329 -
-                        0.5*t330 - t332*t378 - 0.5*t343 - 0.5*t344 - 0.5*t345 - 0.5*t346 -
-                        t356*t377)
+                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t291 +
+                        dep_y*e0*t361 + dpsi_x*e0*t297 + dpsi_x*e1*t291*t310 + dpsi_y*e0*t366 +
+                        dpsi_y*e1*t310*t361 + e0*ep_x*t301 + e0*ep_y*t367 + e0*psi_x*t336 +
+                        e0*psi_y*t374 + e1*ep_x*t291*t314 + e1*ep_y*t314*t361 + e1*psi_x*t291*t352
+                        + e1*psi_x*t297*t314 + e1*psi_x*t301*t310 + e1*psi_y*t310*t367 +
+                        e1*psi_y*t314*t366 + e1*psi_y*t352*t361 + e2*psi_x*t291*t310*t314 +
+                        e2*psi_y*t310*t314*t361 - psi_y*t353*t360 - psi_y*t356*t360 - t290*t360 -
+                        t294*t359 - t294*t368 - t294*t369 - t294*t375 - t294*t376 - t296*t363 -
+                        t300*t365 - t304*t362 - t304*t370 - t306*t364 - t306*t371 - t312*t360 -
+                        t316*t360 - t318*t363 - t319*t365 - 0.5*t322 - 0.5*t323 - 0.5*t324 -
+                        0.5*t325 - t327*t373 - 0.5*t338 - 0.5*t339 - 0.5*t340 - 0.5*t341 -
+                        t351*t372)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1610,12 +1602,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t382 = da0_x - dgamma_x
-                t383 = da0_y - dgamma_y
-                t384 = da0_z - dgamma_z
-                dzdd[N] = t382*turn_xx + t383*turn_yx + t384*turn_zx
-                dzdd[N + 1] = t382*turn_xy + t383*turn_yy + t384*turn_zy
-                dzdd[N + 2] = t382*turn_xz + t383*turn_yz + t384*turn_zz
+                t377 = da0_x - dgamma_x
+                t378 = da0_y - dgamma_y
+                t379 = da0_z - dgamma_z
+                dzdd[N] = t377*turn_xx + t378*turn_yx + t379*turn_zx
+                dzdd[N + 1] = t377*turn_xy + t378*turn_yy + t379*turn_zy
+                dzdd[N + 2] = t377*turn_xz + t378*turn_yz + t379*turn_zz
                 dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
                 dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
                 dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1640,15 +1632,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t385 = X_z + u_z
-                    t386 = X_y + u_y
-                    t387 = X_x + u_x
+                    t380 = X_z + u_z
+                    t381 = X_y + u_y
+                    t382 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t385 - df_z*t386 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t385 + df_z*t387 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t386 - df_y*t387 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t380 - df_z*t381 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t380 + df_z*t382 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t381 - df_y*t382 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
@@ -1670,25 +1662,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t388 = -m_x*psi_y + m_y*psi_x
-                    t389 = m_x*psi_z - m_z*psi_x
-                    t390 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t391 = dm_x*psi_z
-                    t392 = dpsi_z*m_x
-                    t393 = -dm_z*psi_x - dpsi_x*m_z + t391 + t392
-                    t394 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t395 = e1*t394
-                    t396 = -m_y*psi_z + m_z*psi_y
-                    t397 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t388 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t389 + (0.5)*dpsi_z*m_y - e0*psi_y*t390 +
-                        e0*psi_z*t393 + e1*psi_z*t389*t394 - psi_y*t388*t395)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t388 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t396 + e0*psi_x*t390 - e0*psi_z*t397 + e1*psi_x*t388*t394 -
-                        psi_z*t395*t396 - 0.5*t391 - 0.5*t392)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t389 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t396 + (0.5)*dpsi_y*m_x - e0*psi_x*t393 +
-                        e0*psi_y*t397 + e1*psi_y*t394*t396 - psi_x*t389*t395)
+                    t383 = -m_x*psi_y + m_y*psi_x
+                    t384 = m_x*psi_z - m_z*psi_x
+                    t385 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t386 = dm_x*psi_z
+                    t387 = dpsi_z*m_x
+                    t388 = -dm_z*psi_x - dpsi_x*m_z + t386 + t387
+                    t389 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t390 = e1*t389
+                    t391 = -m_y*psi_z + m_z*psi_y
+                    t392 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t383 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t384 + (0.5)*dpsi_z*m_y - e0*psi_y*t385 +
+                        e0*psi_z*t388 + e1*psi_z*t384*t389 - psi_y*t383*t390)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t383 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t391 + e0*psi_x*t385 - e0*psi_z*t392 + e1*psi_x*t383*t389 -
+                        psi_z*t390*t391 - 0.5*t386 - 0.5*t387)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t384 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t391 + (0.5)*dpsi_y*m_x - e0*psi_x*t388 +
+                        e0*psi_y*t392 + e1*psi_y*t389*t391 - psi_x*t384*t390)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1696,26 +1688,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t398 = X_x*wp_y - X_y*wp_x
-                    t399 = -X_x*wp_z + X_z*wp_x
-                    t400 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t398 - du_z*t399)
-                    rhs_y += -fit*(-du_x*t398 + du_z*t400)
-                    rhs_z += -fit*(du_x*t399 - du_y*t400)
-                t401 = dW_x + rhs_x
-                t402 = dW_y + rhs_y
-                t403 = dW_z + rhs_z
-                dwp_x = Bxx*t401 + Byx*t402 + Bzx*t403
-                dwp_y = Bxy*t401 + Byy*t402 + Bzy*t403
-                dwp_z = Bxz*t401 + Byz*t402 + Bzz*t403
+                    t393 = X_x*wp_y - X_y*wp_x
+                    t394 = -X_x*wp_z + X_z*wp_x
+                    t395 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t393 - du_z*t394)
+                    rhs_y += -fit*(-du_x*t393 + du_z*t395)
+                    rhs_z += -fit*(du_x*t394 - du_y*t395)
+                t396 = dW_x + rhs_x
+                t397 = dW_y + rhs_y
+                t398 = dW_z + rhs_z
+                dwp_x = Bxx*t396 + Byx*t397 + Bzx*t398
+                dwp_y = Bxy*t396 + Byy*t397 + Bzy*t398
+                dwp_z = Bxz*t396 + Byz*t397 + Bzz*t398
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t404 = dwp_z*fit
-                    dF_x += -X_y*t404 + X_z*dwp_y*fit
-                    dF_y += X_x*t404 - X_z*dwp_x*fit
+                    t399 = dwp_z*fit
+                    dF_x += -X_y*t399 + X_z*dwp_y*fit
+                    dF_y += X_x*t399 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -1724,10 +1716,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     alpha = alphas[i]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t405 = dwp_z*fit
-                    t406 = X_z*fit
-                    dh[i3] = X_y*t405 + alpha*dF_x + df_x - dwp_y*t406
-                    dh[i3 + 1] = -X_x*t405 + alpha*dF_y + df_y + dwp_x*t406
+                    t400 = dwp_z*fit
+                    t401 = X_z*fit
+                    dh[i3] = X_y*t400 + alpha*dF_x + df_x - dwp_y*t401
+                    dh[i3 + 1] = -X_x*t400 + alpha*dF_y + df_y + dwp_x*t401
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
                 # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
@@ -1746,33 +1738,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t407 = dm_y*psi_z
-                    t408 = dpsi_z*m_y
-                    t409 = -m_x*psi_y + m_y*psi_x
-                    t410 = e0*t409
-                    t411 = m_x*psi_z - m_z*psi_x
-                    t412 = dpsi_z*e0
-                    t413 = dm_x*psi_y
-                    t414 = dpsi_y*m_x
-                    t415 = e0*(dm_y*psi_x + dpsi_x*m_y - t413 - t414)
-                    t416 = dm_x*psi_z
-                    t417 = dpsi_z*m_x
-                    t418 = dm_z*psi_x
-                    t419 = dpsi_x*m_z
-                    t420 = t416 + t417 - t418 - t419
-                    t421 = e0*psi_z
-                    t422 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t423 = t409*t422
-                    t424 = psi_z*t422
-                    t425 = -m_y*psi_z + m_z*psi_y
-                    t426 = dm_z*psi_y + dpsi_y*m_z - t407 - t408
-                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t410 + psi_y*t415 +
-                        psi_y*t423 + (0.5)*t407 + (0.5)*t408 - t411*t412 - t411*t424 - t420*t421)
-                    dg[j3 + 1] = (dm_y - dpsi_x*t410 - psi_x*t415 - psi_x*t423 + t412*t425 -
-                        0.5*t416 - 0.5*t417 + (0.5)*t418 + (0.5)*t419 + t421*t426 + t424*t425)
-                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t411 - 0.5*dpsi_x*m_y -
-                        dpsi_y*e0*t425 + e0*psi_x*t420 - e0*psi_y*t426 + psi_x*t411*t422 -
-                        psi_y*t422*t425 + (0.5)*t413 + (0.5)*t414)
+                    t402 = dm_y*psi_z
+                    t403 = dpsi_z*m_y
+                    t404 = -m_x*psi_y + m_y*psi_x
+                    t405 = e0*t404
+                    t406 = m_x*psi_z - m_z*psi_x
+                    t407 = dpsi_z*e0
+                    t408 = dm_x*psi_y
+                    t409 = dpsi_y*m_x
+                    t410 = e0*(dm_y*psi_x + dpsi_x*m_y - t408 - t409)
+                    t411 = dm_x*psi_z
+                    t412 = dpsi_z*m_x
+                    t413 = dm_z*psi_x
+                    t414 = dpsi_x*m_z
+                    t415 = t411 + t412 - t413 - t414
+                    t416 = e0*psi_z
+                    t417 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t418 = t404*t417
+                    t419 = psi_z*t417
+                    t420 = -m_y*psi_z + m_z*psi_y
+                    t421 = dm_z*psi_y + dpsi_y*m_z - t402 - t403
+                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t405 + psi_y*t410 +
+                        psi_y*t418 + (0.5)*t402 + (0.5)*t403 - t406*t407 - t406*t419 - t415*t416)
+                    dg[j3 + 1] = (dm_y - dpsi_x*t405 - psi_x*t410 - psi_x*t418 + t407*t420 -
+                        0.5*t411 - 0.5*t412 + (0.5)*t413 + (0.5)*t414 + t416*t421 + t419*t420)
+                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t406 - 0.5*dpsi_x*m_y -
+                        dpsi_y*e0*t420 + e0*psi_x*t415 - e0*psi_y*t421 + psi_x*t406*t417 -
+                        psi_y*t417*t420 + (0.5)*t408 + (0.5)*t409)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -68,8 +68,8 @@ WORK_ROWS = 119
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (583, 168, 750, 2),
-              "column": (150, 228, 2420, 3)}
+OPERATIONS = {"residual": (583, 168, 543, 2),
+              "column": (150, 228, 1751, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
     Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
@@ -90,7 +90,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "5156c2efcd5c"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -356,58 +356,89 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
-        # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
-        rhs_x = rhs_y = rhs_z = 0.0
+        # rate: rates of the elastic rotations, the frame held
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            alpha_r = alpha_rs[j]
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t37 = -Om_x*psi_y + Om_y*psi_x
-            t38 = e0*ep_y
-            t39 = Om0_x*psi_z - Om0_z*psi_x
-            t40 = e0*ep_z
-            t41 = Om0_x*ep_z
-            t42 = -Om0_z*ep_x + t41
-            t43 = e0*psi_z
-            t44 = -Om0_x*psi_y + Om0_y*psi_x
-            t45 = Om_x*psi_z - Om_z*psi_x
-            t46 = -Om0_x*ep_y + Om0_y*ep_x
-            t47 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-            t48 = e0*psi_y
-            t49 = A_x*psi_z
-            t50 = Om_x*ep_z
-            t51 = -A_z*psi_x - Om_z*ep_x + t49 + t50
-            t52 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t53 = e1*t52
-            t54 = psi_y*t53
-            t55 = psi_z*t53
-            t56 = e0*ep_x
-            t57 = -Om_y*psi_z + Om_z*psi_y
-            t58 = e0*psi_x
-            t59 = -Om0_y*psi_z + Om0_z*psi_y
-            t60 = -Om0_y*ep_z + Om0_z*ep_y
-            t61 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-            t62 = psi_x*t53
-            rhs_x += (-alpha_r*(-A_x + (0.5)*A_y*psi_z - 0.5*A_z*psi_y + (0.5)*Om0_y*ep_z -
-                0.5*Om0_z*ep_y + (0.5)*Om_y*ep_z - 0.5*Om_z*ep_y + e0*ep_y*t44 + e0*ep_z*t45 +
-                e0*psi_y*t46 + e0*psi_z*t51 + e1*psi_y*t44*t52 + e1*psi_z*t45*t52 - t37*t38 -
-                t37*t54 - t39*t40 - t39*t55 - t42*t43 - t47*t48))
-            rhs_y += (-alpha_r*(-A_y + (0.5)*A_z*psi_x + (0.5)*Om0_z*ep_x + (0.5)*Om_z*ep_x +
-                e0*ep_x*t37 + e0*ep_z*t59 + e0*psi_x*t47 + e0*psi_z*t60 + e1*psi_x*t37*t52 +
-                e1*psi_z*t52*t59 - t40*t57 - 0.5*t41 - t43*t61 - t44*t56 - t44*t62 - t46*t58 -
-                0.5*t49 - 0.5*t50 - t55*t57))
-            rhs_z += (-alpha_r*((0.5)*A_x*psi_y - 0.5*A_y*psi_x - A_z + (0.5)*Om0_x*ep_y -
-                0.5*Om0_y*ep_x + (0.5)*Om_x*ep_y - 0.5*Om_y*ep_x + e0*ep_x*t39 + e0*ep_y*t57 +
-                e0*psi_x*t42 + e0*psi_y*t61 + e1*psi_x*t39*t52 + e1*psi_y*t52*t57 - t38*t59 -
-                t45*t56 - t45*t62 - t48*t60 - t51*t58 - t54*t59))
+            t37 = A_y*psi_z
+            t38 = Om0_y*ep_z
+            t39 = Om_y*ep_z
+            t40 = -Om_x*psi_y + Om_y*psi_x
+            t41 = e0*ep_y
+            t42 = Om0_x*psi_z - Om0_z*psi_x
+            t43 = e0*ep_z
+            t44 = Om0_x*ep_z
+            t45 = Om0_z*ep_x
+            t46 = t44 - t45
+            t47 = e0*psi_z
+            t48 = -Om0_x*psi_y + Om0_y*psi_x
+            t49 = Om_x*psi_z - Om_z*psi_x
+            t50 = Om0_x*ep_y
+            t51 = Om0_y*ep_x - t50
+            t52 = e0*psi_y
+            t53 = A_x*psi_y
+            t54 = Om_x*ep_y
+            t55 = A_y*psi_x + Om_y*ep_x - t53 - t54
+            t56 = A_x*psi_z
+            t57 = Om_x*ep_z
+            t58 = A_z*psi_x
+            t59 = Om_z*ep_x
+            t60 = t56 + t57 - t58 - t59
+            t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t62 = psi_y*t61
+            t63 = psi_z*t61
+            t64 = e0*ep_x
+            t65 = -Om_y*psi_z + Om_z*psi_y
+            t66 = e0*psi_x
+            t67 = -Om0_y*psi_z + Om0_z*psi_y
+            t68 = Om0_z*ep_y - t38
+            t69 = A_z*psi_y + Om_z*ep_y - t37 - t39
+            t70 = psi_x*t61
+            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t37 -
+                0.5*t38 - 0.5*t39 + t40*t41 + t40*t62 - t41*t48 + t42*t43 + t42*t63 - t43*t49 +
+                t46*t47 - t47*t60 - t48*t62 - t49*t63 - t51*t52 + t52*t55)
+            etad[j3 + 1] = (A_y - t40*t64 - t40*t70 + t43*t65 - t43*t67 + (0.5)*t44 - 0.5*t45 -
+                t47*t68 + t47*t69 + t48*t64 + t48*t70 + t51*t66 - t55*t66 + (0.5)*t56 + (0.5)*t57
+                - 0.5*t58 - 0.5*t59 + t63*t65 - t63*t67)
+            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x - t41*t65 +
+                t41*t67 - t42*t64 - t42*t70 - t46*t66 + t49*t64 + t49*t70 - 0.5*t50 + t52*t68 -
+                t52*t69 - 0.5*t53 - 0.5*t54 + t60*t66 - t62*t65 + t62*t67)
+        # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
+        rhs_x = rhs_y = rhs_z = 0.0
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + 3*j
+            alpha_r = alpha_rs[j]
+            epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
+            rhs_x += alpha_r*epd_x
+            rhs_y += alpha_r*epd_y
+            rhs_z += alpha_r*epd_z
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
+        # rate: rates of the elastic rotations
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + 3*j
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
+            e0 = e0s[j]
+            t71 = (0.5)*psi_z
+            t72 = e0*psi_x
+            t73 = psi_y*t72
+            t74 = (0.5)*psi_y
+            t75 = psi_z*t72
+            t76 = e0*psi_y*psi_y
+            t77 = e0*psi_z*psi_z - 1
+            t78 = (0.5)*psi_x
+            t79 = e0*psi_y*psi_z
+            t80 = e0*psi_x*psi_x
+            etad[j3] = Om0d_x*(t76 + t77) + Om0d_y*(-t71 - t73) + Om0d_z*(t74 - t75) + epd_x
+            etad[j3 + 1] = Om0d_x*(t71 - t73) + Om0d_y*(t77 + t80) + Om0d_z*(-t78 - t79) + epd_y
+            etad[j3 + 2] = Om0d_x*(-t74 - t75) + Om0d_y*(t78 - t79) + Om0d_z*(t76 + t80 - 1) + epd_z
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -416,75 +447,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t63 = X_y + u_y
-            t64 = X_z + u_z
-            t65 = X_x + u_x
+            t81 = X_y + u_y
+            t82 = X_z + u_z
+            t83 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t64 + Om0d_z*t63 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t82 + Om0d_z*t81 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t64 - Om0d_z*t65 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t82 - Om0d_z*t83 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t63 + Om0d_y*t65 - a0_z + acc_z)
-        # rate: rates of the elastic rotations
-        for j in range(N_ROTATIONS):
-            j3 = ROTATIONS + 3*j
-            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-            Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-            ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-            A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
-            e0 = e0s[j]
-            e1 = e1s[j]
-            t66 = A_y*psi_z
-            t67 = Om0_y*ep_z
-            t68 = Om0d_y*psi_z
-            t69 = Om_y*ep_z
-            t70 = -Om_x*psi_y + Om_y*psi_x
-            t71 = e0*ep_y
-            t72 = Om0_x*psi_z - Om0_z*psi_x
-            t73 = e0*ep_z
-            t74 = -Om0_x*psi_y + Om0_y*psi_x
-            t75 = Om_x*psi_z - Om_z*psi_x
-            t76 = A_x*psi_y
-            t77 = Om_x*ep_y
-            t78 = A_y*psi_x + Om_y*ep_x - t76 - t77
-            t79 = e0*psi_y
-            t80 = Om0_x*ep_z
-            t81 = Om0d_x*psi_z
-            t82 = Om0_z*ep_x
-            t83 = Om0d_z*psi_x
-            t84 = t80 + t81 - t82 - t83
-            t85 = e0*psi_z
-            t86 = Om0_x*ep_y
-            t87 = Om0d_x*psi_y
-            t88 = Om0_y*ep_x + Om0d_y*psi_x - t86 - t87
-            t89 = A_x*psi_z
-            t90 = Om_x*ep_z
-            t91 = A_z*psi_x
-            t92 = Om_z*ep_x
-            t93 = t89 + t90 - t91 - t92
-            t94 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t95 = e1*t94
-            t96 = psi_y*t95
-            t97 = psi_z*t95
-            t98 = e0*ep_x
-            t99 = -Om_y*psi_z + Om_z*psi_y
-            t100 = -Om0_y*psi_z + Om0_z*psi_y
-            t101 = e0*psi_x
-            t102 = A_z*psi_y + Om_z*ep_y - t66 - t69
-            t103 = Om0_z*ep_y + Om0d_z*psi_y - t67 - t68
-            t104 = psi_x*t95
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t66 - 0.5*t67 - 0.5*t68 - 0.5*t69 + t70*t71 + t70*t96 -
-                t71*t74 + t72*t73 + t72*t97 - t73*t75 - t74*t96 - t75*t97 + t78*t79 - t79*t88 +
-                t84*t85 - t85*t93)
-            etad[j3 + 1] = (A_y - Om0d_y - t100*t73 - t100*t97 - t101*t78 + t101*t88 + t102*t85 -
-                t103*t85 - t104*t70 + t104*t74 - t70*t98 + t73*t99 + t74*t98 + (0.5)*t80 +
-                (0.5)*t81 - 0.5*t82 - 0.5*t83 + (0.5)*t89 + (0.5)*t90 - 0.5*t91 - 0.5*t92 +
-                t97*t99)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t75 + e0*ep_y*t100 + e0*psi_x*t93 + e0*psi_y*t103 +
-                e1*psi_x*t75*t94 + e1*psi_y*t100*t94 - t101*t84 - t102*t79 - t104*t72 - t71*t99 -
-                t72*t98 - 0.5*t76 - 0.5*t77 - 0.5*t86 - 0.5*t87 - t96*t99)
+                Om0_y*vs_x - Om0d_x*t81 + Om0d_y*t83 - a0_z + acc_z)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -585,12 +556,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        t105 = a0_x - gamma_x
-        t106 = a0_y - gamma_y
-        t107 = a0_z - gamma_z
-        zdd[N] = t105*turn_xx + t106*turn_yx + t107*turn_zx
-        zdd[N + 1] = t105*turn_xy + t106*turn_yy + t107*turn_zy
-        zdd[N + 2] = t105*turn_xz + t106*turn_yz + t107*turn_zz
+        t84 = a0_x - gamma_x
+        t85 = a0_y - gamma_y
+        t86 = a0_z - gamma_z
+        zdd[N] = t84*turn_xx + t85*turn_yx + t86*turn_zx
+        zdd[N + 1] = t84*turn_xy + t85*turn_yy + t86*turn_zy
+        zdd[N + 2] = t84*turn_xz + t85*turn_yz + t86*turn_zz
         zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
         zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
         zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
@@ -601,30 +572,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-        t108 = spin_x*spin_x
-        t109 = spin_y*spin_y
-        t110 = spin_z*spin_z
-        t111 = spin_x*spin_y
-        t112 = spin_x*spin_z
-        t113 = spin_y*spin_z
+        t87 = spin_x*spin_x
+        t88 = spin_y*spin_y
+        t89 = spin_z*spin_z
+        t90 = spin_x*spin_y
+        t91 = spin_x*spin_z
+        t92 = spin_y*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
         by_moment_columns[3] = turning_x
         by_moment_columns[4] = turning_y
         by_moment_columns[5] = turning_z
-        by_moment_columns[6] = -0.5*t108
-        by_moment_columns[7] = -0.5*t109
-        by_moment_columns[8] = -0.5*t110
-        by_moment_columns[9] = -t111
-        by_moment_columns[10] = -t112
-        by_moment_columns[11] = -t113
-        by_products[0] = -t108
-        by_products[1] = -t109
-        by_products[2] = -t110
-        by_products[3] = -2*t111
-        by_products[4] = -2*t112
-        by_products[5] = -2*t113
+        by_moment_columns[6] = -0.5*t87
+        by_moment_columns[7] = -0.5*t88
+        by_moment_columns[8] = -0.5*t89
+        by_moment_columns[9] = -t90
+        by_moment_columns[10] = -t91
+        by_moment_columns[11] = -t92
+        by_products[0] = -t87
+        by_products[1] = -t88
+        by_products[2] = -t89
+        by_products[3] = -2*t90
+        by_products[4] = -2*t91
+        by_products[5] = -2*t92
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
@@ -651,11 +622,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t114 = (0.5)*twice_e
-            t115 = 1/lam_e
-            by_E[e] = t114
-            by_Gy[e] = along_e + t114*t115
-            stiffened += t114*(along_e + (0.25)*t115*twice_e)
+            t93 = (0.5)*twice_e
+            t94 = 1/lam_e
+            by_E[e] = t93
+            by_Gy[e] = along_e + t93*t94
+            stiffened += t93*(along_e + (0.25)*t94*twice_e)
         # and of Sbar y
         by_Gy[resultants] = 1
         # forces of the resultants
@@ -669,30 +640,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
         mass = masses[0]
-        t116 = 2*sum_cd_z
-        t117 = 2*spin_z
-        t118 = spin_x*sum_c_y - spin_y*sum_c_x
-        t119 = -spin_x*sum_c_z + spin_z*sum_c_x
-        t120 = spin_y*sum_c_z - spin_z*sum_c_y
-        t121 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-        t122 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-        t123 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-        local[N] = (felt_x*mass + spin_y*t116 + spin_y*t118 - spin_z*t119 - sum_c_y*turning_z +
-            sum_c_z*turning_y - sum_cd_y*t117 + sum_cdd_x)
-        local[N + 1] = (felt_y*mass - spin_x*t116 - spin_x*t118 + spin_z*t120 + sum_c_x*turning_z
-            - sum_c_z*turning_x + sum_cd_x*t117 + sum_cdd_y)
-        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t119 - 2*spin_y*sum_cd_x -
-            spin_y*t120 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+        t95 = 2*sum_cd_z
+        t96 = 2*spin_z
+        t97 = spin_x*sum_c_y - spin_y*sum_c_x
+        t98 = -spin_x*sum_c_z + spin_z*sum_c_x
+        t99 = spin_y*sum_c_z - spin_z*sum_c_y
+        t100 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+        t101 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+        t102 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+        local[N] = (felt_x*mass + spin_y*t95 + spin_y*t97 - spin_z*t98 - sum_c_y*turning_z +
+            sum_c_z*turning_y - sum_cd_y*t96 + sum_cdd_x)
+        local[N + 1] = (felt_y*mass - spin_x*t95 - spin_x*t97 + spin_z*t99 + sum_c_x*turning_z -
+            sum_c_z*turning_x + sum_cd_x*t96 + sum_cdd_y)
+        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t98 - 2*spin_y*sum_cd_x -
+            spin_y*t99 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
         local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy +
-            spin_y*sum_spun_z + spin_y*t121 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t122 +
+            spin_y*sum_spun_z + spin_y*t100 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t101 +
             sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z + sum_accelerated_x +
             sum_coupled_x)
         local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z -
-            spin_x*t121 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t123 +
+            spin_x*t100 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t102 +
             sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z + sum_accelerated_y +
             sum_coupled_y)
         local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz + spin_x*sum_spun_y +
-            spin_x*t122 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t123 + spin_z*sum_Jd_zz +
+            spin_x*t101 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t102 + spin_z*sum_Jd_zz +
             sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z + sum_accelerated_z +
             sum_coupled_z)
         # forces conjugate to y
@@ -705,15 +676,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t124 = X_z + u_z
-            t125 = X_y + u_y
-            t126 = X_x + u_x
+            t103 = X_z + u_z
+            t104 = X_y + u_y
+            t105 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t124 - f_z*t125
-            W_y += -f_x*t124 + f_z*t126
-            W_z += f_x*t125 - f_y*t126
+            W_x += f_y*t103 - f_z*t104
+            W_y += -f_x*t103 + f_z*t105
+            W_z += f_x*t104 - f_y*t105
         # inertia and weight on the frame
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -731,21 +702,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t127 = -m_x*psi_y + m_y*psi_x
-            t128 = m_x*psi_z
-            t129 = -m_z*psi_x + t128
-            t130 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t127 + e0*psi_z*t129 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t127 - e0*psi_z*t130 - m_y + (0.5)*m_z*psi_x - 0.5*t128
-            W_z += -e0*psi_x*t129 + e0*psi_y*t130 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t106 = -m_x*psi_y + m_y*psi_x
+            t107 = m_x*psi_z
+            t108 = -m_z*psi_x + t107
+            t109 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t106 + e0*psi_z*t108 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t106 - e0*psi_z*t109 - m_y + (0.5)*m_z*psi_x - 0.5*t107
+            W_z += -e0*psi_x*t108 + e0*psi_y*t109 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t131 = W_x + rhs_x
-        t132 = W_y + rhs_y
-        t133 = W_z + rhs_z
-        wp_x = Bxx*t131 + Byx*t132 + Bzx*t133
-        wp_y = Bxy*t131 + Byy*t132 + Bzy*t133
-        wp_z = Bxz*t131 + Byz*t132 + Bzz*t133
+        t110 = W_x + rhs_x
+        t111 = W_y + rhs_y
+        t112 = W_z + rhs_z
+        wp_x = Bxx*t110 + Byx*t111 + Bzx*t112
+        wp_y = Bxy*t110 + Byy*t111 + Bzy*t112
+        wp_z = Bxz*t110 + Byz*t111 + Bzz*t112
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -768,30 +739,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t134 = m_y*psi_z
-            t135 = m_x*psi_y
-            t136 = m_y*psi_x - t135
-            t137 = e0*psi_y
-            t138 = m_x*psi_z
-            t139 = m_z*psi_x
-            t140 = t138 - t139
-            t141 = e0*psi_z
-            t142 = psi_y*wp_z
-            t143 = psi_z*wp_y
-            t144 = psi_x*wp_y
-            t145 = psi_y*wp_x
-            t146 = t144 - t145
-            t147 = psi_x*wp_z
-            t148 = psi_z*wp_x - t147
-            t149 = m_z*psi_y - t134
-            t150 = e0*psi_x
-            t151 = t142 - t143
-            g[j3] = (alpha_r*(t137*t146 - t141*t148 - 0.5*t142 + (0.5)*t143 + wp_x) + m_x -
-                0.5*m_z*psi_y + (0.5)*t134 + t136*t137 - t140*t141)
-            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t141*t151 - t146*t150 + (0.5)*t147 + wp_y) +
-                m_y - t136*t150 - 0.5*t138 + (0.5)*t139 + t141*t149)
-            g[j3 + 2] = (alpha_r*(-t137*t151 - 0.5*t144 + (0.5)*t145 + t148*t150 + wp_z) -
-                0.5*m_y*psi_x + m_z + (0.5)*t135 - t137*t149 + t140*t150)
+            t113 = m_y*psi_z
+            t114 = m_x*psi_y
+            t115 = m_y*psi_x - t114
+            t116 = e0*psi_y
+            t117 = m_x*psi_z
+            t118 = m_z*psi_x
+            t119 = t117 - t118
+            t120 = e0*psi_z
+            t121 = psi_y*wp_z
+            t122 = psi_z*wp_y
+            t123 = psi_x*wp_y
+            t124 = psi_y*wp_x
+            t125 = t123 - t124
+            t126 = psi_x*wp_z
+            t127 = psi_z*wp_x - t126
+            t128 = m_z*psi_y - t113
+            t129 = e0*psi_x
+            t130 = t121 - t122
+            g[j3] = (alpha_r*(t116*t125 - t120*t127 - 0.5*t121 + (0.5)*t122 + wp_x) + m_x -
+                0.5*m_z*psi_y + (0.5)*t113 + t115*t116 - t119*t120)
+            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t120*t130 - t125*t129 + (0.5)*t126 + wp_y) +
+                m_y - t115*t129 - 0.5*t117 + (0.5)*t118 + t120*t128)
+            g[j3 + 2] = (alpha_r*(-t116*t130 - 0.5*t123 + (0.5)*t124 + t127*t129 + wp_z) -
+                0.5*m_y*psi_x + m_z + (0.5)*t114 - t116*t128 + t119*t129)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -815,47 +786,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             moving = squares[0]
             elastic = squares[1]
-            t152 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-            t153 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-            t154 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-            t155 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
-            t156 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
-            t157 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
-            t158 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
-            t159 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
-            t160 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
-            t161 = mass*x0_x
-            t162 = mass*x0_y
-            t163 = mass*x0_z
-            t164 = mass*t160 + t159
-            t165 = mass*t158 + t157
-            t166 = mass*t156 + t155
-            t167 = t164*turn_xx + t165*turn_xy + t166*turn_xz
-            t168 = t164*turn_yx + t165*turn_yy + t166*turn_yz
-            t169 = t164*turn_zx + t165*turn_zy + t166*turn_zz
-            t170 = R0_xx*t167 + R0_xy*t168 + R0_xz*t169
-            t171 = R0_yx*t167 + R0_yy*t168 + R0_yz*t169
-            t172 = R0_zx*t167 + R0_zy*t168 + R0_zz*t169
-            t173 = sum_c_y*t156 - sum_c_z*t158 + sum_spun_x + t152
-            t174 = -sum_c_x*t156 + sum_c_z*t160 + sum_spun_y + t153
-            t175 = sum_c_x*t158 - sum_c_y*t160 + sum_spun_z + t154
-            t176 = t173*turn_xx + t174*turn_xy + t175*turn_xz
-            t177 = t173*turn_yx + t174*turn_yy + t175*turn_yz
-            t178 = t173*turn_zx + t174*turn_zy + t175*turn_zz
-            kinetic = ((0.5)*mass*(t156*t156 + t158*t158 + t160*t160) + (0.5)*moving +
-                spin_x*sum_spun_x + (0.5)*spin_x*t152 + spin_y*sum_spun_y + (0.5)*spin_y*t153 +
-                spin_z*sum_spun_z + (0.5)*spin_z*t154 + t155*t156 + t157*t158 + t159*t160)
+            t131 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            t132 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t133 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t134 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
+            t135 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
+            t136 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
+            t137 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
+            t138 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
+            t139 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
+            t140 = mass*x0_x
+            t141 = mass*x0_y
+            t142 = mass*x0_z
+            t143 = mass*t139 + t138
+            t144 = mass*t137 + t136
+            t145 = mass*t135 + t134
+            t146 = t143*turn_xx + t144*turn_xy + t145*turn_xz
+            t147 = t143*turn_yx + t144*turn_yy + t145*turn_yz
+            t148 = t143*turn_zx + t144*turn_zy + t145*turn_zz
+            t149 = R0_xx*t146 + R0_xy*t147 + R0_xz*t148
+            t150 = R0_yx*t146 + R0_yy*t147 + R0_yz*t148
+            t151 = R0_zx*t146 + R0_zy*t147 + R0_zz*t148
+            t152 = sum_c_y*t135 - sum_c_z*t137 + sum_spun_x + t131
+            t153 = -sum_c_x*t135 + sum_c_z*t139 + sum_spun_y + t132
+            t154 = sum_c_x*t137 - sum_c_y*t139 + sum_spun_z + t133
+            t155 = t152*turn_xx + t153*turn_xy + t154*turn_xz
+            t156 = t152*turn_yx + t153*turn_yy + t154*turn_yz
+            t157 = t152*turn_zx + t153*turn_zy + t154*turn_zz
+            kinetic = ((0.5)*mass*(t135*t135 + t137*t137 + t139*t139) + (0.5)*moving +
+                spin_x*sum_spun_x + (0.5)*spin_x*t131 + spin_y*sum_spun_y + (0.5)*spin_y*t132 +
+                spin_z*sum_spun_z + (0.5)*spin_z*t133 + t134*t135 + t136*t137 + t138*t139)
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(R0_xx*t161 + R0_yx*t162 + R0_zx*t163 + sum_c_x*turn_xx +
-                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t161 + R0_yy*t162 + R0_zy*t163
-                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t161 +
-                R0_yz*t162 + R0_zz*t163 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
-            P_x = t170
-            P_y = t171
-            P_z = t172
-            H_x = R0_xx*t176 + R0_xy*t177 + R0_xz*t178 - t171*x0_z + t172*x0_y
-            H_y = R0_yx*t176 + R0_yy*t177 + R0_yz*t178 + t170*x0_z - t172*x0_x
-            H_z = R0_zx*t176 + R0_zy*t177 + R0_zz*t178 - t170*x0_y + t171*x0_x
+            potential = (-gamma_x*(R0_xx*t140 + R0_yx*t141 + R0_zx*t142 + sum_c_x*turn_xx +
+                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t140 + R0_yy*t141 + R0_zy*t142
+                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t140 +
+                R0_yz*t141 + R0_zz*t142 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
+            P_x = t149
+            P_y = t150
+            P_z = t151
+            H_x = R0_xx*t155 + R0_xy*t156 + R0_xz*t157 - t150*x0_z + t151*x0_y
+            H_y = R0_yx*t155 + R0_yy*t156 + R0_yz*t157 + t149*x0_z - t151*x0_x
+            H_z = R0_zx*t155 + R0_zy*t156 + R0_zz*t157 - t149*x0_y + t150*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -885,12 +856,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t179 = 2*c_geo*spin_x
+            t158 = 2*c_geo*spin_x
             by_place[0] = -c_geo*spin_x*spin_x
             by_place[1] = -c_geo*spin_y*spin_y
             by_place[2] = -c_geo*spin_z*spin_z
-            by_place[3] = -spin_y*t179
-            by_place[4] = -spin_z*t179
+            by_place[3] = -spin_y*t158
+            by_place[4] = -spin_z*t158
             by_place[5] = -2*c_geo*spin_y*spin_z
             by_place[6] = c_geo*turning_x
             by_place[7] = c_geo*turning_y
@@ -962,64 +933,64 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     more[1*hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_wa_x, row_wa_y, row_wa_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
                 row_ua_x, row_ua_y, row_ua_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
-                t180 = row_S1_x*spin_z
-                t181 = row_S1_z*spin_x
-                t182 = t180 - t181
-                t183 = row_S1_x*spin_y
-                t184 = row_S1_y*spin_x - t183
-                t185 = row_S1_y*spin_z
-                t186 = row_S1_z*spin_y - t185
-                t187 = 2*spin_x
-                t188 = 2*spin_y
-                t189 = 2*spin_z
-                t190 = -row_w_z
-                t191 = row_v_z + t190
-                t192 = row_h_xx + 2*row_j_xx
-                t193 = row_h_xy + 2*row_j_xy
-                t194 = row_h_xz + 2*row_j_xz
-                t195 = -row_w_y
-                t196 = row_v_y + t195
-                t197 = row_h_yz + 2*row_j_yz
-                t198 = row_h_zz + 2*row_j_zz
-                t199 = spin_x*t194 + spin_y*t197 + spin_z*t198
-                t200 = row_h_yy + 2*row_j_yy
-                t201 = spin_x*t193 + spin_y*t200 + spin_z*t197
-                t202 = -row_w_x
-                t203 = row_v_x + t202
-                t204 = spin_x*t192 + spin_y*t193 + spin_z*t194
-                t205 = row_g_z + row_u_z
-                t206 = row_g_y + row_u_y
-                t207 = row_g_x + row_u_x
-                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t184 -
-                    spin_z*t182))
-                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t184
-                    + spin_z*t186))
+                t159 = row_S1_x*spin_z
+                t160 = row_S1_z*spin_x
+                t161 = t159 - t160
+                t162 = row_S1_x*spin_y
+                t163 = row_S1_y*spin_x - t162
+                t164 = row_S1_y*spin_z
+                t165 = row_S1_z*spin_y - t164
+                t166 = 2*spin_x
+                t167 = 2*spin_y
+                t168 = 2*spin_z
+                t169 = -row_w_z
+                t170 = row_v_z + t169
+                t171 = row_h_xx + 2*row_j_xx
+                t172 = row_h_xy + 2*row_j_xy
+                t173 = row_h_xz + 2*row_j_xz
+                t174 = -row_w_y
+                t175 = row_v_y + t174
+                t176 = row_h_yz + 2*row_j_yz
+                t177 = row_h_zz + 2*row_j_zz
+                t178 = spin_x*t173 + spin_y*t176 + spin_z*t177
+                t179 = row_h_yy + 2*row_j_yy
+                t180 = spin_x*t172 + spin_y*t179 + spin_z*t176
+                t181 = -row_w_x
+                t182 = row_v_x + t181
+                t183 = spin_x*t171 + spin_y*t172 + spin_z*t173
+                t184 = row_g_z + row_u_z
+                t185 = row_g_y + row_u_y
+                t186 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t163 -
+                    spin_z*t161))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t163
+                    + spin_z*t165))
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
-                    spin_x*t182 - spin_y*t186))
-                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t187 +
-                    row_jd_xy*t188 + row_jd_xz*t189 + row_ua_x - row_wa_x + spin_y*t191 +
-                    spin_y*t199 - spin_z*t196 - spin_z*t201 + t192*turning_x + t193*turning_y +
-                    t194*turning_z))
-                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t187 +
-                    row_jd_yy*t188 + row_jd_yz*t189 + row_ua_y - row_wa_y - spin_x*t191 -
-                    spin_x*t199 + spin_z*t203 + spin_z*t204 + t193*turning_x + t197*turning_z +
-                    t200*turning_y))
-                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t187 +
-                    row_jd_yz*t188 + row_jd_zz*t189 + row_ua_z - row_wa_z + spin_x*t196 +
-                    spin_x*t201 - spin_y*t203 - spin_y*t204 + t194*turning_x + t197*turning_y +
-                    t198*turning_z))
-                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t185
-                Lv[i*deep + N + 1] = 2*t180 - 2*t181
-                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t183
-                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t205 - spin_z*t206 + t202 + t204
-                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t205 + spin_z*t207 + t195 + t201
-                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t206 - spin_y*t207 + t190 + t199
+                    spin_x*t161 - spin_y*t165))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t166 +
+                    row_jd_xy*t167 + row_jd_xz*t168 + row_ua_x - row_wa_x + spin_y*t170 +
+                    spin_y*t178 - spin_z*t175 - spin_z*t180 + t171*turning_x + t172*turning_y +
+                    t173*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t166 +
+                    row_jd_yy*t167 + row_jd_yz*t168 + row_ua_y - row_wa_y - spin_x*t170 -
+                    spin_x*t178 + spin_z*t182 + spin_z*t183 + t172*turning_x + t176*turning_z +
+                    t179*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t166 +
+                    row_jd_yz*t167 + row_jd_zz*t168 + row_ua_z - row_wa_z + spin_x*t175 +
+                    spin_x*t180 - spin_y*t182 - spin_y*t183 + t173*turning_x + t176*turning_y +
+                    t177*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t164
+                Lv[i*deep + N + 1] = 2*t159 - 2*t160
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t162
+                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t184 - spin_z*t185 + t181 + t183
+                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t184 + spin_z*t186 + t174 + t180
+                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t185 - spin_y*t186 + t169 + t178
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t207
-                La[i*deep + N + 4] = t206
-                La[i*deep + N + 5] = t205
+                La[i*deep + N + 3] = t186
+                La[i*deep + N + 4] = t185
+                La[i*deep + N + 5] = t184
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -1037,14 +1008,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     + i])
                 row_w_x, row_w_y, row_w_z = (products[9*hN + i], products[10*hN + i],
                     products[11*hN + i])
-                t208 = row_h_xy + 2*row_j_xy
-                t209 = row_h_xz + 2*row_j_xz
-                t210 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t208 -
-                    spin_z*t209)
-                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t208 - spin_y*(row_h_yy + 2*row_j_yy) -
-                    spin_z*t210)
-                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t209 - spin_y*t210 - spin_z*(row_h_zz +
+                t187 = row_h_xy + 2*row_j_xy
+                t188 = row_h_xz + 2*row_j_xz
+                t189 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t187 -
+                    spin_z*t188)
+                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t187 - spin_y*(row_h_yy + 2*row_j_yy) -
+                    spin_z*t189)
+                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t188 - spin_y*t189 - spin_z*(row_h_zz +
                     2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
@@ -1055,79 +1026,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t211 = spin_y*sum_c_y
-            t212 = spin_z*sum_c_z
-            t213 = 2*sum_cd_z
-            t214 = spin_x*sum_c_y
-            t215 = 2*sum_cd_y
-            t216 = spin_z*sum_c_x
-            t217 = spin_y*sum_J_xz
-            t218 = spin_z*sum_J_xy
-            t219 = spin_y*sum_J_yz
-            t220 = spin_x*sum_J_xz
-            t221 = spin_z*sum_J_zz + sum_spun_z
-            t222 = spin_z*sum_J_yz
-            t223 = spin_x*sum_J_xy
-            t224 = spin_y*sum_J_yy + sum_spun_y
-            t225 = spin_x*sum_c_x
-            t226 = 2*sum_cd_x
-            t227 = spin_y*sum_c_z
-            t228 = spin_x*sum_J_yz
-            t229 = spin_z*sum_J_xz
-            t230 = spin_y*sum_J_xy
-            t231 = spin_x*sum_J_xx + sum_spun_x
-            t232 = -sum_c_y
-            t233 = -sum_c_z
-            t234 = -sum_c_x
-            Lv[N*deep + N] = t211 + t212
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t213 - 2*t214
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t215 + t216
-            Lv[N*deep + N + 3] = sum_Jd_xx + t217 - t218
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t219 - 2*t220 - t221
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t222 + 2*t223 + t224
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t213 + t214
-            Lv[(N + 1)*deep + N + 1] = t212 + t225
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t226 - 2*t227
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t219 + t220 + t221
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t218 - t228
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t229 - 2*t230 - t231
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t215 - 2*t216
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t226 + t227
-            Lv[(N + 2)*deep + N + 2] = t211 + t225
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t222 - t223 - t224
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t229 + t230 + t231
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t217 + t228
+            t190 = spin_y*sum_c_y
+            t191 = spin_z*sum_c_z
+            t192 = 2*sum_cd_z
+            t193 = spin_x*sum_c_y
+            t194 = 2*sum_cd_y
+            t195 = spin_z*sum_c_x
+            t196 = spin_y*sum_J_xz
+            t197 = spin_z*sum_J_xy
+            t198 = spin_y*sum_J_yz
+            t199 = spin_x*sum_J_xz
+            t200 = spin_z*sum_J_zz + sum_spun_z
+            t201 = spin_z*sum_J_yz
+            t202 = spin_x*sum_J_xy
+            t203 = spin_y*sum_J_yy + sum_spun_y
+            t204 = spin_x*sum_c_x
+            t205 = 2*sum_cd_x
+            t206 = spin_y*sum_c_z
+            t207 = spin_x*sum_J_yz
+            t208 = spin_z*sum_J_xz
+            t209 = spin_y*sum_J_xy
+            t210 = spin_x*sum_J_xx + sum_spun_x
+            t211 = -sum_c_y
+            t212 = -sum_c_z
+            t213 = -sum_c_x
+            Lv[N*deep + N] = t190 + t191
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t192 - 2*t193
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t194 + t195
+            Lv[N*deep + N + 3] = sum_Jd_xx + t196 - t197
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t198 - 2*t199 - t200
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t201 + 2*t202 + t203
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t192 + t193
+            Lv[(N + 1)*deep + N + 1] = t191 + t204
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t205 - 2*t206
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t198 + t199 + t200
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t197 - t207
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t208 - 2*t209 - t210
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t194 - 2*t195
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t205 + t206
+            Lv[(N + 2)*deep + N + 2] = t190 + t204
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t201 - t202 - t203
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t208 + t209 + t210
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t196 + t207
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0
             La[N*deep + N + 2] = 0
             La[N*deep + N + 3] = 0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t232
+            La[N*deep + N + 5] = t211
             La[(N + 1)*deep + N] = 0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0
-            La[(N + 1)*deep + N + 3] = t233
+            La[(N + 1)*deep + N + 3] = t212
             La[(N + 1)*deep + N + 4] = 0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0
             La[(N + 2)*deep + N + 1] = 0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t234
+            La[(N + 2)*deep + N + 4] = t213
             La[(N + 2)*deep + N + 5] = 0
             La[(N + 3)*deep + N] = 0
-            La[(N + 3)*deep + N + 1] = t233
+            La[(N + 3)*deep + N + 1] = t212
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0
-            La[(N + 4)*deep + N + 2] = t234
+            La[(N + 4)*deep + N + 2] = t213
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t232
+            La[(N + 5)*deep + N] = t211
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1165,16 +1136,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t235 = -dth_x*psi_y + dth_y*psi_x
-                    t236 = dth_x*psi_z
-                    t237 = -dth_z*psi_x + t236
-                    t238 = -dth_y*psi_z + dth_z*psi_y
+                    t214 = -dth_x*psi_y + dth_y*psi_x
+                    t215 = dth_x*psi_z
+                    t216 = -dth_z*psi_x + t215
+                    t217 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t235 + e0*psi_z*t237))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t235 - e0*psi_z*t238
-                        - 0.5*t236))
+                        e0*psi_y*t214 + e0*psi_z*t216))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t214 - e0*psi_z*t217
+                        - 0.5*t215))
                     rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z -
-                        e0*psi_x*t237 + e0*psi_y*t238))
+                        e0*psi_x*t216 + e0*psi_y*t217))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1184,43 +1155,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t239 = X_y + u_y
-                    t240 = X_z + u_z
-                    t241 = X_x + u_x
-                    dy[i3] = -dth0_y*t240 + dth0_z*t239 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t240 - dth0_z*t241 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t239 + dth0_y*t241 - dx0_z + dx_z
+                    t218 = X_y + u_y
+                    t219 = X_z + u_z
+                    t220 = X_x + u_x
+                    dy[i3] = -dth0_y*t219 + dth0_z*t218 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t219 - dth0_z*t220 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t218 + dth0_y*t220 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t242 = dth0_y*psi_z
-                    t243 = dth_y*psi_z
-                    t244 = dth0_x*psi_y
-                    t245 = dth0_y*psi_x - t244
-                    t246 = e0*psi_y
-                    t247 = dth_x*psi_z
-                    t248 = dth_z*psi_x
-                    t249 = t247 - t248
-                    t250 = e0*psi_z
-                    t251 = dth_x*psi_y
-                    t252 = dth_y*psi_x - t251
-                    t253 = dth0_x*psi_z
-                    t254 = dth0_z*psi_x
-                    t255 = t253 - t254
-                    t256 = e0*psi_x
-                    t257 = dth_z*psi_y - t243
-                    t258 = dth0_z*psi_y - t242
+                    t221 = dth0_y*psi_z
+                    t222 = dth_y*psi_z
+                    t223 = dth0_x*psi_y
+                    t224 = dth0_y*psi_x - t223
+                    t225 = e0*psi_y
+                    t226 = dth_x*psi_z
+                    t227 = dth_z*psi_x
+                    t228 = t226 - t227
+                    t229 = e0*psi_z
+                    t230 = dth_x*psi_y
+                    t231 = dth_y*psi_x - t230
+                    t232 = dth0_x*psi_z
+                    t233 = dth0_z*psi_x
+                    t234 = t232 - t233
+                    t235 = e0*psi_x
+                    t236 = dth_z*psi_y - t222
+                    t237 = dth0_z*psi_y - t221
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t252 + e0*psi_z*t255 - 0.5*t242 - 0.5*t243 - t245*t246 -
-                        t249*t250)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t245*t256 + (0.5)*t247 - 0.5*t248 + t250*t257
-                        - t250*t258 - t252*t256 + (0.5)*t253 - 0.5*t254)
+                        e0*psi_y*t231 + e0*psi_z*t234 - 0.5*t221 - 0.5*t222 - t224*t225 -
+                        t228*t229)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t224*t235 + (0.5)*t226 - 0.5*t227 + t229*t236
+                        - t229*t237 - t231*t235 + (0.5)*t232 - 0.5*t233)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t249 + e0*psi_y*t258 - 0.5*t244 - t246*t257 - 0.5*t251 -
-                        t255*t256)
+                        e0*psi_x*t228 + e0*psi_y*t237 - 0.5*t223 - t225*t236 - 0.5*t230 -
+                        t234*t235)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1262,47 +1233,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t259 = -Om_x*psi_y + Om_y*psi_x
-                    t260 = dpsi_y*e0
-                    t261 = Om0_x*psi_z - Om0_z*psi_x
-                    t262 = dpsi_z*e0
-                    t263 = Om0_x*dpsi_z
-                    t264 = -Om0_z*dpsi_x + t263
-                    t265 = e0*psi_z
-                    t266 = -Om0_x*psi_y + Om0_y*psi_x
-                    t267 = Om_x*psi_z - Om_z*psi_x
-                    t268 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t269 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t270 = e0*psi_y
-                    t271 = Om_x*dpsi_z
-                    t272 = dOm_x*psi_z
-                    t273 = -Om_z*dpsi_x - dOm_z*psi_x + t271 + t272
-                    t274 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t275 = e1*t274
-                    t276 = psi_y*t275
-                    t277 = psi_z*t275
-                    t278 = dpsi_x*e0
-                    t279 = -Om_y*psi_z + Om_z*psi_y
-                    t280 = e0*psi_x
-                    t281 = -Om0_y*psi_z + Om0_z*psi_y
-                    t282 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t283 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t284 = psi_x*t275
+                    t238 = -Om_x*psi_y + Om_y*psi_x
+                    t239 = dpsi_y*e0
+                    t240 = Om0_x*psi_z - Om0_z*psi_x
+                    t241 = dpsi_z*e0
+                    t242 = Om0_x*dpsi_z
+                    t243 = -Om0_z*dpsi_x + t242
+                    t244 = e0*psi_z
+                    t245 = -Om0_x*psi_y + Om0_y*psi_x
+                    t246 = Om_x*psi_z - Om_z*psi_x
+                    t247 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t248 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t249 = e0*psi_y
+                    t250 = Om_x*dpsi_z
+                    t251 = dOm_x*psi_z
+                    t252 = -Om_z*dpsi_x - dOm_z*psi_x + t250 + t251
+                    t253 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t254 = e1*t253
+                    t255 = psi_y*t254
+                    t256 = psi_z*t254
+                    t257 = dpsi_x*e0
+                    t258 = -Om_y*psi_z + Om_z*psi_y
+                    t259 = e0*psi_x
+                    t260 = -Om0_y*psi_z + Om0_z*psi_y
+                    t261 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t262 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t263 = psi_x*t254
                     rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
                         - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t266 + dpsi_z*e0*t267 + e0*psi_y*t268 + e0*psi_z*t273 +
-                        e1*psi_y*t266*t274 + e1*psi_z*t267*t274 - t259*t260 - t259*t276 -
-                        t261*t262 - t261*t277 - t264*t265 - t269*t270))
+                        dpsi_y*e0*t245 + dpsi_z*e0*t246 + e0*psi_y*t247 + e0*psi_z*t252 +
+                        e1*psi_y*t245*t253 + e1*psi_z*t246*t253 - t238*t239 - t238*t255 -
+                        t240*t241 - t240*t256 - t243*t244 - t248*t249))
                     rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t259 + dpsi_z*e0*t281 + e0*psi_x*t269 +
-                        e0*psi_z*t282 + e1*psi_x*t259*t274 + e1*psi_z*t274*t281 - t262*t279 -
-                        0.5*t263 - t265*t283 - t266*t278 - t266*t284 - t268*t280 - 0.5*t271 -
-                        0.5*t272 - t277*t279))
+                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t238 + dpsi_z*e0*t260 + e0*psi_x*t248 +
+                        e0*psi_z*t261 + e1*psi_x*t238*t253 + e1*psi_z*t253*t260 - t241*t258 -
+                        0.5*t242 - t244*t262 - t245*t257 - t245*t263 - t247*t259 - 0.5*t250 -
+                        0.5*t251 - t256*t258))
                     rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
                         - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t261 + dpsi_y*e0*t279 + e0*psi_x*t264 + e0*psi_y*t283 +
-                        e1*psi_x*t261*t274 + e1*psi_y*t274*t279 - t260*t281 - t267*t278 -
-                        t267*t284 - t270*t282 - t273*t280 - t276*t281))
+                        dpsi_x*e0*t240 + dpsi_y*e0*t258 + e0*psi_x*t243 + e0*psi_y*t262 +
+                        e1*psi_x*t240*t253 + e1*psi_y*t253*t258 - t239*t260 - t246*t257 -
+                        t246*t263 - t249*t261 - t252*t259 - t255*t260))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1335,13 +1306,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t285 = X_y + u_y
-                    t286 = X_z + u_z
-                    t287 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t286 + dOm0_z*t285 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t286 - dOm0_z*t287 - dv0_y +
+                    t264 = X_y + u_y
+                    t265 = X_z + u_z
+                    t266 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t265 + dOm0_z*t264 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t265 - dOm0_z*t266 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t285 + dOm0_y*t287 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t264 + dOm0_y*t266 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1352,68 +1323,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t288 = Om0_y*dpsi_z
-                    t289 = Om_y*dpsi_z
-                    t290 = dOm0_y*psi_z
-                    t291 = dOm_y*psi_z
-                    t292 = -Om0_x*psi_y + Om0_y*psi_x
-                    t293 = dpsi_y*e0
-                    t294 = Om_x*psi_z - Om_z*psi_x
-                    t295 = dpsi_z*e0
-                    t296 = -Om_x*psi_y + Om_y*psi_x
-                    t297 = Om0_x*psi_z - Om0_z*psi_x
-                    t298 = Om0_x*dpsi_y
-                    t299 = dOm0_x*psi_y
-                    t300 = Om0_y*dpsi_x + dOm0_y*psi_x - t298 - t299
-                    t301 = e0*psi_y
-                    t302 = Om_x*dpsi_z
-                    t303 = dOm_x*psi_z
-                    t304 = Om_z*dpsi_x
-                    t305 = dOm_z*psi_x
-                    t306 = t302 + t303 - t304 - t305
-                    t307 = e0*psi_z
-                    t308 = Om_x*dpsi_y
-                    t309 = dOm_x*psi_y
-                    t310 = Om_y*dpsi_x + dOm_y*psi_x - t308 - t309
-                    t311 = Om0_x*dpsi_z
-                    t312 = dOm0_x*psi_z
-                    t313 = Om0_z*dpsi_x
-                    t314 = dOm0_z*psi_x
-                    t315 = t311 + t312 - t313 - t314
-                    t316 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t317 = e1*t316
-                    t318 = psi_y*t317
-                    t319 = psi_z*t317
-                    t320 = dpsi_x*e0
-                    t321 = -Om_y*psi_z + Om_z*psi_y
-                    t322 = -Om0_y*psi_z + Om0_z*psi_y
-                    t323 = e0*psi_x
-                    t324 = Om_z*dpsi_y + dOm_z*psi_y - t289 - t291
-                    t325 = Om0_z*dpsi_y + dOm0_z*psi_y - t288 - t290
-                    t326 = psi_x*t317
+                    t267 = Om0_y*dpsi_z
+                    t268 = Om_y*dpsi_z
+                    t269 = dOm0_y*psi_z
+                    t270 = dOm_y*psi_z
+                    t271 = -Om0_x*psi_y + Om0_y*psi_x
+                    t272 = dpsi_y*e0
+                    t273 = Om_x*psi_z - Om_z*psi_x
+                    t274 = dpsi_z*e0
+                    t275 = -Om_x*psi_y + Om_y*psi_x
+                    t276 = Om0_x*psi_z - Om0_z*psi_x
+                    t277 = Om0_x*dpsi_y
+                    t278 = dOm0_x*psi_y
+                    t279 = Om0_y*dpsi_x + dOm0_y*psi_x - t277 - t278
+                    t280 = e0*psi_y
+                    t281 = Om_x*dpsi_z
+                    t282 = dOm_x*psi_z
+                    t283 = Om_z*dpsi_x
+                    t284 = dOm_z*psi_x
+                    t285 = t281 + t282 - t283 - t284
+                    t286 = e0*psi_z
+                    t287 = Om_x*dpsi_y
+                    t288 = dOm_x*psi_y
+                    t289 = Om_y*dpsi_x + dOm_y*psi_x - t287 - t288
+                    t290 = Om0_x*dpsi_z
+                    t291 = dOm0_x*psi_z
+                    t292 = Om0_z*dpsi_x
+                    t293 = dOm0_z*psi_x
+                    t294 = t290 + t291 - t292 - t293
+                    t295 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t296 = e1*t295
+                    t297 = psi_y*t296
+                    t298 = psi_z*t296
+                    t299 = dpsi_x*e0
+                    t300 = -Om_y*psi_z + Om_z*psi_y
+                    t301 = -Om0_y*psi_z + Om0_z*psi_y
+                    t302 = e0*psi_x
+                    t303 = Om_z*dpsi_y + dOm_z*psi_y - t268 - t270
+                    t304 = Om0_z*dpsi_y + dOm0_z*psi_y - t267 - t269
+                    t305 = psi_x*t296
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t296 +
-                        dpsi_z*e0*t297 + e0*psi_y*t310 + e0*psi_z*t315 + e1*psi_y*t296*t316 +
-                        e1*psi_z*t297*t316 - 0.5*t288 - 0.5*t289 - 0.5*t290 - 0.5*t291 - t292*t293
-                        - t292*t318 - t294*t295 - t294*t319 - t300*t301 - t306*t307)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t292*t320 + t292*t326 + t295*t321 -
-                        t295*t322 - t296*t320 - t296*t326 + t300*t323 + (0.5)*t302 + (0.5)*t303 -
-                        0.5*t304 - 0.5*t305 + t307*t324 - t307*t325 - t310*t323 + (0.5)*t311 +
-                        (0.5)*t312 - 0.5*t313 - 0.5*t314 + t319*t321 - t319*t322)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t275 +
+                        dpsi_z*e0*t276 + e0*psi_y*t289 + e0*psi_z*t294 + e1*psi_y*t275*t295 +
+                        e1*psi_z*t276*t295 - 0.5*t267 - 0.5*t268 - 0.5*t269 - 0.5*t270 - t271*t272
+                        - t271*t297 - t273*t274 - t273*t298 - t279*t280 - t285*t286)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t271*t299 + t271*t305 + t274*t300 -
+                        t274*t301 - t275*t299 - t275*t305 + t279*t302 + (0.5)*t281 + (0.5)*t282 -
+                        0.5*t283 - 0.5*t284 + t286*t303 - t286*t304 - t289*t302 + (0.5)*t290 +
+                        (0.5)*t291 - 0.5*t292 - 0.5*t293 + t298*t300 - t298*t301)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t294 + dpsi_y*e0*t322 +
-                        e0*psi_x*t306 + e0*psi_y*t325 + e1*psi_x*t294*t316 + e1*psi_y*t316*t322 -
-                        t293*t321 - t297*t320 - t297*t326 - 0.5*t298 - 0.5*t299 - t301*t324 -
-                        0.5*t308 - 0.5*t309 - t315*t323 - t318*t321)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t273 + dpsi_y*e0*t301 +
+                        e0*psi_x*t285 + e0*psi_y*t304 + e1*psi_x*t273*t295 + e1*psi_y*t295*t301 -
+                        t272*t300 - t276*t299 - t276*t305 - 0.5*t277 - 0.5*t278 - t280*t303 -
+                        0.5*t287 - 0.5*t288 - t294*t302 - t297*t300)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
-                # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
-                rhs_x = rhs_y = rhs_z = 0.0
+                # differential: rate: rates of the elastic rotations, the frame held
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
-                    alpha_r = alpha_rs[j]
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                     ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
@@ -1425,135 +1394,212 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t327 = (0.5)*dpsi_z
-                    t328 = e0*psi_y
-                    t329 = dpsi_y*e0
-                    t330 = 2*psi_x
-                    t331 = dpsi_x*t330
-                    t332 = 2*psi_y
-                    t333 = 2*psi_z
-                    t334 = dpsi_y*t332 + dpsi_z*t333 + t331
-                    t335 = e1*t334
-                    t336 = psi_y*t335
-                    t337 = dpsi_x*t328 + psi_x*t329 + psi_x*t336
-                    t338 = Om0d_y*alpha_r
-                    t339 = (0.5)*dpsi_y
-                    t340 = e0*psi_z
-                    t341 = dpsi_z*e0
-                    t342 = psi_z*t335
-                    t343 = dpsi_x*t340 + psi_x*t341 + psi_x*t342
-                    t344 = Om0d_z*alpha_r
-                    t345 = psi_z*psi_z*t335 + t333*t341
-                    t346 = psi_y*psi_y*t335 + t329*t332
-                    t347 = Om0d_x*alpha_r
-                    t348 = -Om_x*psi_y + Om_y*psi_x
-                    t349 = dep_y*e0
-                    t350 = Om0_x*psi_z - Om0_z*psi_x
-                    t351 = dep_z*e0
-                    t352 = Om0_x*ep_z - Om0_z*ep_x
-                    t353 = -Om0_x*psi_y + Om0_y*psi_x
-                    t354 = Om_x*psi_z - Om_z*psi_x
-                    t355 = -Om0_x*ep_y + Om0_y*ep_x
-                    t356 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t357 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t358 = e0*ep_y
-                    t359 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t360 = e0*ep_z
-                    t361 = Om0_x*dep_z
-                    t362 = dOm0_x*ep_z
-                    t363 = -Om0_z*dep_x - dOm0_z*ep_x + t361 + t362
-                    t364 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t365 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t366 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t367 = -Om0_x*dep_y + Om0_y*dep_x - dOm0_x*ep_y + dOm0_y*ep_x
-                    t368 = ep_x*t330 + ep_y*t332 + ep_z*t333
-                    t369 = e1*t368
-                    t370 = dpsi_y*t369
-                    t371 = dpsi_z*t369
-                    t372 = ep_y*t335
-                    t373 = ep_z*t335
-                    t374 = psi_y*t369
-                    t375 = psi_z*t369
-                    t376 = (-A_x*dpsi_y + A_y*dpsi_x - Om_x*dep_y + Om_y*dep_x - dA_x*psi_y +
-                        dA_y*psi_x - dOm_x*ep_y + dOm_y*ep_x)
-                    t377 = A_x*dpsi_z
-                    t378 = Om_x*dep_z
-                    t379 = dA_x*psi_z
-                    t380 = dOm_x*ep_z
-                    t381 = (-A_z*dpsi_x - Om_z*dep_x - dA_z*psi_x - dOm_z*ep_x + t377 + t378 +
-                        t379 + t380)
-                    t382 = (dep_x*t330 + dep_y*t332 + dep_z*t333 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                        2*dpsi_z*ep_z)
-                    t383 = e1*t382
-                    t384 = psi_z*t383
-                    t385 = e2*t334*t368
-                    t386 = psi_z*t385
-                    t387 = (0.5)*dpsi_x
-                    t388 = psi_y*t341 + psi_z*t329 + psi_z*t336
-                    t389 = e0*t331 + psi_x*psi_x*t335
-                    t390 = dep_x*e0
-                    t391 = -Om_y*psi_z + Om_z*psi_y
-                    t392 = dpsi_x*e0
-                    t393 = -Om0_y*psi_z + Om0_z*psi_y
-                    t394 = -Om0_y*ep_z + Om0_z*ep_y
-                    t395 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t396 = e0*ep_x
-                    t397 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t306 = A_y*dpsi_z
+                    t307 = Om0_y*dep_z
+                    t308 = Om_y*dep_z
+                    t309 = dA_y*psi_z
+                    t310 = dOm0_y*ep_z
+                    t311 = dOm_y*ep_z
+                    t312 = -Om_x*psi_y + Om_y*psi_x
+                    t313 = dep_y*e0
+                    t314 = Om0_x*psi_z - Om0_z*psi_x
+                    t315 = dep_z*e0
+                    t316 = Om0_x*ep_z - Om0_z*ep_x
+                    t317 = dpsi_z*e0
+                    t318 = -Om0_x*psi_y + Om0_y*psi_x
+                    t319 = Om_x*psi_z - Om_z*psi_x
+                    t320 = -Om0_x*ep_y + Om0_y*ep_x
+                    t321 = dpsi_y*e0
+                    t322 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t323 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t324 = e0*ep_y
+                    t325 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t326 = e0*ep_z
+                    t327 = Om0_x*dep_z
+                    t328 = dOm0_x*ep_z
+                    t329 = Om0_z*dep_x
+                    t330 = dOm0_z*ep_x
+                    t331 = t327 + t328 - t329 - t330
+                    t332 = e0*psi_z
+                    t333 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t334 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t335 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t336 = Om0_x*dep_y
+                    t337 = dOm0_x*ep_y
+                    t338 = Om0_y*dep_x + dOm0_y*ep_x - t336 - t337
+                    t339 = e0*psi_y
+                    t340 = 2*psi_x
+                    t341 = 2*psi_y
+                    t342 = 2*psi_z
+                    t343 = ep_x*t340 + ep_y*t341 + ep_z*t342
+                    t344 = e1*t343
+                    t345 = dpsi_y*t344
+                    t346 = dpsi_z*t344
+                    t347 = dpsi_x*t340 + dpsi_y*t341 + dpsi_z*t342
+                    t348 = e1*t347
+                    t349 = ep_y*t348
+                    t350 = ep_z*t348
+                    t351 = psi_z*t348
+                    t352 = psi_y*t348
+                    t353 = psi_y*t344
+                    t354 = psi_z*t344
+                    t355 = A_x*dpsi_y
+                    t356 = Om_x*dep_y
+                    t357 = dA_x*psi_y
+                    t358 = dOm_x*ep_y
+                    t359 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t355 - t356 - t357
+                        - t358)
+                    t360 = A_x*dpsi_z
+                    t361 = Om_x*dep_z
+                    t362 = dA_x*psi_z
+                    t363 = dOm_x*ep_z
+                    t364 = A_z*dpsi_x
+                    t365 = Om_z*dep_x
+                    t366 = dA_z*psi_x
+                    t367 = dOm_z*ep_x
+                    t368 = t360 + t361 + t362 + t363 - t364 - t365 - t366 - t367
+                    t369 = (e1*(dep_x*t340 + dep_y*t341 + dep_z*t342 + 2*dpsi_x*ep_x +
+                        2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
+                    t370 = psi_y*t312
+                    t371 = psi_z*t369
+                    t372 = t318*t369
+                    t373 = e2*t343*t347
+                    t374 = psi_z*t373
+                    t375 = t318*t373
+                    t376 = dep_x*e0
+                    t377 = -Om_y*psi_z + Om_z*psi_y
+                    t378 = dpsi_x*e0
+                    t379 = -Om0_y*psi_z + Om0_z*psi_y
+                    t380 = -Om0_y*ep_z + Om0_z*ep_y
+                    t381 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t382 = e0*ep_x
+                    t383 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t384 = e0*psi_x
+                    t385 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t386 = Om0_z*dep_y + dOm0_z*ep_y - t307 - t310
+                    t387 = dpsi_x*t344
+                    t388 = ep_x*t348
+                    t389 = psi_x*t348
+                    t390 = psi_x*t344
+                    t391 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t306 - t308 - t309
+                        - t311)
+                    t392 = psi_x*t369
+                    t393 = psi_x*t373
+                    t394 = psi_y*t369
+                    t395 = psi_y*t373
+                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
+                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t372 -
+                        psi_y*t375 - 0.5*t306 - 0.5*t307 - 0.5*t308 - 0.5*t309 - 0.5*t310 -
+                        0.5*t311 + t312*t313 + t312*t345 + t312*t349 - t313*t318 + t314*t315 +
+                        t314*t346 + t314*t350 + t314*t371 + t314*t374 - t315*t319 + t316*t317 +
+                        t316*t351 - t317*t333 - t318*t345 - t318*t349 - t319*t346 - t319*t350 -
+                        t319*t371 - t319*t374 - t320*t321 - t320*t352 + t321*t322 + t322*t352 +
+                        t323*t324 + t323*t353 - t324*t334 + t325*t326 + t325*t354 - t326*t335 +
+                        t331*t332 - t332*t368 - t333*t351 - t334*t353 - t335*t354 - t338*t339 +
+                        t339*t359 + t369*t370 + t370*t373)
+                    detad[j3 + 1] = (dA_y + psi_x*t372 + psi_x*t375 - t312*t376 - t312*t387 -
+                        t312*t388 - t312*t392 - t312*t393 + t315*t377 - t315*t379 - t317*t380 +
+                        t317*t381 + t318*t376 + t318*t387 + t318*t388 + t320*t378 + t320*t389 -
+                        t322*t378 - t322*t389 - t323*t382 - t323*t390 + t326*t383 - t326*t385 +
+                        (0.5)*t327 + (0.5)*t328 - 0.5*t329 - 0.5*t330 - t332*t386 + t332*t391 +
+                        t334*t382 + t334*t390 + t338*t384 + t346*t377 - t346*t379 + t350*t377 -
+                        t350*t379 - t351*t380 + t351*t381 + t354*t383 - t354*t385 - t359*t384 +
+                        (0.5)*t360 + (0.5)*t361 + (0.5)*t362 + (0.5)*t363 - 0.5*t364 - 0.5*t365 -
+                        0.5*t366 - 0.5*t367 + t371*t377 - t371*t379 + t374*t377 - t374*t379)
+                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
+                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t313*t377
+                        + t313*t379 - t314*t376 - t314*t387 - t314*t388 - t314*t392 - t314*t393 -
+                        t316*t378 - t316*t389 + t319*t376 + t319*t387 + t319*t388 + t319*t392 +
+                        t319*t393 + t321*t380 - t321*t381 - t324*t383 + t324*t385 - t325*t382 -
+                        t325*t390 - t331*t384 + t333*t378 + t333*t389 + t335*t382 + t335*t390 -
+                        0.5*t336 - 0.5*t337 + t339*t386 - t339*t391 - t345*t377 + t345*t379 -
+                        t349*t377 + t349*t379 + t352*t380 - t352*t381 - t353*t383 + t353*t385 -
+                        0.5*t355 - 0.5*t356 - 0.5*t357 - 0.5*t358 + t368*t384 - t377*t394 -
+                        t377*t395 + t379*t394 + t379*t395)
+                # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
+                rhs_x = rhs_y = rhs_z = 0.0
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + 3*j
+                    alpha_r = alpha_rs[j]
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
+                    depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
+                    e0 = e0s[j]
+                    e1 = e1s[j]
+                    t396 = (0.5)*dpsi_z
+                    t397 = dpsi_x*e0
                     t398 = e0*psi_x
-                    t399 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t400 = -Om0_y*dep_z + Om0_z*dep_y - dOm0_y*ep_z + dOm0_z*ep_y
-                    t401 = dpsi_x*t369
-                    t402 = ep_x*t335
-                    t403 = psi_x*t335
-                    t404 = psi_x*t369
-                    t405 = (-A_y*dpsi_z + A_z*dpsi_y - Om_y*dep_z + Om_z*dep_y - dA_y*psi_z +
-                        dA_z*psi_y - dOm_y*ep_z + dOm_z*ep_y)
-                    t406 = psi_x*t383
-                    t407 = psi_x*t385
-                    rhs_x += (-alpha_r*((0.5)*A_y*dpsi_z - A_z*t339 + (0.5)*Om0_y*dep_z -
-                        0.5*Om0_z*dep_y + (0.5)*Om_y*dep_z - 0.5*Om_z*dep_y - dA_x +
-                        (0.5)*dA_y*psi_z - 0.5*dA_z*psi_y + (0.5)*dOm0_y*ep_z - 0.5*dOm0_z*ep_y +
-                        (0.5)*dOm_y*ep_z - 0.5*dOm_z*ep_y + dep_y*e0*t353 + dep_z*e0*t354 +
-                        dpsi_y*e0*t355 + dpsi_y*e1*t353*t368 + dpsi_z*e0*t364 +
-                        dpsi_z*e1*t354*t368 + e0*ep_y*t365 + e0*ep_z*t366 + e0*psi_y*t367 +
-                        e0*psi_z*t381 + e1*ep_y*t334*t353 + e1*ep_z*t334*t354 + e1*psi_y*t334*t355
-                        + e1*psi_y*t353*t382 + e1*psi_y*t365*t368 + e1*psi_z*t334*t364 +
-                        e1*psi_z*t354*t382 + e1*psi_z*t366*t368 + e2*psi_y*t334*t353*t368 +
-                        e2*psi_z*t334*t354*t368 - psi_y*t348*t383 - psi_y*t348*t385 - t328*t376 -
-                        t329*t356 - t336*t356 - t340*t363 - t341*t352 - t342*t352 - t348*t349 -
-                        t348*t370 - t348*t372 - t350*t351 - t350*t371 - t350*t373 - t350*t384 -
-                        t350*t386 - t357*t358 - t357*t374 - t359*t360 - t359*t375) - t338*(t327 +
-                        t337) - t344*(-t339 + t343) - t347*(-t345 - t346))
-                    rhs_y += (-alpha_r*((0.5)*A_z*dpsi_x + (0.5)*Om0_z*dep_x + (0.5)*Om_z*dep_x -
-                        dA_y + (0.5)*dA_z*psi_x + (0.5)*dOm0_z*ep_x + (0.5)*dOm_z*ep_x +
-                        dep_x*e0*t348 + dep_z*e0*t393 + dpsi_x*e0*t356 + dpsi_x*e1*t348*t368 +
-                        dpsi_z*e0*t394 + dpsi_z*e1*t368*t393 + e0*ep_x*t357 + e0*ep_z*t399 +
-                        e0*psi_x*t376 + e0*psi_z*t400 + e1*ep_x*t334*t348 + e1*ep_z*t334*t393 +
-                        e1*psi_x*t334*t356 + e1*psi_x*t348*t382 + e1*psi_x*t357*t368 +
-                        e1*psi_z*t334*t394 + e1*psi_z*t368*t399 + e1*psi_z*t382*t393 +
-                        e2*psi_x*t334*t348*t368 + e2*psi_z*t334*t368*t393 - t340*t405 - t341*t395
-                        - t342*t395 - t351*t391 - t353*t390 - t353*t401 - t353*t402 - t353*t406 -
-                        t353*t407 - t355*t392 - t355*t403 - t360*t397 - 0.5*t361 - 0.5*t362 -
-                        t365*t396 - t365*t404 - t367*t398 - t371*t391 - t373*t391 - t375*t397 -
-                        0.5*t377 - 0.5*t378 - 0.5*t379 - 0.5*t380 - t384*t391 - t386*t391) -
-                        t338*(-t345 - t389) - t344*(t387 + t388) - t347*(-t327 + t337))
-                    rhs_z += (-alpha_r*((0.5)*A_x*dpsi_y - 0.5*A_y*dpsi_x + (0.5)*Om0_x*dep_y -
-                        0.5*Om0_y*dep_x + (0.5)*Om_x*dep_y - 0.5*Om_y*dep_x + (0.5)*dA_x*psi_y -
-                        0.5*dA_y*psi_x - dA_z + (0.5)*dOm0_x*ep_y - 0.5*dOm0_y*ep_x +
-                        (0.5)*dOm_x*ep_y - 0.5*dOm_y*ep_x + dep_x*e0*t350 + dep_y*e0*t391 +
-                        dpsi_x*e0*t352 + dpsi_x*e1*t350*t368 + dpsi_y*e0*t395 +
-                        dpsi_y*e1*t368*t391 + e0*ep_x*t359 + e0*ep_y*t397 + e0*psi_x*t363 +
-                        e0*psi_y*t405 + e1*ep_x*t334*t350 + e1*ep_y*t334*t391 + e1*psi_x*t334*t352
-                        + e1*psi_x*t350*t382 + e1*psi_x*t359*t368 + e1*psi_y*t334*t395 +
-                        e1*psi_y*t368*t397 + e1*psi_y*t382*t391 + e2*psi_x*t334*t350*t368 +
-                        e2*psi_y*t334*t368*t391 - psi_y*t383*t393 - psi_y*t385*t393 - t328*t400 -
-                        t329*t394 - t336*t394 - t349*t393 - t354*t390 - t354*t401 - t354*t402 -
-                        t354*t406 - t354*t407 - t358*t399 - t364*t392 - t364*t403 - t366*t396 -
-                        t366*t404 - t370*t393 - t372*t393 - t374*t399 - t381*t398) - t338*(-t387 +
-                        t388) - t344*(-t346 - t389) - t347*(t339 + t343))
+                    t399 = 2*dpsi_x*psi_x
+                    t400 = 2*dpsi_y*psi_y
+                    t401 = 2*dpsi_z*psi_z
+                    t402 = e1*(t399 + t400 + t401)
+                    t403 = psi_x*t402
+                    t404 = dpsi_y*t398 + psi_y*t397 + psi_y*t403
+                    t405 = Om0d_y*alpha_r
+                    t406 = (0.5)*dpsi_y
+                    t407 = dpsi_z*t398 + psi_z*t397 + psi_z*t403
+                    t408 = Om0d_z*alpha_r
+                    t409 = e0*t401 + psi_z*psi_z*t402
+                    t410 = e0*t400 + psi_y*psi_y*t402
+                    t411 = Om0d_x*alpha_r
+                    t412 = (0.5)*dpsi_x
+                    t413 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t402
+                    t414 = e0*t399 + psi_x*psi_x*t402
+                    rhs_x += (alpha_r*depd_x - t405*(t396 + t404) - t408*(-t406 + t407) -
+                        t411*(-t409 - t410))
+                    rhs_y += (alpha_r*depd_y - t405*(-t409 - t414) - t408*(t412 + t413) -
+                        t411*(-t396 + t404))
+                    rhs_z += (alpha_r*depd_z - t405*(-t412 + t413) - t408*(-t410 - t414) -
+                        t411*(t406 + t407))
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
+                # differential: rate: rates of the elastic rotations
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + 3*j
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
+                    depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
+                    e0 = e0s[j]
+                    e1 = e1s[j]
+                    t415 = (0.5)*psi_z
+                    t416 = e0*psi_x
+                    t417 = psi_y*t416
+                    t418 = (0.5)*psi_y
+                    t419 = psi_z*t416
+                    t420 = psi_y*psi_y
+                    t421 = e0*t420
+                    t422 = psi_z*psi_z
+                    t423 = e0*t422 - 1
+                    t424 = (0.5)*dpsi_z
+                    t425 = dpsi_x*e0
+                    t426 = 2*dpsi_x*psi_x
+                    t427 = 2*dpsi_y*psi_y
+                    t428 = 2*dpsi_z*psi_z
+                    t429 = e1*(t426 + t427 + t428)
+                    t430 = psi_x*t429
+                    t431 = dpsi_y*t416 + psi_y*t425 + psi_y*t430
+                    t432 = (0.5)*dpsi_y
+                    t433 = dpsi_z*t416 + psi_z*t425 + psi_z*t430
+                    t434 = e0*t428 + t422*t429
+                    t435 = e0*t427 + t420*t429
+                    t436 = (0.5)*psi_x
+                    t437 = e0*psi_z
+                    t438 = psi_y*t437
+                    t439 = psi_x*psi_x
+                    t440 = e0*t439
+                    t441 = (0.5)*dpsi_x
+                    t442 = dpsi_y*t437 + dpsi_z*e0*psi_y + psi_y*psi_z*t429
+                    t443 = e0*t426 + t429*t439
+                    detad[j3] = (Om0d_x*(t434 + t435) + Om0d_y*(-t424 - t431) + Om0d_z*(t432 -
+                        t433) + dOm0d_x*(t421 + t423) + dOm0d_y*(-t415 - t417) + dOm0d_z*(t418 -
+                        t419) + depd_x)
+                    detad[j3 + 1] = (Om0d_x*(t424 - t431) + Om0d_y*(t434 + t443) + Om0d_z*(-t441 -
+                        t442) + dOm0d_x*(t415 - t417) + dOm0d_y*(t423 + t440) + dOm0d_z*(-t436 -
+                        t438) + depd_y)
+                    detad[j3 + 2] = (Om0d_x*(-t432 - t433) + Om0d_y*(t441 - t442) + Om0d_z*(t435 +
+                        t443) + dOm0d_x*(-t418 - t419) + dOm0d_y*(t436 - t438) + dOm0d_z*(t421 +
+                        t440 - 1) + depd_z)
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1565,173 +1611,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t408 = X_y + u_y
-                    t409 = X_z + u_z
-                    t410 = X_x + u_x
+                    t444 = X_y + u_y
+                    t445 = X_z + u_z
+                    t446 = X_x + u_x
                     detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
                         Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
                         dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t409 + dOm0d_z*t408 - da0_x + dacc_x)
+                        dOm0d_y*t445 + dOm0d_z*t444 - da0_x + dacc_x)
                     detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                         Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                         dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t409 - dOm0d_z*t410 - da0_y + dacc_y)
+                        dOm0d_x*t445 - dOm0d_z*t446 - da0_y + dacc_y)
                     detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                         Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                         dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t408 + dOm0d_y*t410 - da0_z + dacc_z)
-                # differential: rate: rates of the elastic rotations
-                for j in range(N_ROTATIONS):
-                    j3 = ROTATIONS + 3*j
-                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-                    Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-                    ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-                    A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
-                    dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
-                    dA_x, dA_y, dA_z = dae[j3], dae[j3 + 1], dae[j3 + 2]
-                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                    dep_x, dep_y, dep_z = deta[j3], deta[j3 + 1], deta[j3 + 2]
-                    e0 = e0s[j]
-                    e1 = e1s[j]
-                    e2 = e2s[j]
-                    t411 = A_y*dpsi_z
-                    t412 = Om0_y*dep_z
-                    t413 = Om0d_y*dpsi_z
-                    t414 = Om_y*dep_z
-                    t415 = dA_y*psi_z
-                    t416 = dOm0_y*ep_z
-                    t417 = dOm0d_y*psi_z
-                    t418 = dOm_y*ep_z
-                    t419 = -Om0_x*psi_y + Om0_y*psi_x
-                    t420 = dep_y*e0
-                    t421 = Om_x*psi_z - Om_z*psi_x
-                    t422 = dep_z*e0
-                    t423 = -Om_x*psi_y + Om_y*psi_x
-                    t424 = Om0_x*psi_z - Om0_z*psi_x
-                    t425 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t426 = dpsi_y*e0
-                    t427 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t428 = dpsi_z*e0
-                    t429 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t430 = e0*ep_y
-                    t431 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t432 = e0*ep_z
-                    t433 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t434 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t435 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t436 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t437 = 2*psi_x
-                    t438 = 2*psi_y
-                    t439 = 2*psi_z
-                    t440 = ep_x*t437 + ep_y*t438 + ep_z*t439
-                    t441 = e1*t440
-                    t442 = dpsi_y*t441
-                    t443 = dpsi_z*t441
-                    t444 = dpsi_x*t437 + dpsi_y*t438 + dpsi_z*t439
-                    t445 = e1*t444
-                    t446 = ep_y*t445
-                    t447 = ep_z*t445
-                    t448 = psi_y*t445
-                    t449 = psi_y*t441
-                    t450 = psi_z*t445
-                    t451 = psi_z*t441
-                    t452 = Om0_x*dep_y
-                    t453 = Om0d_x*dpsi_y
-                    t454 = dOm0_x*ep_y
-                    t455 = dOm0d_x*psi_y
-                    t456 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t452 -
-                        t453 - t454 - t455)
-                    t457 = e0*psi_y
-                    t458 = A_x*dpsi_z
-                    t459 = Om_x*dep_z
-                    t460 = dA_x*psi_z
-                    t461 = dOm_x*ep_z
-                    t462 = A_z*dpsi_x
-                    t463 = Om_z*dep_x
-                    t464 = dA_z*psi_x
-                    t465 = dOm_z*ep_x
-                    t466 = t458 + t459 + t460 + t461 - t462 - t463 - t464 - t465
-                    t467 = e0*psi_z
-                    t468 = A_x*dpsi_y
-                    t469 = Om_x*dep_y
-                    t470 = dA_x*psi_y
-                    t471 = dOm_x*ep_y
-                    t472 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t468 - t469 - t470
-                        - t471)
-                    t473 = Om0_x*dep_z
-                    t474 = Om0d_x*dpsi_z
-                    t475 = dOm0_x*ep_z
-                    t476 = dOm0d_x*psi_z
-                    t477 = Om0_z*dep_x
-                    t478 = Om0d_z*dpsi_x
-                    t479 = dOm0_z*ep_x
-                    t480 = dOm0d_z*psi_x
-                    t481 = t473 + t474 + t475 + t476 - t477 - t478 - t479 - t480
-                    t482 = (dep_x*t437 + dep_y*t438 + dep_z*t439 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                        2*dpsi_z*ep_z)
-                    t483 = e1*t482
-                    t484 = t419*t483
-                    t485 = psi_z*t483
-                    t486 = e2*t440*t444
-                    t487 = t419*t486
-                    t488 = psi_z*t486
-                    t489 = dep_x*e0
-                    t490 = -Om_y*psi_z + Om_z*psi_y
-                    t491 = -Om0_y*psi_z + Om0_z*psi_y
-                    t492 = dpsi_x*e0
-                    t493 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t494 = e0*ep_x
-                    t495 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t496 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t497 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t498 = dpsi_x*t441
-                    t499 = ep_x*t445
-                    t500 = psi_x*t445
-                    t501 = psi_x*t441
-                    t502 = e0*psi_x
-                    t503 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t411 - t414 - t415
-                        - t418)
-                    t504 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t412 -
-                        t413 - t416 - t417)
-                    t505 = psi_x*t483
-                    t506 = psi_x*t486
-                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
-                        (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t423 + dep_z*e0*t424 +
-                        dpsi_y*e0*t433 + dpsi_y*e1*t423*t440 + dpsi_z*e0*t434 +
-                        dpsi_z*e1*t424*t440 + e0*ep_y*t435 + e0*ep_z*t436 + e0*psi_y*t472 +
-                        e0*psi_z*t481 + e1*ep_y*t423*t444 + e1*ep_z*t424*t444 + e1*psi_y*t423*t482
-                        + e1*psi_y*t433*t444 + e1*psi_y*t435*t440 + e1*psi_z*t424*t482 +
-                        e1*psi_z*t434*t444 + e1*psi_z*t436*t440 + e2*psi_y*t423*t440*t444 +
-                        e2*psi_z*t424*t440*t444 - psi_y*t484 - psi_y*t487 - 0.5*t411 - 0.5*t412 -
-                        0.5*t413 - 0.5*t414 - 0.5*t415 - 0.5*t416 - 0.5*t417 - 0.5*t418 -
-                        t419*t420 - t419*t442 - t419*t446 - t421*t422 - t421*t443 - t421*t447 -
-                        t421*t485 - t421*t488 - t425*t426 - t425*t448 - t427*t428 - t427*t450 -
-                        t429*t430 - t429*t449 - t431*t432 - t431*t451 - t456*t457 - t466*t467)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t484 + psi_x*t487 + t419*t489 +
-                        t419*t498 + t419*t499 + t422*t490 - t422*t491 - t423*t489 - t423*t498 -
-                        t423*t499 - t423*t505 - t423*t506 + t425*t492 + t425*t500 + t428*t493 -
-                        t428*t496 + t429*t494 + t429*t501 + t432*t495 - t432*t497 - t433*t492 -
-                        t433*t500 - t435*t494 - t435*t501 + t443*t490 - t443*t491 + t447*t490 -
-                        t447*t491 + t450*t493 - t450*t496 + t451*t495 - t451*t497 + t456*t502 +
-                        (0.5)*t458 + (0.5)*t459 + (0.5)*t460 + (0.5)*t461 - 0.5*t462 - 0.5*t463 -
-                        0.5*t464 - 0.5*t465 + t467*t503 - t467*t504 - t472*t502 + (0.5)*t473 +
-                        (0.5)*t474 + (0.5)*t475 + (0.5)*t476 - 0.5*t477 - 0.5*t478 - 0.5*t479 -
-                        0.5*t480 + t485*t490 - t485*t491 + t488*t490 - t488*t491)
-                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
-                        (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t421 +
-                        dep_y*e0*t491 + dpsi_x*e0*t427 + dpsi_x*e1*t421*t440 + dpsi_y*e0*t496 +
-                        dpsi_y*e1*t440*t491 + e0*ep_x*t431 + e0*ep_y*t497 + e0*psi_x*t466 +
-                        e0*psi_y*t504 + e1*ep_x*t421*t444 + e1*ep_y*t444*t491 + e1*psi_x*t421*t482
-                        + e1*psi_x*t427*t444 + e1*psi_x*t431*t440 + e1*psi_y*t440*t497 +
-                        e1*psi_y*t444*t496 + e1*psi_y*t482*t491 + e2*psi_x*t421*t440*t444 +
-                        e2*psi_y*t440*t444*t491 - psi_y*t483*t490 - psi_y*t486*t490 - t420*t490 -
-                        t424*t489 - t424*t498 - t424*t499 - t424*t505 - t424*t506 - t426*t493 -
-                        t430*t495 - t434*t492 - t434*t500 - t436*t494 - t436*t501 - t442*t490 -
-                        t446*t490 - t448*t493 - t449*t495 - 0.5*t452 - 0.5*t453 - 0.5*t454 -
-                        0.5*t455 - t457*t503 - 0.5*t468 - 0.5*t469 - 0.5*t470 - 0.5*t471 -
-                        t481*t502)
+                        dOm0d_x*t444 + dOm0d_y*t446 - da0_z + dacc_z)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1762,12 +1656,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t507 = da0_x - dgamma_x
-                t508 = da0_y - dgamma_y
-                t509 = da0_z - dgamma_z
-                dzdd[N] = t507*turn_xx + t508*turn_yx + t509*turn_zx
-                dzdd[N + 1] = t507*turn_xy + t508*turn_yy + t509*turn_zy
-                dzdd[N + 2] = t507*turn_xz + t508*turn_yz + t509*turn_zz
+                t447 = da0_x - dgamma_x
+                t448 = da0_y - dgamma_y
+                t449 = da0_z - dgamma_z
+                dzdd[N] = t447*turn_xx + t448*turn_yx + t449*turn_zx
+                dzdd[N + 1] = t447*turn_xy + t448*turn_yy + t449*turn_zy
+                dzdd[N + 2] = t447*turn_xz + t448*turn_yz + t449*turn_zz
                 dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
                 dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
                 dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1792,15 +1686,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t510 = X_z + u_z
-                    t511 = X_y + u_y
-                    t512 = X_x + u_x
+                    t450 = X_z + u_z
+                    t451 = X_y + u_y
+                    t452 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t510 - df_z*t511 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t510 + df_z*t512 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t511 - df_y*t512 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t450 - df_z*t451 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t450 + df_z*t452 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t451 - df_y*t452 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
@@ -1822,25 +1716,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t513 = -m_x*psi_y + m_y*psi_x
-                    t514 = m_x*psi_z - m_z*psi_x
-                    t515 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t516 = dm_x*psi_z
-                    t517 = dpsi_z*m_x
-                    t518 = -dm_z*psi_x - dpsi_x*m_z + t516 + t517
-                    t519 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t520 = e1*t519
-                    t521 = -m_y*psi_z + m_z*psi_y
-                    t522 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t513 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t514 + (0.5)*dpsi_z*m_y - e0*psi_y*t515 +
-                        e0*psi_z*t518 + e1*psi_z*t514*t519 - psi_y*t513*t520)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t513 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t521 + e0*psi_x*t515 - e0*psi_z*t522 + e1*psi_x*t513*t519 -
-                        psi_z*t520*t521 - 0.5*t516 - 0.5*t517)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t514 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t521 + (0.5)*dpsi_y*m_x - e0*psi_x*t518 +
-                        e0*psi_y*t522 + e1*psi_y*t519*t521 - psi_x*t514*t520)
+                    t453 = -m_x*psi_y + m_y*psi_x
+                    t454 = m_x*psi_z - m_z*psi_x
+                    t455 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t456 = dm_x*psi_z
+                    t457 = dpsi_z*m_x
+                    t458 = -dm_z*psi_x - dpsi_x*m_z + t456 + t457
+                    t459 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t460 = e1*t459
+                    t461 = -m_y*psi_z + m_z*psi_y
+                    t462 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t453 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t454 + (0.5)*dpsi_z*m_y - e0*psi_y*t455 +
+                        e0*psi_z*t458 + e1*psi_z*t454*t459 - psi_y*t453*t460)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t453 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t461 + e0*psi_x*t455 - e0*psi_z*t462 + e1*psi_x*t453*t459 -
+                        psi_z*t460*t461 - 0.5*t456 - 0.5*t457)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t454 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t461 + (0.5)*dpsi_y*m_x - e0*psi_x*t458 +
+                        e0*psi_y*t462 + e1*psi_y*t459*t461 - psi_x*t454*t460)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1850,33 +1744,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t523 = dpsi_y*wp_z
-                    t524 = dpsi_z*wp_y
-                    t525 = psi_x*wp_y - psi_y*wp_x
-                    t526 = e0*t525
-                    t527 = dpsi_x*wp_y
-                    t528 = dpsi_y*wp_x
-                    t529 = e0*(t527 - t528)
-                    t530 = -psi_x*wp_z + psi_z*wp_x
-                    t531 = dpsi_x*wp_z
-                    t532 = dpsi_z*wp_x - t531
-                    t533 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t534 = e1*t533
-                    t535 = t525*t534
-                    t536 = psi_y*wp_z - psi_z*wp_y
-                    t537 = t523 - t524
-                    rhs_x += (-alpha_r*(dpsi_y*t526 - dpsi_z*e0*t530 - e0*psi_z*t532 + psi_y*t529
-                        + psi_y*t535 - psi_z*t530*t534 + (0.5)*t523 - 0.5*t524))
-                    rhs_y += (-alpha_r*(-dpsi_x*t526 + dpsi_z*e0*t536 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t537 + e1*psi_z*t533*t536 - psi_x*t529 - psi_x*t535 - 0.5*t531))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t530 - dpsi_y*e0*t536 + e0*psi_x*t532 -
-                        e0*psi_y*t537 + psi_x*t530*t534 - psi_y*t534*t536 + (0.5)*t527 - 0.5*t528))
-                t538 = dW_x + rhs_x
-                t539 = dW_y + rhs_y
-                t540 = dW_z + rhs_z
-                dwp_x = Bxx*t538 + Byx*t539 + Bzx*t540
-                dwp_y = Bxy*t538 + Byy*t539 + Bzy*t540
-                dwp_z = Bxz*t538 + Byz*t539 + Bzz*t540
+                    t463 = dpsi_y*wp_z
+                    t464 = dpsi_z*wp_y
+                    t465 = psi_x*wp_y - psi_y*wp_x
+                    t466 = e0*t465
+                    t467 = dpsi_x*wp_y
+                    t468 = dpsi_y*wp_x
+                    t469 = e0*(t467 - t468)
+                    t470 = -psi_x*wp_z + psi_z*wp_x
+                    t471 = dpsi_x*wp_z
+                    t472 = dpsi_z*wp_x - t471
+                    t473 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t474 = e1*t473
+                    t475 = t465*t474
+                    t476 = psi_y*wp_z - psi_z*wp_y
+                    t477 = t463 - t464
+                    rhs_x += (-alpha_r*(dpsi_y*t466 - dpsi_z*e0*t470 - e0*psi_z*t472 + psi_y*t469
+                        + psi_y*t475 - psi_z*t470*t474 + (0.5)*t463 - 0.5*t464))
+                    rhs_y += (-alpha_r*(-dpsi_x*t466 + dpsi_z*e0*t476 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t477 + e1*psi_z*t473*t476 - psi_x*t469 - psi_x*t475 - 0.5*t471))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t470 - dpsi_y*e0*t476 + e0*psi_x*t472 -
+                        e0*psi_y*t477 + psi_x*t470*t474 - psi_y*t474*t476 + (0.5)*t467 - 0.5*t468))
+                t478 = dW_x + rhs_x
+                t479 = dW_y + rhs_y
+                t480 = dW_z + rhs_z
+                dwp_x = Bxx*t478 + Byx*t479 + Bzx*t480
+                dwp_y = Bxy*t478 + Byy*t479 + Bzy*t480
+                dwp_z = Bxz*t478 + Byz*t479 + Bzz*t480
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1903,58 +1797,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t541 = dm_y*psi_z
-                    t542 = dpsi_z*m_y
-                    t543 = -m_x*psi_y + m_y*psi_x
-                    t544 = dpsi_y*e0
-                    t545 = m_x*psi_z - m_z*psi_x
-                    t546 = dpsi_z*e0
-                    t547 = dm_x*psi_y
-                    t548 = dpsi_y*m_x
-                    t549 = dm_y*psi_x + dpsi_x*m_y - t547 - t548
-                    t550 = e0*psi_y
-                    t551 = dm_x*psi_z
-                    t552 = dpsi_z*m_x
-                    t553 = dm_z*psi_x
-                    t554 = dpsi_x*m_z
-                    t555 = t551 + t552 - t553 - t554
-                    t556 = e0*psi_z
-                    t557 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t558 = psi_y*t557
-                    t559 = psi_z*t557
-                    t560 = dpsi_y*wp_z
-                    t561 = dpsi_z*wp_y
-                    t562 = dwp_y*psi_z
-                    t563 = dwp_z*psi_y
-                    t564 = psi_x*wp_y - psi_y*wp_x
-                    t565 = -psi_x*wp_z + psi_z*wp_x
-                    t566 = dpsi_x*wp_y
-                    t567 = dwp_y*psi_x
-                    t568 = dpsi_y*wp_x
-                    t569 = dwp_x*psi_y
-                    t570 = t566 + t567 - t568 - t569
-                    t571 = dpsi_x*wp_z
-                    t572 = dwp_z*psi_x
-                    t573 = dpsi_z*wp_x + dwp_x*psi_z - t571 - t572
-                    t574 = -m_y*psi_z + m_z*psi_y
-                    t575 = dpsi_x*e0
-                    t576 = dm_z*psi_y + dpsi_y*m_z - t541 - t542
-                    t577 = e0*psi_x
-                    t578 = psi_x*t557
-                    t579 = psi_y*wp_z - psi_z*wp_y
-                    t580 = t560 - t561 - t562 + t563
-                    dg[j3] = (alpha_r*(dwp_x + t544*t564 - t546*t565 + t550*t570 - t556*t573 +
-                        t558*t564 - t559*t565 - 0.5*t560 + (0.5)*t561 + (0.5)*t562 - 0.5*t563) +
-                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t541 + (0.5)*t542 +
-                        t543*t544 + t543*t558 - t545*t546 - t545*t559 + t549*t550 - t555*t556)
-                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t546*t579
-                        + t556*t580 + t559*t579 - t564*t575 - t564*t578 - t570*t577 + (0.5)*t571 +
-                        (0.5)*t572) + dm_y - t543*t575 - t543*t578 + t546*t574 - t549*t577 -
-                        0.5*t551 - 0.5*t552 + (0.5)*t553 + (0.5)*t554 + t556*t576 + t559*t574)
-                    dg[j3 + 2] = (alpha_r*(dwp_z - t544*t579 - t550*t580 - t558*t579 + t565*t575 +
-                        t565*t578 - 0.5*t566 - 0.5*t567 + (0.5)*t568 + (0.5)*t569 + t573*t577) -
-                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t544*t574 + t545*t575 + t545*t578
-                        + (0.5)*t547 + (0.5)*t548 - t550*t576 + t555*t577 - t558*t574)
+                    t481 = dm_y*psi_z
+                    t482 = dpsi_z*m_y
+                    t483 = -m_x*psi_y + m_y*psi_x
+                    t484 = dpsi_y*e0
+                    t485 = m_x*psi_z - m_z*psi_x
+                    t486 = dpsi_z*e0
+                    t487 = dm_x*psi_y
+                    t488 = dpsi_y*m_x
+                    t489 = dm_y*psi_x + dpsi_x*m_y - t487 - t488
+                    t490 = e0*psi_y
+                    t491 = dm_x*psi_z
+                    t492 = dpsi_z*m_x
+                    t493 = dm_z*psi_x
+                    t494 = dpsi_x*m_z
+                    t495 = t491 + t492 - t493 - t494
+                    t496 = e0*psi_z
+                    t497 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t498 = psi_y*t497
+                    t499 = psi_z*t497
+                    t500 = dpsi_y*wp_z
+                    t501 = dpsi_z*wp_y
+                    t502 = dwp_y*psi_z
+                    t503 = dwp_z*psi_y
+                    t504 = psi_x*wp_y - psi_y*wp_x
+                    t505 = -psi_x*wp_z + psi_z*wp_x
+                    t506 = dpsi_x*wp_y
+                    t507 = dwp_y*psi_x
+                    t508 = dpsi_y*wp_x
+                    t509 = dwp_x*psi_y
+                    t510 = t506 + t507 - t508 - t509
+                    t511 = dpsi_x*wp_z
+                    t512 = dwp_z*psi_x
+                    t513 = dpsi_z*wp_x + dwp_x*psi_z - t511 - t512
+                    t514 = -m_y*psi_z + m_z*psi_y
+                    t515 = dpsi_x*e0
+                    t516 = dm_z*psi_y + dpsi_y*m_z - t481 - t482
+                    t517 = e0*psi_x
+                    t518 = psi_x*t497
+                    t519 = psi_y*wp_z - psi_z*wp_y
+                    t520 = t500 - t501 - t502 + t503
+                    dg[j3] = (alpha_r*(dwp_x + t484*t504 - t486*t505 + t490*t510 - t496*t513 +
+                        t498*t504 - t499*t505 - 0.5*t500 + (0.5)*t501 + (0.5)*t502 - 0.5*t503) +
+                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t481 + (0.5)*t482 +
+                        t483*t484 + t483*t498 - t485*t486 - t485*t499 + t489*t490 - t495*t496)
+                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t486*t519
+                        + t496*t520 + t499*t519 - t504*t515 - t504*t518 - t510*t517 + (0.5)*t511 +
+                        (0.5)*t512) + dm_y - t483*t515 - t483*t518 + t486*t514 - t489*t517 -
+                        0.5*t491 - 0.5*t492 + (0.5)*t493 + (0.5)*t494 + t496*t516 + t499*t514)
+                    dg[j3 + 2] = (alpha_r*(dwp_z - t484*t519 - t490*t520 - t498*t519 + t505*t515 +
+                        t505*t518 - 0.5*t506 - 0.5*t507 + (0.5)*t508 + (0.5)*t509 + t513*t517) -
+                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t484*t514 + t485*t515 + t485*t518
+                        + (0.5)*t487 + (0.5)*t488 - t490*t516 + t495*t517 - t498*t514)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

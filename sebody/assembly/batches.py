@@ -4,10 +4,12 @@ from collections.abc import Iterable
 from itertools import accumulate
 from types import ModuleType
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody.assembly.carried import carried_constants
 from sebody.assembly.contracts import (
     check_element,
     check_superelement,
@@ -23,6 +25,10 @@ from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
+from sebody.reduction import ReducedBody
+
+# rows of constants of every body that is still in use: the next run of its model needs them again
+_rows: WeakKeyDictionary[ReducedBody, dict[tuple, NDArray]] = WeakKeyDictionary()
 
 
 class Batch(NamedTuple):
@@ -85,10 +91,14 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
     for frame, body in enumerate(model.bodies.values()):
         kernel = load(body.kernel)
         check_superelement(body, kernel)
-        key = id(body.body), body.kernel, tuple(body.alpha), tuple(body.alpha_r)
+        how = body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r)
+        key = id(body.body), *how
         if key not in known:
-            row = constants_row(body.name, kernel, counts_of(body), superelement_constants(body))
-            known[key] = constants.add(row), _full(body, kernel)
+            rows = _rows.setdefault(body.body, {})
+            if how not in rows:
+                rows[how] = constants_row(body.name, kernel, counts_of(body),
+                                          superelement_constants(body))
+            known[key] = constants.add(rows[how]), _full(body, kernel)
         at_constants, full = known[key]
         unknowns = [c for t in (*body.positions, *body.rotations)
                     for c in coordinates(numbering, t)]
@@ -146,18 +156,20 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     points = reduced.coordinates[list(reduced.position_nodes)]
     origin = body.alpha @ points
     of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
-    damping = {} if reduced.damping is None else {"C": reduced.damping}
+    option = INERTIA_OPTIONS[body.inertia]
+    damping = {} if option.rates or reduced.damping is None else {"C": reduced.damping}
     values = {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
             "alpha_rs": body.alpha_r, "X": points - origin, "S": reduced.stiffness,
             "M": reduced.mass, "mass_columns": of_translations, "mass_rows": of_translations.T,
             "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
             "full": [_filled(body)], "masses": [reduced.total_mass], **damping}
-    if not INERTIA_OPTIONS[body.inertia].field:
+    if not option.rates:
         return values
+    if not option.field:
+        return values | carried_constants(reduced)
     counts = counts_of(body)
     conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts, values)
-    values.pop("C", None)
-    return values | floating_constants(reduced.invariants.about(origin), reduced.stiffness,
+    return values | floating_constants(body.invariants.about(origin), reduced.stiffness,
                                        conditions, counts, reduced.damping)
 
 

@@ -19,6 +19,7 @@ from sebody.kernels.layout import (
     Counts,
     Row,
     bound_counts,
+    carried_counts,
     first_mode,
     floating_counts,
     superelement_counts,
@@ -73,8 +74,8 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
     if kernel.DAMPED not in (None, reduced.damping is not None):
         wrong.append(f"it has {'no' if kernel.DAMPED else 'a'} damping matrix and the kernel reads "
                      f"{'one' if kernel.DAMPED else 'none'}")
-    if INERTIA_OPTIONS[kernel.INERTIA].field and reduced.invariants.slaved > MOST_SLAVED:
-        wrong.append(f"it has {reduced.invariants.slaved} slaved coordinates and the kernel memory "
+    if INERTIA_OPTIONS[kernel.INERTIA].field and body.invariants.slaved > MOST_SLAVED:
+        wrong.append(f"it has {body.invariants.slaved} slaved coordinates and the kernel memory "
                      f"for {MOST_SLAVED}")
     if wrong:
         raise _misfit(body.name, kernel, wrong)
@@ -129,12 +130,13 @@ def counts_of(body: Superelement) -> Counts:
     reduced = body.body
     counts = superelement_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
                                  reduced.planar, _width(body))
-    if not INERTIA_OPTIONS[body.inertia].field:
-        return counts
-    return counts | bound_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
-                                 reduced.planar) | floating_counts(
-        reduced.planar, _width(body), reduced.invariants.slaved, reduced.invariants.resultants,
-        reduced.damping is not None)
+    option, damped = INERTIA_OPTIONS[body.inertia], reduced.damping is not None
+    if option.field:
+        return counts | bound_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
+                                     reduced.planar) | floating_counts(
+            reduced.planar, _width(body), body.invariants.slaved, body.invariants.resultants,
+            damped)
+    return counts | carried_counts(reduced.planar, _width(body), damped) if option.rates else counts
 
 
 def _width(body: Superelement) -> int:

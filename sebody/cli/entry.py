@@ -7,10 +7,24 @@ import sys
 import warnings
 from collections.abc import Sequence
 
-from sebody.cli import atlas, bench, chart, check, interrupts, listing, run, warm
+from sebody.cli import (
+    atlas,
+    bench,
+    chart,
+    check,
+    importing,
+    inspect,
+    interrupts,
+    listing,
+    plot,
+    run,
+    sweep,
+    warm,
+)
 from sebody.errors import InputError, SebodyError
 
-COMMANDS = (run, listing, check, bench, chart, atlas, warm)     # in the order of the help
+# in the order of the help
+COMMANDS = (run, sweep, listing, plot, importing, inspect, check, bench, chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

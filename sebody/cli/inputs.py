@@ -14,6 +14,7 @@ from sebody.errors import InputError
 from sebody.studies.catalogue import builder
 
 if TYPE_CHECKING:
+    from sebody.results.result import Result
     from sebody.scenes.scene import Scene
 
 
@@ -49,7 +50,7 @@ def build_scene(name: str, changes: Sequence[str]) -> "Scene":
         An unknown scene or parameter, a value that cannot be read, or an error in a file.
     """
     build, _, file = source(name)
-    arguments = _arguments(name, build, changes)
+    arguments = given_arguments(name, build, changes)
     if not file:
         return build(**arguments)
     return _checked(scene_files.call(file, lambda: build(**arguments)), name)
@@ -89,6 +90,23 @@ def check_picture(path: Path | None) -> None:
         plots.check_picture(path)
 
 
+def labelled_results(paths: Sequence[str]) -> "dict[str, Result]":
+    """Saved results by the names of their files, by the whole paths where names are the same.
+
+    Raises
+    ------
+    InputError
+        No such file, one that is no result, or one that is given twice.
+    """
+    from sebody.results.result import Result
+
+    names = [Path(path).stem for path in paths]
+    labels = names if len(set(names)) == len(names) else list(paths)
+    if len(set(labels)) < len(labels):
+        raise InputError(f"results {', '.join(paths)}: one is given twice, leave it out")
+    return {label: Result.load(path) for label, path in zip(labels, paths, strict=True)}
+
+
 def check_distinct(targets: Mapping[str, Path | None]) -> None:
     """Refuse two options that name the same file, of which one would replace the other.
 
@@ -107,8 +125,14 @@ def _first_line(module: ModuleType) -> str:
     return (getdoc(module) or "").partition("\n")[0]
 
 
-def _arguments(scene: str, build: Callable, changes: Sequence[str]) -> dict[str, Any]:
-    """Keyword arguments of a scene, of the type of their defaults."""
+def given_arguments(scene: str, build: Callable, changes: Sequence[str]) -> dict[str, Any]:
+    """Keyword arguments of a scene given as ``NAME=VALUE``, of the type of their defaults.
+
+    Raises
+    ------
+    InputError
+        An unknown parameter, one that is missing, or a value that cannot be read.
+    """
     known = parameters(build)
     existing = ", ".join(map(described, known.values())) or "none"
     values = {}

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.fem import beam_element
+from sebody.fem.layout import PLANAR, SPATIAL
 from sebody.fem.mass_field import MassField
-from sebody.fem.model import PLANAR, SPATIAL, FEModel, assemble
+from sebody.fem.model import FEModel, assemble
 from sebody.fem.section import StiffnessSection
 
 _IN_PLANE = np.array([0, 1, 5, 6, 7, 11])  # DOFs of an element in the xy plane
@@ -40,7 +41,26 @@ def beam_model(nodes: NDArray, pairs: NDArray, lengths: NDArray, axes: NDArray,
         matrices.append(assemble(elements.dofs, matrix, size))
     return FEModel(*matrices, nodes, node_dofs,
                    mass_field=_mass_field(elements, nodes, pairs, size),
-                   geometric_stiffness=BeamPrestress(elements, size))
+                   geometric_stiffness=BeamPrestress(elements, size), cells=[("line", pairs)],
+                   outlines=_outlines(sections, axes))
+
+
+def _outlines(sections: Sequence[StiffnessSection], axes: NDArray) -> NDArray:
+    """Edges of the elements' sections, (n, corners, 3), about the axis in axes of the model.
+
+    Of sections with fewer corners than others the last one is repeated.
+    """
+    edges = [np.array(section.outline or _equivalent(section)) for section in sections]
+    most = max(map(len, edges))
+    corners = np.array([np.pad(edge, ((0, most - len(edge)), (0, 0)), "edge") for edge in edges])
+    return corners @ axes[:, 1:]
+
+
+def _equivalent(section: StiffnessSection) -> list[tuple[float, float]]:
+    """Rectangle with the radii of gyration of a section."""
+    y, z = (np.sqrt(3 * bending / section.axial)
+            for bending in (section.bending_z, section.bending_y))
+    return [(-y, -z), (y, -z), (y, z), (-y, z)]
 
 
 @dataclass(frozen=True, eq=False)

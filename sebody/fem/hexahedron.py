@@ -7,9 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from sebody import inputs
-from sebody.fem.model import SOLID, FEModel, assemble
+from sebody.fem.layout import SOLID
+from sebody.fem.model import FEModel, assemble
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
+_MESHIO = [0, 1, 3, 2, 4, 5, 7, 6]  # the same corners in the order of meshio
 
 
 def hexahedral_block(
@@ -66,7 +68,8 @@ def hexahedral_block(
         for matrix in matrices
     )
     return FEModel(stiffness, mass, nodes, SOLID,
-                   geometric_stiffness=BrickPrestress(dofs, stresses, slopes, 3 * len(nodes)))
+                   geometric_stiffness=BrickPrestress(dofs, stresses, slopes, 3 * len(nodes)),
+                   cells=[("hexahedron", connectivity[:, _MESHIO])])
 
 
 class BrickPrestress:
@@ -118,7 +121,7 @@ def _brick(
     slopes : (8, 8, 3)
         Gradients of the shape functions of the nodes there.
     """
-    elasticity = _elasticity(youngs_modulus, poisson_ratio)
+    law = elasticity(youngs_modulus, poisson_ratio)
     weight = np.prod(edges) / 8
     full, mass = np.zeros((33, 33)), np.zeros((8, 8))
     strains, gradients = [], []
@@ -133,24 +136,24 @@ def _brick(
         gradients.append(slopes * 2 / edges)
         strain = _strain(gradients[-1])
         strains.append(strain)
-        full += weight * strain.T @ elasticity @ strain
+        full += weight * strain.T @ law @ strain
         mass += weight * density * np.outer(shape, shape)
     own, extra = slice(0, 24), slice(24, 33)
     condensed = np.linalg.solve(full[extra, extra], full[extra, own])
     stiffness = full[own, own] - full[own, extra] @ condensed
     whole = np.vstack([np.eye(24), -condensed])     # incompatible modes follow the nodes
-    stresses = weight * elasticity @ np.array(strains) @ whole
+    stresses = weight * law @ np.array(strains) @ whole
     return ((stiffness + stiffness.T) / 2, np.kron(mass, np.eye(3)), stresses,
             np.array(gradients)[:, :8])
 
 
-def _elasticity(youngs_modulus: float, poisson_ratio: float) -> NDArray:
+def elasticity(youngs_modulus: float, poisson_ratio: float) -> NDArray:
     """Isotropic stress of the strains (xx, yy, zz, 2 yz, 2 zx, 2 xy), shape (6, 6)."""
     shear = youngs_modulus / (2 * (1 + poisson_ratio))
     lame = 2 * shear * poisson_ratio / (1 - 2 * poisson_ratio)
-    elasticity = np.diag([2 * shear] * 3 + [shear] * 3)
-    elasticity[:3, :3] += lame
-    return elasticity
+    law = np.diag([2 * shear] * 3 + [shear] * 3)
+    law[:3, :3] += lame
+    return law
 
 
 def _strain(slopes: NDArray) -> NDArray:

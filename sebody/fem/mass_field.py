@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
@@ -61,19 +62,71 @@ class MassField:
         return sparse.csc_array(total)
 
 
-def nodal_field(mass: sparse.csc_array, coordinates: NDArray) -> MassField | None:
-    """The nodes of a model without rotations as points; None unless its mass is ``m (x) I``."""
-    dimension = coordinates.shape[1]
-    by_axes = [[mass[i::dimension, k::dimension] for k in range(dimension)]
-               for i in range(dimension)]
-    largest = abs(mass).max()
-    for i in range(dimension):
-        for k in range(dimension):
-            rest = by_axes[i][k] - by_axes[0][0] if i == k else by_axes[i][k]
-            if rest.nnz and abs(rest).max() > _ROUNDING * largest:
-                return None
-    return MassField(coordinates, sparse.eye_array(mass.shape[0], format="csr"),
-                     sparse.csr_array(by_axes[0][0]))
+def nodal_field(mass: sparse.csc_array, coordinates: NDArray, rows: NDArray) -> MassField | None:
+    """The nodes as points, if the mass is that of points: ``m (x) I``, rotary inertia lumped.
+
+    Nodes may lack DOFs, and rotations may be massless (shells and reference nodes of many FE
+    programs). Consistent masses of beams and shells couple rotations to displacements between the
+    nodes: they are none of points at the nodes.
+
+    Parameters
+    ----------
+    mass : (n_dofs, n_dofs), sparse
+    coordinates : (n_nodes, 3), planar (n_nodes, 2)
+    rows : (n_nodes, k)
+        Row of every DOF, -1 for none; translations first.
+
+    Returns
+    -------
+    MassField or None
+        None unless the mass is of this form.
+    """
+    count, dimension = coordinates.shape
+    total = sparse.csr_array(mass)
+    nodes = np.empty(total.shape[0], dtype=int)
+    axes = np.empty(total.shape[0], dtype=int)
+    present = rows >= 0
+    nodes[rows[present]], axes[rows[present]] = np.nonzero(present)
+    entries = total.tocoo()
+    first, second = axes[entries.row], axes[entries.col]
+    moves = first < dimension
+    limit = _ROUNDING * np.sqrt(np.outer(*[_largest(mass, axes < dimension)] * 2))
+    same_axis = moves & (first == second)
+    same_node = ~moves & (second >= dimension) & (nodes[entries.row] == nodes[entries.col])
+    kind = (~moves).astype(int), (second >= dimension).astype(int)
+    if np.any(np.abs(entries.data) > np.where(same_axis | same_node, np.inf, limit[kind])):
+        return None
+    by_axes = []
+    for axis in range(dimension):
+        own = same_axis & (first == axis)
+        at = nodes[entries.row[own]], nodes[entries.col[own]]
+        by_axes.append(sparse.csr_array(sparse.coo_array((entries.data[own], at),
+                                                         shape=(count, count))))
+        rest = by_axes[axis] - by_axes[0]
+        if rest.nnz and abs(rest).max() > limit[0, 0]:
+            return None
+    translation = _selection(rows[:, :dimension], total.shape[0])
+    angles = rows.shape[1] - dimension
+    if not np.any(same_node & (entries.data != 0)):
+        return MassField(coordinates, translation, by_axes[0])
+    inertia = np.zeros((count, angles, angles))
+    inertia[nodes[entries.row[same_node]], first[same_node] - dimension,
+            second[same_node] - dimension] = entries.data[same_node]
+    return MassField(coordinates, translation, by_axes[0],
+                     _selection(rows[:, dimension:], total.shape[0]), inertia)
 
 
-_ROUNDING = 1e-12  # of an assembled matrix, relative to its largest entry
+def _largest(mass: sparse.csc_array, moves: NDArray) -> tuple[float, float]:
+    """Largest masses of translations and of rotations."""
+    diagonal = np.abs(mass.diagonal())
+    return diagonal[moves].max(initial=0.0), diagonal[~moves].max(initial=0.0)
+
+
+def _selection(rows: NDArray, size: int) -> sparse.csr_array:
+    """Picks `rows` (n, k) of a vector, 0 for -1: (n k, size)."""
+    flat = rows.ravel()
+    there = np.flatnonzero(flat >= 0)
+    return sparse.csr_array((np.ones(len(there)), (there, flat[there])), shape=(len(flat), size))
+
+
+_ROUNDING = 1e-12  # of an assembled matrix, relative to its largest entries

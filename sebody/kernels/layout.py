@@ -296,6 +296,11 @@ def packed_size(count: int, rows: int, columns: int) -> int:
     return count * whole_vectors(rows) * (columns + 2) + 4
 
 
+def carried_counts(planar: bool, unknowns: int, damped: bool = False) -> dict[str, int]:
+    """The further counts of option D."""
+    return axes_of(planar) | {"damped": unknowns * damped}
+
+
 def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: int) -> int:
     """Scratch memory of a superelement's kernel: rows, and squares of as many rows."""
     longest = max(unknowns + MARGIN * (work_squares > 0), 9 * rotations)
@@ -343,6 +348,8 @@ class InertiaTraits(NamedTuple):
     summary: str
     material: bool                  # T in material angular velocities; else in those of the frame
     modes_apart: bool = False       # internal modes meet in S, M and C alone, nowhere else
+    rates: bool = False             # T in rates of deformation: frames that depend on the state
+    # alone, and the same kernels for bodies with and without damping
     field: bool = False             # T of the displacement field, from integrals over the body
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 

@@ -86,6 +86,15 @@ class History:
             found += A * np.array([s, w * c, -w * w * s])
         return found
 
+    def _summands(self, k: int, t: float) -> NDArray:
+        """Sums of the sizes of what is added up in `of_piece`: they may cancel but for rounding."""
+        x, polynomial = abs(t - self.times[k]), np.polynomial.Polynomial(np.abs(self.pieces[k]))
+        found = np.array([polynomial.deriv(m)(x) if m else polynomial(x) for m in range(3)])
+        if self.waves:
+            A, w, _ = self.waves[k]
+            found += abs(A) * np.array([1.0, abs(w), w * w])
+        return found
+
     def jumps(self) -> list[tuple[float, NDArray, NDArray]]:
         """Times after the start at which value or rates jump, with what they are on both sides."""
         found = []
@@ -94,7 +103,8 @@ class History:
                 continue
             after = self.of_piece(k, t)
             before = self.of_piece(k - 1, t) if k else np.array([after[0], 0.0, 0.0])
-            if (np.abs(after - before) > SMALL * np.maximum(np.abs(after), np.abs(before))).any():
+            size = np.maximum(np.abs(after), self._summands(k - 1, t) if k else 0.0)
+            if (np.abs(after - before) > SMALL * size).any():
                 found.append((t, before, after))
         return found
 

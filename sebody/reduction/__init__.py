@@ -1,16 +1,22 @@
 """From an FE model to a superelement: reduced matrices, their checks and frame weights."""
 
+from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.boundary import RigidFace
-from sebody.reduction.craig_bampton import ComponentModes, component_modes, craig_bampton
+from sebody.reduction.component import ComponentModes
+from sebody.reduction.craig_bampton import component_modes, craig_bampton
+from sebody.reduction.interfaces import MeanFace, RigidFace
+from sebody.reduction.methods import reduce
 from sebody.reduction.weights import body_weights, frame_weights
 
 __all__ = [
+    "Accuracy",
     "ComponentModes",
+    "MeanFace",
     "ReducedBody",
     "RigidFace",
     "body_weights",
     "component_modes",
     "craig_bampton",
     "frame_weights",
+    "reduce",
 ]

@@ -13,6 +13,8 @@ from sebody.reduction import checks
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.summary import mode_lines, place
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -45,6 +47,8 @@ class ReducedBody:
         What inertia option C needs beyond the reduced matrices.
     recovery : Recovery, optional
         Shapes of the FE model, for `displacements`.
+    notes : tuple of str
+        How the body was made, in sentences, for `summary`.
 
     Raises
     ------
@@ -61,6 +65,7 @@ class ReducedBody:
     damping: NDArray | None = None
     invariants: InertiaInvariants | None = None
     recovery: Recovery | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         coordinates = inputs.reals(self.coordinates, "coordinates",
@@ -71,6 +76,11 @@ class ReducedBody:
         names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
         self._store("coordinates", coordinates)
         object.__setattr__(self, "keeps", keeps)
+        remedy = "give a list of texts"
+        notes = inputs.items(self.notes, "notes", remedy)
+        if not all(isinstance(note, str) for note in notes):
+            raise inputs.refusal("notes", self.notes, remedy)
+        object.__setattr__(self, "notes", tuple(notes))
         for name in ("stiffness", "mass"):
             matrix = inputs.reals(getattr(self, name), name, "give a matrix of real numbers")
             checks.check_matrix(name, matrix, names)
@@ -113,21 +123,7 @@ class ReducedBody:
     def rigid_modes_about(self, point: ArrayLike) -> NDArray:
         """Rigid modes with rotations about `point`: rows e, e x (X_i - point); e; zero."""
         point = inputs.vector(point, "point", self.coordinates.shape[1])
-        arms = self.coordinates[list(self.position_nodes)] - point
-        count, dimension = arms.shape
-        if self.planar:
-            velocities = np.column_stack([-arms[:, 1], arms[:, 0]]).reshape(-1, 1)
-        else:
-            # Row of node i: (e_1 x a, e_2 x a, e_3 x a) = -skew(a).
-            velocities = np.cross(np.eye(3), arms[:, None, :]).transpose(0, 2, 1).reshape(-1, 3)
-        axes = velocities.shape[1]
-        angles = len(self.rotation_nodes)
-        positions = np.hstack([np.tile(np.eye(dimension), (count, 1)), velocities])
-        rotations = np.hstack(
-            [np.zeros((angles * axes, dimension)), np.tile(np.eye(axes), (angles, 1))]
-        )
-        internal = np.zeros((self.modes, dimension + axes))
-        return np.vstack([positions, rotations, internal])
+        return rigid_motions(self.coordinates, self.keeps, len(self.mass), point)
 
     @cached_property
     def total_mass(self) -> float:
@@ -151,6 +147,20 @@ class ReducedBody:
         moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
         return _read_only(middle + moments / self.total_mass)
 
+    def summary(self) -> str:
+        """Order, mass, frequencies and effective masses of the internal modes, and the notes."""
+        nodes, n = len(self.coordinates), len(self.mass)
+        centre = self.centre_of_mass
+        kept = zip(self.coordinates, self.keeps, strict=True)
+        return "\n".join([
+            f"{nodes} boundary node{'s' * (nodes > 1)}, {n - self.modes} boundary coordinates, "
+            f"{self.modes} internal modes",
+            f"mass {self.total_mass:.6g}, centre of mass {place(centre)}",
+            *(f"boundary node {k} at {place(point)} keeps {keep!r}"
+              for k, (point, keep) in enumerate(kept)),
+            *mode_lines(self.stiffness, self.mass, self.rigid_modes_about(centre), self.modes),
+            *self.notes])
+
     def displacements(self, y: ArrayLike) -> NDArray:
         """Displacements of all FE nodes, with those of second order, (n_nodes, dofs_per_node).
 
@@ -167,10 +177,14 @@ class ReducedBody:
         if self.recovery is None:
             raise InputError("the body has no shapes of an FE model, so it knows no displacements "
                              "inside; reduce the FE model with craig_bampton")
-        y = np.asarray(y, dtype=float)
-        following = np.zeros(0) if self.invariants is None else self.invariants.Q @ y @ y / 2
-        field = self.recovery.shapes @ np.concatenate([y, following])
+        field = self.recovery.all_dofs(self.with_followers(np.asarray(y, dtype=float)[None]))
         return field.reshape(len(self.recovery.coordinates), -1)
+
+    def with_followers(self, y: NDArray) -> NDArray:
+        """Reduced coordinates (k, n) with those that follow in second order, (k, N)."""
+        if self.invariants is None:
+            return y
+        return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
 
     def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> "ReducedBody":

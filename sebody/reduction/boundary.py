@@ -11,81 +11,91 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.reduction.checks import KEEPS
+from sebody.reduction.interfaces import MeanFace, MeanMotion, RigidFace
+from sebody.reduction.ties import Ties, collinear
 
-
-@dataclass(frozen=True, eq=False)
-class RigidFace:
-    """FE nodes that move as a rigid body with a boundary node of their own (RBE2).
-
-    Parameters
-    ----------
-    point : (3,), planar (2,)
-        The boundary node, in FE axes [length].
-    nodes : sequence of int
-        FE nodes tied to it, with all their DOFs.
-
-    Raises
-    ------
-    InputError
-        No finite point, or no nodes.
-    """
-
-    point: NDArray
-    nodes: tuple[int, ...]
-
-    def __post_init__(self) -> None:
-        point = inputs.vector(self.point, "point of a rigid face")
-        remedy = "name the FE nodes tied to it"
-        nodes = tuple(inputs.integer(node, "node of a rigid face", remedy=remedy)
-                      for node in inputs.items(self.nodes, "nodes of a rigid face", remedy))
-        if not nodes:
-            raise InputError(f"a rigid face has no nodes: {remedy}")
-        object.__setattr__(self, "point", point)
-        object.__setattr__(self, "nodes", nodes)
-
-
-BoundaryItem = tuple[int | RigidFace, str]
+BoundaryItem = tuple[int | RigidFace | MeanFace, str]
+Items = Mapping[int | RigidFace | MeanFace, str] | Iterable[BoundaryItem]
 
 
 @dataclass(frozen=True, eq=False)
 class Boundary:
-    """The reduced boundary coordinates and what they do to the FE model.
+    """The reduced boundary coordinates and what they are among the DOFs of the FE model.
+
+    The DOFs here are those that rigid faces leave independent, see `Ties`. A boundary coordinate is
+    either one of them or a mean of several.
 
     Parameters
     ----------
     coordinates : (n_nodes, 3), planar (n_nodes, 2)
     keeps : tuple of str
-    motion : (n_dofs, n_boundary), sparse
-        FE DOFs that unit boundary coordinates move; DOFs with an empty row are internal.
-    faces : tuple of (columns, dofs, arms)
-        Of each rigid face: columns of its rotation, translational DOFs (k, D) of its FE nodes and
-        their arms (k, D) from the boundary node.
+    ties : Ties
+    held, held_columns : (h,) of int
+        DOFs that are boundary coordinates, and which.
+    means : (m, n_independent), sparse
+        Boundary coordinates that are means of DOFs.
+    mean_columns : (m,) of int
+        Which these are.
+    mean_motions : tuple of (rows of translation, rows of rotation, MeanMotion)
+        Of each mean face whose rotation matters: its rows in `means`, and what they are made of.
+    notes : tuple of str
+        What each boundary node is.
     """
 
     coordinates: NDArray
     keeps: tuple[str, ...]
-    motion: sparse.csc_array
-    faces: tuple[tuple[NDArray, NDArray, NDArray], ...]
+    ties: Ties
+    held: NDArray
+    held_columns: NDArray
+    means: sparse.csr_array
+    mean_columns: NDArray
+    mean_motions: tuple[tuple[NDArray, NDArray, MeanMotion], ...]
+    notes: tuple[str, ...] = ()
 
-    def second_order(self, forces: NDArray) -> NDArray:
-        """Second derivative of the work of forces (n_dofs,) on the turning of rigid faces.
+    @property
+    def size(self) -> int:
+        """Number of boundary coordinates."""
+        return len(self.held) + len(self.mean_columns)
 
-        A face turned by psi moves a node at the arm r by ``psi x (psi x r) / 2`` beyond the linear
-        ``psi x r``: forces f that the prestress has there add ``(f r^T + r f^T) / 2 - f . r I``.
+    def unit_motions(self) -> tuple[NDArray, NDArray]:
+        """DOFs (n_independent, size) and means (m, size) of unit boundary coordinates."""
+        moved = np.zeros((self.ties.size, self.size))
+        moved[self.held, self.held_columns] = 1.0
+        values = np.zeros((len(self.mean_columns), self.size))
+        values[np.arange(len(values)), self.mean_columns] = 1.0
+        return moved, values
+
+    def values(self, shapes: NDArray) -> NDArray:
+        """Boundary coordinates (size, n) of shapes (n_independent, n)."""
+        result = np.zeros((self.size, shapes.shape[1]))
+        result[self.held_columns] = shapes[self.held]
+        result[self.mean_columns] = self.means @ shapes
+        return result
+
+    def second_order(self, forces: NDArray, on_means: NDArray, basis: NDArray) -> NDArray:
+        """Second derivative of the work of a prestress on the turning of faces.
+
+        Parameters
+        ----------
+        forces : (n_dofs,)
+            Internal forces at the FE DOFs.
+        on_means : (m,)
+            Forces and moments that hold the means.
+        basis : (n_independent, n)
+            Shapes of the reduced coordinates.
         """
-        size = self.motion.shape[1]
-        result = np.zeros((size, size))
-        for columns, dofs, arms in self.faces:
-            moments = forces[dofs].T @ arms
-            whole = (moments + moments.T) / 2 - np.trace(moments) * np.eye(len(moments))
-            # in a plane the angle turns the arm about the third axis: - f . r
-            block = -np.trace(moments) if len(columns) == 1 else whole
-            result[np.ix_(columns, columns)] += block
+        result = self.ties.second_order(forces, basis)
+        for moves, turns, motion in self.mean_motions:
+            dimension = self.coordinates.shape[1]
+            force, moment = np.zeros(dimension), np.zeros(3 if dimension == 3 else 1)
+            force[:len(moves)] = on_means[moves]
+            moment[:len(turns)] = on_means[turns]
+            shapes = basis[self.ties.independent[motion.rows]]
+            result += motion.second_order(force, moment, shapes)
         return result
 
 
-def boundary_of(fe_model: FEModel,
-                items: Mapping[int | RigidFace, str] | Iterable[BoundaryItem]) -> Boundary:
+def boundary_of(fe_model: FEModel, items: Items) -> Boundary:
     """Boundary coordinates: positions of all nodes in order, then rotations.
 
     Raises
@@ -94,54 +104,74 @@ def boundary_of(fe_model: FEModel,
         Unknown or repeated nodes, or triplets that nodes do not have.
     """
     pairs = _pairs(fe_model, items)
-    blocks, faces, width = [], [], 0
+    rigid = [item for item, _ in pairs if isinstance(item, RigidFace)]
+    ties = Ties(fe_model, rigid)
+    motions = {item: _mean_motion(fe_model, item, keep) for item, keep in pairs
+               if isinstance(item, MeanFace)}
+    held, held_columns, means, mean_columns = [], [], [], []
+    mean_rows = {item: {} for item in motions}
+    width = 0
     for kind in ("translation", "rotation"):
         for item, keep in pairs:
             if keep not in ("full", kind):
+                mean_rows.get(item, {})[kind] = np.zeros(0, dtype=int)
                 continue
-            blocks.append(_motion(fe_model, item, kind))
-            columns = width + np.arange(blocks[-1].shape[1])
-            width += len(columns)
-            if isinstance(item, RigidFace) and kind == "rotation":
-                faces.append((columns, _translations(fe_model, item), _arms(fe_model, item)))
-    points = [item.point if isinstance(item, RigidFace) else fe_model.coordinates[item]
+            if isinstance(item, MeanFace):
+                found = _mean_rows(motions[item], kind, ties)
+                mean_rows[item][kind] = len(mean_columns) + np.arange(found.shape[0])
+                means.append(found)
+                mean_columns.extend(width + np.arange(found.shape[0]))
+                width += found.shape[0]
+            else:
+                own = (ties.face_rows(item, kind) if isinstance(item, RigidFace)
+                       else ties.independent[fe_model.dofs(item, kind)])
+                held.extend(own)
+                held_columns.extend(width + np.arange(len(own)))
+                width += len(own)
+    points = [motions[item].point if isinstance(item, MeanFace) else
+              item.point if isinstance(item, RigidFace) else fe_model.coordinates[item]
               for item, _ in pairs]
-    return Boundary(np.array(points, dtype=float), tuple(keep for _, keep in pairs),
-                    sparse.hstack(blocks, format="csc"), tuple(faces))
+    return Boundary(
+        np.array(points, dtype=float), tuple(keep for _, keep in pairs), ties,
+        np.array(held, dtype=int), np.array(held_columns, dtype=int),
+        sparse.vstack(means, format="csr") if means else sparse.csr_array((0, ties.size)),
+        np.array(mean_columns, dtype=int),
+        tuple((mean_rows[item]["translation"], mean_rows[item]["rotation"], motion)
+              for item, motion in motions.items()
+              if len(mean_rows[item]["rotation"]) or motion.off_centre),
+        tuple(f"boundary node {k} is {_described(fe_model, item)}"
+              for k, (item, _) in enumerate(pairs)))
 
 
-def _translations(fe_model: FEModel, face: RigidFace) -> NDArray:
-    return np.array([fe_model.dofs(node, "translation") for node in face.nodes])
+def _described(fe_model: FEModel, item: int | RigidFace | MeanFace) -> str:
+    """An interface in words."""
+    if isinstance(item, RigidFace):
+        return f"a rigid face of {len(item.nodes)} nodes"
+    if isinstance(item, MeanFace):
+        how = {"area": "by area", "equal": "equal"}.get(str(item.weights), "given")
+        return f"the mean of {len(item.nodes)} nodes, weights {how}"
+    return f"FE {fe_model.node_name(item)}"
 
 
-def _arms(fe_model: FEModel, face: RigidFace) -> NDArray:
-    return fe_model.coordinates[list(face.nodes)] - face.point
+def _mean_motion(fe_model: FEModel, face: MeanFace, keep: str) -> MeanMotion:
+    """The mean, refused where its nodes do not hold the rotation that is needed."""
+    motion = MeanMotion(fe_model, face)
+    if not motion.turns and (keep != "translation" or motion.off_centre):
+        raise InputError("the nodes of a mean face lie on a line, so they do not hold its rotation "
+                         "about the line: name more nodes, or keep 'translation' at their centre")
+    return motion
 
 
-def _motion(fe_model: FEModel, item: int | RigidFace, kind: str) -> sparse.coo_array:
-    """FE DOFs of a unit triplet of a node or rigid face, (n_dofs, 3), planar (n_dofs, 2 or 1)."""
-    nodes = item.nodes if isinstance(item, RigidFace) else (item,)
-    own = np.array([fe_model.dofs(node, kind) for node in nodes])
-    unit = np.broadcast_to(np.eye(own.shape[1]), (len(nodes), own.shape[1], own.shape[1]))
-    dofs, motion = own, unit
-    if isinstance(item, RigidFace) and kind == "rotation":
-        arms = _arms(fe_model, item)
-        if arms.shape[1] == 2:
-            turned = np.stack([-arms[:, 1], arms[:, 0]], axis=1)[:, :, None]
-        else:
-            turned = np.cross(np.eye(3), arms[:, None, :]).transpose(0, 2, 1)
-        # FE nodes without rotations have no rows of their own to turn
-        unit = unit if own.size else np.zeros((len(nodes), 0, turned.shape[2]))
-        dofs = np.hstack([_translations(fe_model, item), own])
-        motion = np.concatenate([turned, unit], axis=1)
-    rows = np.repeat(dofs.ravel(), motion.shape[2])
-    columns = np.tile(np.arange(motion.shape[2]), dofs.size)
-    return sparse.coo_array((motion.ravel(), (rows, columns)),
-                            shape=(fe_model.stiffness.shape[0], motion.shape[2]))
+def _mean_rows(motion: MeanMotion, kind: str, ties: Ties) -> sparse.coo_array:
+    """Mean translations or rotations as rows of the independent DOFs."""
+    weights = motion.translation() if kind == "translation" else motion.rotation()
+    count = len(weights)
+    columns = np.tile(ties.independent[motion.rows].ravel(), count)
+    rows = np.repeat(np.arange(count), motion.rows.size)
+    return sparse.coo_array((weights.ravel(), (rows, columns)), shape=(count, ties.size))
 
 
-def _pairs(fe_model: FEModel, items: Mapping[int | RigidFace, str] | Iterable[BoundaryItem]
-           ) -> list[BoundaryItem]:
+def _pairs(fe_model: FEModel, items: Items) -> list[BoundaryItem]:
     """Boundary nodes and what they keep."""
     remedy = "give pairs (node, 'full', 'translation' or 'rotation'), or a dict of them"
     pairs = []
@@ -151,54 +181,84 @@ def _pairs(fe_model: FEModel, items: Mapping[int | RigidFace, str] | Iterable[Bo
         if len(pair) != 2:
             raise inputs.refusal("a boundary node", one, remedy)
         node = pair[0]
-        pairs.append((node if isinstance(node, RigidFace) else
+        pairs.append((node if isinstance(node, RigidFace | MeanFace) else
                       inputs.integer(node, "boundary node"), pair[1]))
     if not pairs:
         raise InputError("boundary is empty; name one boundary node at least")
-    taken = [node for item, _ in pairs
-             for node in (item.nodes if isinstance(item, RigidFace) else (item,))]
+    for item, keep in pairs:
+        what, nodes = _named(item)
+        count = len(fe_model.coordinates)
+        for node in nodes:
+            if not 0 <= node < count:
+                raise InputError(f"{what.format(node)} unknown: the model has nodes 0 to "
+                                 f"{count - 1}")
+        if not isinstance(keep, str) or keep not in KEEPS:
+            raise InputError(f"{what.format(nodes[0])} keeps {keep!r}; choose one of "
+                             f"{', '.join(KEEPS)}")
+    _check_shared(fe_model, pairs)
     for item, keep in pairs:
         if isinstance(item, RigidFace):
-            _check_face(fe_model, item, keep, taken)
+            _check_rigid(fe_model, item, keep)
+        elif isinstance(item, MeanFace):
+            _check_dofs(fe_model, "node {} of a mean face", item.nodes, "translation",
+                        "name nodes that have them")
         else:
-            _check_node(fe_model, item, keep, taken)
+            _check_node(fe_model, item, keep)
     return pairs
 
 
-def _check_node(fe_model: FEModel, node: int, keep: str, taken: list[int]) -> None:
-    count = len(fe_model.coordinates)
-    if not 0 <= node < count:
-        raise InputError(f"boundary node {node} unknown; the model has nodes 0 to {count - 1}")
-    if taken.count(node) > 1:
-        raise InputError(f"boundary node {node} appears more than once; name it once")
-    if not isinstance(keep, str) or keep not in KEEPS:
-        raise InputError(
-            f"boundary node {node} keeps {keep!r}; choose one of {', '.join(KEEPS)}"
-        )
-    if keep != "translation" and not len(fe_model.dofs(node, "rotation")):
-        raise InputError(
-            f"boundary node {node} keeps {keep!r}, but the model's nodes have no rotations; "
-            "use 'translation', or a RigidFace, which turns as a whole"
-        )
+def _named(item: int | RigidFace | MeanFace) -> tuple[str, tuple[int, ...]]:
+    """What messages call a node of a boundary item, and its nodes."""
+    if isinstance(item, RigidFace):
+        return "node {} of a rigid face", item.nodes
+    if isinstance(item, MeanFace):
+        return "node {} of a mean face", item.nodes
+    return "boundary node {}", (item,)
 
 
-def _check_face(fe_model: FEModel, face: RigidFace, keep: str, taken: list[int]) -> None:
-    count, dimension = fe_model.coordinates.shape
+def _check_shared(fe_model: FEModel, pairs: list[BoundaryItem]) -> None:
+    """Refuse nodes that two interfaces, or one twice, lay claim to."""
+    owner: dict[int, int] = {}
+    for position, (item, _) in enumerate(pairs):
+        for node in _named(item)[1]:
+            if node in owner:
+                whose = ("" if owner[node] == position else
+                         f", in the interfaces {owner[node]} and {position}")
+                raise InputError(f"boundary {fe_model.node_name(node)} appears more than once"
+                                 f"{whose}; name it once")
+            owner[node] = position
+
+
+def _check_node(fe_model: FEModel, node: int, keep: str) -> None:
+    if keep != "translation" and "rz" not in fe_model.node_dofs:
+        raise InputError(
+            f"boundary {fe_model.node_name(node)} keeps {keep!r}, but the model's nodes have no "
+            "rotations; use 'translation', or a RigidFace or MeanFace, which turn as a whole"
+        )
+    kinds = ("translation", "rotation") if keep == "full" else (keep,)
+    for kind in kinds:
+        _check_dofs(fe_model, "boundary node {}", (node,), kind,
+                    f"it keeps {keep!r}: keep what it has, or use a RigidFace or MeanFace")
+
+
+def _check_dofs(fe_model: FEModel, what: str, nodes: Iterable[int], kind: str, remedy: str) -> None:
+    """Refuse nodes that lack a translation or a rotation."""
+    dimension = fe_model.coordinates.shape[1]
+    part = slice(0, dimension) if kind == "translation" else slice(dimension, None)
+    names = fe_model.node_dofs[part]
+    for node in nodes:
+        missing = [name for name, row in zip(names, fe_model.rows[node, part], strict=True)
+                   if row < 0]
+        if missing:
+            called = what.format(fe_model.node_name(node).removeprefix("node "))
+            raise InputError(f"{called} has no {', '.join(missing)}; {remedy}")
+
+
+def _check_rigid(fe_model: FEModel, face: RigidFace, keep: str) -> None:
+    dimension = fe_model.coordinates.shape[1]
     if face.point.shape != (dimension,):
         raise InputError(f"point of a rigid face is {face.point}: give {dimension} finite numbers")
-    if keep != "full":
-        raise InputError(f"a rigid face keeps {keep!r}: its boundary node is 'full'")
-    for node in face.nodes:
-        if not 0 <= node < count:
-            raise InputError(f"node {node} of a rigid face unknown: the model has nodes 0 to "
-                             f"{count - 1}")
-        if taken.count(node) > 1:
-            raise InputError(f"boundary node {node} appears more than once; name it once")
-    if not len(fe_model.dofs(0, "rotation")) and _collinear(_arms(fe_model, face)):
+    turning = fe_model.rows[list(face.nodes), dimension:] >= 0
+    if not turning.any() and collinear(fe_model.coordinates[list(face.nodes)]):
         raise InputError("the nodes of a rigid face lie on a line, so they do not hold its "
                          "rotation about the line: name more nodes")
-
-
-def _collinear(points: NDArray) -> bool:
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    return len(points) < 3 or spread[1] < 1e-8 * spread[0]

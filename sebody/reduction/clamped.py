@@ -1,27 +1,43 @@
 """The body with its boundary clamped: static solutions and vibration modes of its interior."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.linalg import eigh
-from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
+from scipy import linalg, sparse
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from sebody.errors import InputError
+from sebody.reduction.factor import FactoredStiffness, motions_without_strain
 
 _DENSE_LIMIT = 1000  # internal DOFs up to which the dense eigenvalue solver is used
-_SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which the internal stiffness is singular
 _REPEATED = 1e-6  # relative distance below which eigenvalues or components count as equal
+_HELD = 1e-10  # singular value of the means of free motions below which a motion is not held
+_REMEDY = "keep more boundary nodes or triplets, or connect loose parts"
 
 
 class ClampedInterior:
-    """Internal DOFs of a body and the factored stiffness S_II that holds them.
+    """DOFs whose motion the boundary does not prescribe, and what holds them: stiffness and means.
+
+    Static solutions are those of ``[S -A^T; A 0] [q; f] = [p; b]``: least strain energy under
+    forces p at prescribed means b of the DOFs; f are the forces that the means take. Means alone
+    may hold the body, so S has motions N without strain; with a generalised inverse ``S^-``
+
+        q = S^- (p + A^T f) + N a,   A q = b,   N^T (p + A^T f) = 0.
 
     Parameters
     ----------
-    stiffness, mass : (n_dofs, n_dofs), sparse
-        FE matrices.
-    internal : (n_internal,)
-        Rows of the internal DOFs.
+    stiffness, mass : (n, n), sparse
+    held : (h,)
+        Rows whose displacement is prescribed.
+    means : (m, n), sparse, optional
+        Prescribed means of other rows.
+    rigid : (n, r), optional
+        Rigid motions of the free body, times `lengths`.
+    lengths : (n,), optional
+        Unit of the displacement over that of each DOF.
+    name : function, optional
+        Name of the DOF of a row, for messages.
 
     Raises
     ------
@@ -29,83 +45,153 @@ class ClampedInterior:
         A mechanism inside.
     """
 
-    def __init__(self, stiffness: sparse.csc_array, mass: sparse.csc_array, internal: NDArray):
-        self.internal, self._size = internal, stiffness.shape[0]
-        self._factor = None
-        if len(internal):
-            self._stiffness = stiffness[internal][:, internal]
-            self._mass = mass[internal][:, internal]
-            self._factor = _factorise(self._stiffness)
+    def __init__(self, stiffness: sparse.csc_array, mass: sparse.csc_array, held: NDArray,
+                 means: sparse.csr_array | None = None, rigid: NDArray | None = None,
+                 lengths: NDArray | None = None,
+                 name: Callable[[int], str] = "row {}".format):
+        size = stiffness.shape[0]
+        self.internal = internal = np.setdiff1d(np.arange(size), held)
+        self._size = size
+        self._means = sparse.csr_array((0, size)) if means is None else means
+        self._inner_means = self._means[:, internal]
+        self._stiffness = stiffness[internal][:, internal]
+        self._mass = mass[internal][:, internal]
+        free = np.zeros((size, 0))
+        if rigid is not None:
+            free = motions_without_strain(stiffness, rigid, lengths, held)
+        self._free = free[internal]
+        if lengths is not None:
+            self._free = self._free / lengths[internal, None]
+        self._check_held(free[internal], name)
+        self._factor = FactoredStiffness(self._stiffness, free[internal],
+                                         lambda row: name(internal[row]), _REMEDY)
+        self._border()
+        self._known: tuple[NDArray, NDArray] | None = None
 
-    def displacement(self, forces: NDArray) -> NDArray:
-        """Static displacement (n_dofs, k) under forces (n_dofs, k) on internal DOFs."""
-        result = np.zeros((self._size, forces.shape[1]))
-        if self._factor is not None:
-            result[self.internal] = self._factor.solve(np.ascontiguousarray(forces[self.internal]))
-        return result
+    @property
+    def count(self) -> int:
+        """Number of independent motions with the boundary clamped."""
+        return len(self.internal) - self._means.shape[0]
 
-    def vibrations(self, modes: int) -> tuple[NDArray, NDArray]:
-        """Lowest modes (5): omega^2 (m,) and mass-normalised shapes (n_dofs, m)."""
-        if modes == 0:
-            return np.zeros(0), np.zeros((self._size, 0))
-        omega_squared, inner = _fixed_interface_modes(self._stiffness, self._mass, self._factor,
-                                                      modes)
-        shapes = np.zeros((self._size, modes))
-        shapes[self.internal] = inner
-        return omega_squared, shapes
-
-
-def _factorise(stiffness: sparse.csc_array) -> SuperLU:
-    """Factor the internal stiffness S_II, refusing one that leaves a motion free."""
-    options = {"SymmetricMode": True}
-    # SciPy 1.11 selects rows with 64-bit indices, which its SuperLU does not accept
-    short = (array.astype(np.intc) for array in (stiffness.indices, stiffness.indptr))
-    matrix = sparse.csc_array((stiffness.data, *short), shape=stiffness.shape)
-    try:
-        factor = splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-        pivots = factor.U.diagonal()[factor.perm_c]
-        weakest = np.min(pivots / stiffness.diagonal())
-    except RuntimeError:  # SuperLU met a pivot of exactly zero
-        weakest = 0.0
-    if not weakest > _SINGULAR:
+    def _check_held(self, free: NDArray, name: Callable[[int], str]) -> None:
+        """Refuse a motion without strain, `free` in comparable units, that the means leave free."""
+        if not free.shape[1]:
+            return
+        held = self._inner_means @ self._free
+        scale = np.abs(held).max(axis=1, initial=0.0)[:, None]
+        _, values, turn = linalg.svd(np.vstack([held / np.where(scale > 0, scale, 1.0),
+                                                np.zeros((free.shape[1],) * 2)]))
+        if values[-1] > _HELD:
+            return
+        largest = int(np.argmax(np.abs(free @ turn[-1])))
         raise InputError(
             "S_II is singular: with the boundary clamped the body can still move without strain "
-            "(a mechanism inside); keep more boundary nodes or triplets, or connect loose parts"
-        )
-    return factor
+            f"(a mechanism inside): the whole body can, most at {name(self.internal[largest])}; "
+            f"{_REMEDY}")
 
+    def _border(self) -> None:
+        """Answers to the unknowns (f, a), and the inverse of their equations."""
+        count, means = self._means.shape[0], self._inner_means
+        self._answers = np.hstack([self._factor.solve(means.T.toarray()), self._free])
+        corner = np.zeros((self._answers.shape[1],) * 2)
+        corner[:count] = means @ self._answers
+        corner[count:, :count] = corner[:count, count:].T
+        # rows of translations and rotations, forces and amplitudes: no one's units matter
+        scale = np.ones(len(corner))
+        for _ in range(4):
+            largest = np.abs(scale[:, None] * corner * scale).max(axis=0, initial=0.0)
+            scale /= np.sqrt(np.where(largest > 0, largest, 1.0))
+        self._scale = scale
+        self._corner = linalg.lu_factor(scale[:, None] * corner * scale) if len(corner) else None
 
-def _fixed_interface_modes(
-    stiffness: sparse.csc_array, mass: sparse.csc_array, factor: SuperLU, modes: int
-) -> tuple[NDArray, NDArray]:
-    """Lowest `modes` solutions of (5): omega^2 (m,) and mass-normalised shapes (n_internal, m)."""
-    size = stiffness.shape[0]
-    wanted = min(size, modes + 4)  # a few more, so that a repeated frequency is not cut in two
-    if size <= _DENSE_LIMIT or wanted >= size:
+    def answer(self, forces: NDArray, values: NDArray | None = None) -> tuple[NDArray, NDArray]:
+        """Displacements (n, k) under forces (n, k) at means (m, k), by default 0; forces on those.
+
+        Forces on held rows do nothing. Returns the displacements and the forces (m, k) that act on
+        the means.
+        """
+        count = self._means.shape[0]
+        inner, taken = self._inner_answer(forces[self.internal], values)
+        result = np.zeros(forces.shape)
+        result[self.internal] = inner
+        return result, taken[:count]
+
+    def _inner_answer(self, forces: NDArray, values: NDArray | None = None
+                      ) -> tuple[NDArray, NDArray]:
+        """The same of internal DOFs; forces and amplitudes (f, a)."""
+        inner = self._factor.solve(forces)
+        if self._corner is None:
+            return inner, np.zeros((0, *forces.shape[1:]))
+        missing = -(self._inner_means @ inner)
+        if values is not None:
+            missing = missing + values
+        scale = self._scale.reshape(-1, *[1] * (forces.ndim - 1))
+        unknowns = scale * linalg.lu_solve(
+            self._corner, scale * np.concatenate([missing, -(self._free.T @ forces)]))
+        return inner + self._answers @ unknowns, unknowns
+
+    def displacement(self, forces: NDArray) -> NDArray:
+        """Static displacement (n, k) under forces (n, k), the boundary clamped."""
+        return self.answer(forces)[0]
+
+    def vibrations(self, modes: int) -> tuple[NDArray, NDArray]:
+        """Lowest modes (5): omega^2 (m,) and mass-normalised shapes (n, m).
+
+        Raises
+        ------
+        InputError
+            Fewer motions that carry mass.
+        """
+        omega_squared, shapes = self.lowest(modes)
+        if len(omega_squared) < modes:
+            raise InputError(
+                f"modes is {modes}, but only {len(omega_squared)} internal motions carry mass; ask "
+                "for fewer"
+            )
+        return omega_squared, shapes
+
+    def lowest(self, modes: int) -> tuple[NDArray, NDArray]:
+        """The same, or all modes if there are fewer."""
+        if self._known is None or len(self._known[0]) < min(modes, self.count):
+            self._known = self._computed(modes)
+        shapes = np.zeros((self._size, min(modes, len(self._known[0]))))
+        shapes[self.internal] = self._known[1][:, :modes]
+        return self._known[0][:modes], shapes
+
+    def _computed(self, modes: int) -> tuple[NDArray, NDArray]:
+        """At least the lowest modes, of internal DOFs, in a form that a solver does not choose."""
+        if not modes:
+            return np.zeros(0), np.zeros((len(self.internal), 0))
+        # a few more, so that a repeated frequency is not cut in two
+        wanted = min(self.count, modes + 4)
+        size = len(self.internal)
+        if size <= _DENSE_LIMIT or wanted >= size:
+            omega_squared, inner = self._dense_modes(wanted)
+        else:
+            omega_squared, inner = self._sparse_modes(wanted)
+        return omega_squared, inner @ canonical_turn(omega_squared, inner)
+
+    def _dense_modes(self, wanted: int) -> tuple[NDArray, NDArray]:
         # The inverse problem: low modes to full accuracy, and massless DOFs do no harm.
-        inverse, shapes = eigh(
-            mass.toarray(), stiffness.toarray(), subset_by_index=[size - wanted, size - 1]
-        )
+        mass, stiffness = self._mass.toarray(), self._stiffness.toarray()
+        count = self._means.shape[0]
+        if count:
+            still = linalg.qr(self._inner_means.T.toarray())[0][:, count:]     # their means are 0
+            mass, stiffness = still.T @ mass @ still, still.T @ stiffness @ still
+        size = len(mass)
+        inverse, shapes = linalg.eigh(mass, stiffness, subset_by_index=[size - wanted, size - 1])
         inverse, shapes = inverse[::-1], shapes[:, ::-1]
         with_mass = inverse > 1e-14 * inverse[0]
         omega_squared = 1.0 / inverse[with_mass]
         shapes = shapes[:, with_mass] * np.sqrt(omega_squared)
-    else:
-        omega_squared, shapes = eigsh(
-            stiffness,
-            wanted,
-            mass,
-            sigma=0.0,
-            OPinv=LinearOperator(stiffness.shape, factor.solve),
-            v0=np.random.default_rng(0).standard_normal(size),
-        )
-    if len(omega_squared) < modes:
-        raise InputError(
-            f"modes is {modes}, but only {len(omega_squared)} internal motions carry mass; ask "
-            "for fewer"
-        )
-    shapes = shapes @ canonical_turn(omega_squared, shapes)
-    return omega_squared[:modes], shapes[:, :modes]
+        return omega_squared, still @ shapes if count else shapes
+
+    def _sparse_modes(self, wanted: int) -> tuple[NDArray, NDArray]:
+        start = np.random.default_rng(0).standard_normal(len(self.internal))
+        if self._corner is not None:
+            start = self._inner_answer(start)[0]        # whose means are 0
+        inverse = LinearOperator(self._stiffness.shape, lambda force: self._inner_answer(force)[0])
+        return eigsh(self._stiffness, wanted, self._mass, sigma=0.0, OPinv=inverse, v0=start)
 
 
 def canonical_turn(values: NDArray, shapes: NDArray) -> NDArray:

@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.boundary import Boundary
 from sebody.reduction.clamped import ClampedInterior
+from sebody.reduction.component import ComponentModes
 from sebody.reduction.integrals import MassIntegrals
 from sebody.reduction.invariant_checks import CONTRADICTION_LIMIT
 from sebody.reduction.invariants import InertiaInvariants
@@ -19,36 +21,68 @@ from sebody.reduction.stiffening import GeometricStiffness, Stiffening
 _ASYMMETRY = 1e-8  # of a geometric stiffness, relative to its largest entry
 
 
-def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary, basis: NDArray,
-                   interior: ClampedInterior) -> ReducedBody:
+def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
+                   component: ComponentModes, interior: ClampedInterior) -> ReducedBody:
     """The body with its shapes, exact inertia if the FE model has a mass field, and stiffening.
 
     Parameters
     ----------
-    basis : (n_dofs, n)
-        Shapes of the reduced coordinates.
+    component : ComponentModes
+        Shapes of the reduced coordinates, in the DOFs that the boundary leaves independent.
     """
-    shapes = basis
+    shapes = boundary.ties.spread(component.basis)
     invariants = None
     if fe_model.mass_field is not None:
-        invariants, load_modes = _invariants(body, fe_model, boundary, basis, interior)
-        shapes = np.hstack([basis, load_modes])
-    return replace(body, invariants=invariants,
-                   recovery=Recovery(shapes, fe_model.coordinates, fe_model.node_dofs))
+        invariants, load_modes = _invariants(body, fe_model, boundary, component, interior)
+        shapes = np.hstack([shapes, load_modes])
+    notes = (*body.notes, _inertia_note(fe_model), _stiffening_note(invariants))
+    return replace(body, invariants=invariants, recovery=_recovery(fe_model, shapes), notes=notes)
 
 
-def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary, basis: NDArray,
-                interior: ClampedInterior) -> tuple[InertiaInvariants, NDArray]:
+def with_shapes(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
+                component: ComponentModes) -> ReducedBody:
+    """The body with its shapes alone."""
+    return replace(body, recovery=_recovery(fe_model, boundary.ties.spread(component.basis)))
+
+
+def _recovery(fe_model: FEModel, shapes: NDArray) -> Recovery:
+    return Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
+                    cells=fe_model.cells, labels=fe_model.labels, outlines=fe_model.outlines)
+
+
+def _inertia_note(fe_model: FEModel) -> str:
+    """What the inertia of the moving body is made of."""
+    if fe_model.mass_field is None:
+        return ("no exact inertia: the mass is not that of points at the nodes, as where nodal "
+                "rotations carry a consistent mass; give a mass_field for it")
+    dimension = fe_model.coordinates.shape[1]
+    turning = fe_model.rows[:, dimension:]
+    massless = turning.size and (turning >= 0).any() and fe_model.mass_field.rotation is None
+    return "exact inertia from the points of the mass" + (
+        "; nodal rotations carry none" if massless else "")
+
+
+def _stiffening_note(invariants: InertiaInvariants | None) -> str:
+    if invariants is None or not invariants.resultants + invariants.slaved:
+        return "no stiffening by stresses"
+    return (f"stiffening by stresses: {invariants.slaved} load modes, {invariants.resultants} "
+            "resultants of second order")
+
+
+def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
+                component: ComponentModes, interior: ClampedInterior
+                ) -> tuple[InertiaInvariants, NDArray]:
     """Integrals about the mean of the boundary nodes, and the load modes (n_dofs, n_eta)."""
     origin = body.coordinates.mean(axis=0)
     integrals = MassIntegrals(fe_model.mass_field, origin)
+    shapes = boundary.ties.spread(component.basis)
     if fe_model.geometric_stiffness is None:
-        n = basis.shape[1]
-        extra = Stiffening(np.zeros((len(basis), 0)), np.zeros((0, n, n)), np.zeros(0),
+        n = shapes.shape[1]
+        extra = Stiffening(np.zeros((len(shapes), 0)), np.zeros((0, n, n)), np.zeros(0),
                            np.zeros((n, 0)), np.zeros((0, n, n)))
     else:
-        extra = _stiffening(fe_model, boundary, basis, interior, body, integrals)
-    found = integrals.integrals(np.hstack([basis, extra.load_modes]))
+        extra = _stiffening(fe_model, boundary, component, interior, body, integrals)
+    found = integrals.integrals(np.hstack([shapes, extra.load_modes]))
     _check_mass(found["Mbar"][:len(body.mass), :len(body.mass)], body.mass)
     return InertiaInvariants(
         mass=float(fe_model.mass_field.mass.sum()), **found, Q=extra.Q, lam=extra.lam, E=extra.E,
@@ -64,31 +98,46 @@ def _check_mass(found: NDArray, mass: NDArray) -> None:
                          "weights that the matrix was integrated with, or no mass_field")
 
 
-def _stiffening(fe_model: FEModel, boundary: Boundary, basis: NDArray, interior: ClampedInterior,
-                body: ReducedBody, integrals: MassIntegrals) -> Stiffening:
-    held = boundary.motion.shape[1]
-    stiffness, size = fe_model.stiffness, integrals.size
-    dimension = body.coordinates.shape[1]
+def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes,
+                interior: ClampedInterior, body: ReducedBody, integrals: MassIntegrals
+                ) -> Stiffening:
+    """Load modes and resultants; a prestress is its displacement above the forces on the means."""
+    ties, basis, n = boundary.ties, component.basis, boundary.ties.size
+    shapes = ties.spread(basis)
 
-    def geometric(shape: NDArray) -> NDArray:
-        tangent = fe_model.geometric_stiffness(shape)
-        if tangent.shape != stiffness.shape:
-            raise InputError(f"geometric_stiffness has shape {tangent.shape}; the model's DOFs "
-                             f"need {stiffness.shape}")
-        if abs(tangent - tangent.T).max() > _ASYMMETRY * abs(tangent).max():
-            raise InputError("geometric_stiffness is not symmetric; give the second derivative of "
-                             "the energy, not a tangent with follower forces")
-        G = basis.T @ (tangent @ basis)
-        G[:held, :held] += boundary.second_order(stiffness @ shape)
+    def geometric(prestress: NDArray) -> NDArray:
+        displacement = ties.spread(prestress[:n])
+        tangent = fe_model.geometric_stiffness(displacement)
+        _check_geometric(tangent, fe_model.stiffness)
+        G = shapes.T @ (tangent @ shapes) + boundary.second_order(
+            fe_model.stiffness @ displacement, prestress[n:], basis)
         return (G + G.T) / 2
 
+    def largest(motions: NDArray) -> NDArray:
+        return integrals.largest(ties.spread(motions[:n]))
+
+    held, size = boundary.size, integrals.size
+    dimension = body.coordinates.shape[1]
     scale = np.full(held, size)
     scale[:dimension * len(body.position_nodes)] = 1.0
     rigid = body.rigid_modes_about(body.coordinates.mean(axis=0))
-    loads = integrals.loads()
-    loads[np.setdiff1d(np.arange(len(loads)), interior.internal)] = 0.0
-    answers = interior.displacement(loads)
-    return GeometricStiffness(
-        geometric, basis, body.stiffness, body.mass, scale, rigid / [
-            *[1.0] * dimension, *[size] * (rigid.shape[1] - dimension)], integrals.largest
-    ).stiffening(loads, answers, answers.T @ (fe_model.mass @ answers))
+    loads = ties.gather(integrals.loads())
+    loads[boundary.held] = 0.0
+    answers, on_means = interior.answer(loads)
+    above = np.zeros((len(on_means), len(component.omega_squared)))
+    found = GeometricStiffness(
+        geometric, np.vstack([basis, np.hstack([component.on_means, above])]), body.stiffness,
+        body.mass, scale, rigid / [*[1.0] * dimension, *[size] * (rigid.shape[1] - dimension)],
+        largest
+    ).stiffening(np.vstack([loads, np.zeros(on_means.shape)]), np.vstack([answers, on_means]),
+                 answers.T @ (ties.project(fe_model.mass) @ answers))
+    return replace(found, load_modes=ties.spread(found.load_modes[:n]))
+
+
+def _check_geometric(tangent: sparse.csc_array, stiffness: sparse.csc_array) -> None:
+    if tangent.shape != stiffness.shape:
+        raise InputError(f"geometric_stiffness has shape {tangent.shape}; the model's DOFs need "
+                         f"{stiffness.shape}")
+    if abs(tangent - tangent.T).max() > _ASYMMETRY * abs(tangent).max():
+        raise InputError("geometric_stiffness is not symmetric; give the second derivative of the "
+                         "energy, not a tangent with follower forces")

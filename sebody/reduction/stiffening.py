@@ -58,6 +58,8 @@ class Stiffening:
 class GeometricStiffness:
     """Geometric stiffness of displacements, on the reduced coordinates of a body.
 
+    Displacements may carry further rows: what else of a prestress its geometric stiffness needs.
+
     Parameters
     ----------
     of : function

@@ -62,7 +62,7 @@ def test_run_stops_and_goes_on(tmp_path, capsys):
 @pytest.mark.parametrize("arguments, message", [
     (["triple-beam"], "scene 'triple-beam' is unknown: there are "),
     (["hinged-beam", "--set", "length=3"], "scene 'hinged-beam' has no parameter 'length': there "
-     "are frame=converged_mean, inertia=b, modes=4, elements=20"),
+     "are frame=converged_mean, inertia=None, modes=4, elements=20"),
     (["hinged-beam", "--set", "modes"], "cannot read --set modes: write --set NAME=VALUE"),
     (["hinged-beam", "--set", "modes=two"], "parameter modes is 'two': give a value of type int"),
     (["hinged-beam", "--set", "frame=best"], "frame 'best' is unknown: use one of"),

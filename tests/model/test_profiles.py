@@ -200,3 +200,9 @@ def test_loads_follow_profiles():
     result = simulate(model, 1e-2, 0.7)
     # 0.5 * 6 * 0.5 by symmetry, then 6 * 0.2; the trapezoidal rule is exact to its order
     assert 2.0 * result["ball.velocity"][-1, 0] == pytest.approx(1.5 + 1.2, rel=1e-3)
+
+
+@pytest.mark.parametrize("duration", np.linspace(0.1, 7.0, 30))
+def test_rest_is_rest_but_for_rounding(duration):
+    """The last rates of the polynomial cancel; what is left is no jump."""
+    assert not motion(rest_to_rest(2 * math.pi, float(duration))).corners

@@ -1,12 +1,14 @@
 """Reduction against exact beam eigenvalues, closed-form rigid inertia and full FE statics."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
 
 from sebody.errors import InputError
-from sebody.fem import Section, frame, hexahedral_block, planar_beam, straight_beam
+from sebody.fem import FEModel, Section, frame, hexahedral_block, planar_beam, straight_beam
 from sebody.reduction import component_modes, craig_bampton
 
 LENGTH = 2.0
@@ -220,8 +222,23 @@ def test_rotations_of_a_solid_and_loose_parts_are_refused():
     with pytest.raises(InputError, match="the model's nodes have no rotations"):
         craig_bampton(solid, {0: "full"}, 0)
     loose = frame([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [(0, 1), (2, 3)], SQUARE, 2)
-    with pytest.raises(InputError, match="a mechanism inside"):
+    with pytest.raises(InputError, match=r"a mechanism inside\): a part of 18 DOFs is loose, that "
+                       "of node 2, node 3, node 5; keep more boundary nodes"):
         craig_bampton(loose, {0: "full", 1: "full"}, 0)
+    named = replace(loose, labels=[10, 20, 30, 40, 50, 60])
+    with pytest.raises(InputError, match="that of node 30, node 40, node 60; keep"):
+        craig_bampton(named, {0: "full", 1: "full"}, 0)
+
+
+def test_what_no_stiffness_holds_is_named():
+    """A rotation without stiffness, as drilling of a shell, and a beam on two ball joints."""
+    beam = straight_beam([0, 0, 0], [100, 0, 0], SQUARE, 4)
+    stiffness = beam.stiffness.toarray()
+    stiffness[15], stiffness[:, 15] = 0.0, 0.0
+    with pytest.raises(InputError, match="rx of node 2 has no stiffness"):
+        craig_bampton(FEModel(stiffness, beam.mass, beam.coordinates), {0: "full", 4: "full"}, 0)
+    with pytest.raises(InputError, match="the whole body can, most at rx of node"):
+        craig_bampton(beam, {0: "translation", 4: "translation"}, 0)
 
 
 def test_centre_of_a_planar_body_off_the_middle_of_its_nodes():

@@ -5,7 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from spinning_body import CLAMPED, SLENDER, Spinning, cantilever, roots, strip
+from spinning_body import (
+    CLAMPED,
+    SLENDER,
+    Spinning,
+    cantilever,
+    roots,
+    strip,
+    turned_resultants,
+)
 
 from sebody.fem import Section, frame, planar_beam, straight_beam
 from sebody.reduction import component_modes, craig_bampton
@@ -111,20 +119,6 @@ def test_a_solid_spins_as_the_beam_does():
     for value in (flap, lag):
         assert np.min(np.abs(found * unit - value)) < 0.01 * value
     assert growth < 1e-8 * found[-1]
-
-
-def turned_resultants(body):
-    """Resultants of a body that turns as a whole, over the largest part that must cancel."""
-    i = body.invariants
-    count = len(body.position_nodes)
-    psi = np.array([0.3, -0.8, 0.5])
-    arms = body.coordinates[list(body.position_nodes)] - i.origin
-    first = np.cross(psi, arms)
-    second = np.concatenate([(np.cross(psi, first) / 2).ravel(),
-                             np.zeros(len(body.mass) - 3 * count)])
-    y = body.rigid_modes_about(i.origin)[:, 3:] @ psi
-    parts = i.lam * (i.E.T @ second), i.Ghat @ y @ y / 2
-    return np.abs(sum(parts)) / np.abs(parts).max()
 
 
 def test_turning_a_body_makes_no_resultants():

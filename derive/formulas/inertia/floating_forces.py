@@ -4,37 +4,13 @@ Contractions of the constants with coordinates are products with stacked matrice
 left out.
 """
 
-import sympy as sp
-
-from sebody.derive.formulas import gravity
-from sebody.derive.formulas.damping import rates
-from sebody.derive.formulas.frames.frame import Frame, origin_stage
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import slaved
 from sebody.derive.formulas.inertia.floating_quantities import FloatingQuantities
-from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.steps import Call, Solve, Stage, Step, cross
-from sebody.derive.symbolic.variation import along
+from sebody.derive.formulas.inertia.rates import MOVING, STRAINED, energies_stage, form_value
+from sebody.derive.symbolic.steps import Call, Stage, Step
 
 ROWS = ("y", "z"), ("eta", "zd"), ("etad", "zdd")     # local coordinates and those of the products
-
-
-def frame_motion(q: Quantities, frame: Frame) -> tuple[Step, ...]:
-    """Rates of the local coordinates and of the frame, twice; gravity."""
-    Om0 = q.Om0.symbols
-    second = {"eu": "eud", "ep": "epd", "em": "emd", "Om0": "Om0d"}
-    in_time = (along(q.vs.symbols, q.acc.symbols + cross(q.vs.symbols, Om0))
-               | along(q.v0.symbols, q.a0.symbols + cross(q.v0.symbols, Om0))
-               | along(q.u.symbols, q.eu.symbols) | along(q.psi.symbols, q.ep.symbols)
-               | along(q.Om.symbols, q.A.symbols) | along(q.vm.symbols, q.am.symbols))
-    clock = Linearizer(q.space, in_time, lambda quantity: getattr(q, second[quantity.name]))
-    solve = [clock.step(step) for step in frame.velocity if isinstance(step, Solve)]
-    of_y = [step for step in rates(q) if step.sets]
-    modes = Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),))
-    return (*frame.velocity, modes, origin_stage(q, q.v0, q.vs),
-            origin_stage(q, q.a0, q.acc), *of_y, *solve, *map(clock.step, of_y),
-            gravity.in_frame_axes(q))
 
 
 def forces(f: FloatingQuantities) -> tuple[Step, ...]:
@@ -61,13 +37,6 @@ def forces(f: FloatingQuantities) -> tuple[Step, ...]:
         conjugate("local", "s"))
 
 
-def on_frame(f: FloatingQuantities) -> Stage:
-    """Force and moment on the frame, in its own axes."""
-    return Stage("inertia and weight on the frame", "element",
-                 adds=((f.q.F, f.turn * f.on_origin.symbols),
-                       (f.q.W, f.turn * f.on_frame.symbols)), continues=True)
-
-
 def _contractions(f: FloatingQuantities) -> tuple[Call, ...]:
     """Products of the constants with z and its rates, and of those with them again."""
     pairs, turns, lines = f.pairs, f.turns, f.lines
@@ -91,26 +60,22 @@ def _contractions(f: FloatingQuantities) -> tuple[Call, ...]:
 def energy(f: FloatingQuantities) -> tuple[Step, ...]:
     """Energies; momentum and its moment about the global origin."""
     q = f.q
-    squared, elastic = (f.of_element(name, "scalar", "squares", first=k)
-                        for k, name in enumerate(("moving", "elastic")))
+    squared, elastic = (form_value(q, name, k).symbols[0]
+                        for name, k in (("moving", MOVING), ("elastic", STRAINED)))
     pushed, turned = (f.turn * p for p in field.momenta(f.motion, f.sums))
-    x0, gamma, R0 = q.x0.symbols, q.gamma.symbols, q.R0.symbols
-    moment = f.turn * f.sums.c + q.mass.symbols[0] * R0.T * x0
+    kinetic = field.kinetic_energy(f.motion, f.sums, squared)
 
     def square(title, vector, row, k, size, height):
         return Call(title, "rows_times", (vector, row, f"at(squares, {k})", size, "1", height),
                     (vector.split("(")[-1].split(",")[0], row, "squares"))
     return (
         stacked("momentum of deformation, Mbar zdot", "Mz", "zd", "moved", 0, 1),
-        square("twice its energy", "moved", "zd", 0, "N", "hN"),
-        square("twice that of Sbar y", "at(Gy, resultants*hn)", "z", 1, "free", "hn"),
+        square("twice its energy", "moved", "zd", MOVING, "N", "hN"),
+        square("twice that of Sbar y", "at(Gy, resultants*hn)", "z", STRAINED, "free", "hn"),
         stacked("damping force, Cbar ydot", "Cz", "zd", "moved", 0, 1),
         square("its power", "moved", "zd", 2, "free", "hn"),
-        Stage("energies, momentum and its moment about the origin", "element", sets=(
-            (q.kinetic, sp.Matrix([field.kinetic_energy(f.motion, f.sums, squared.symbols[0])])),
-            (q.strain, elastic.symbols / 2 + sp.Matrix([f.stress.energy])),
-            (q.potential, sp.Matrix([-moment.dot(gamma)])), (q.P, R0 * pushed),
-            (q.H, cross(x0, R0 * pushed) + R0 * turned))))
+        energies_stage(q, kinetic, elastic / 2 + f.stress.energy, pushed, turned,
+                       f.turn * f.sums.c))
 
 
 def stacked(title: str, matrices: str, row: str, out: str, first: int, count: int) -> Call:

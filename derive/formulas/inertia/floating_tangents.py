@@ -12,9 +12,9 @@ from sebody.derive.formulas.inertia.floating_quantities import (
     SECOND,
     FloatingQuantities,
 )
-from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.formulas.inertia.rates import second_derivatives
 from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.steps import Call, Stage, Step, Values
+from sebody.derive.symbolic.steps import Call, Stage, Step
 
 
 def prepared(f: FloatingQuantities) -> tuple[Step, ...]:
@@ -24,7 +24,7 @@ def prepared(f: FloatingQuantities) -> tuple[Step, ...]:
     followed = q.space.quantity("followed", "scalar", "slaved", "by_followers")
     on_eta = q.space.quantity("on_eta", "scalar", "slaved", "local", "free + b")
     return (
-        slaved.stacked("zdd", "Za"), *_second_derivatives(q),
+        slaved.stacked("zdd", "Za"), *second_derivatives(q),
         stacked("J2_kl zdot", "of_place", "zd", "more", 0, pairs + turns),
         stacked("(K_k^T - K_k) zddot and K_k^T zddot", "of_rate", "zdd", "more", pairs, 2 * turns),
         Stage("factors of the local tangents", "element",
@@ -95,11 +95,3 @@ def _times(f: FloatingQuantities, function: str, matrix: str, row: str, columns:
     return Call(f"differential of the local forces by {row}", function,
                 (matrix, row, "dlocal", f.force_rows, columns, "deep"),
                 (matrix, row, "dlocal"), 1)
-
-
-def _second_derivatives(q: Quantities) -> tuple[Values, ...]:
-    """Of the coefficients of ``T^-1``, in space."""
-    if q.space.planar:
-        return ()
-    return (Values("second derivative of the coefficients of T^-1", (q.e2,),
-                   "inverse_tangent_second", q.psi, 30),)

@@ -25,6 +25,7 @@ from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import floating_forces, floating_tangents
 from sebody.derive.formulas.inertia.floating_quantities import FloatingQuantities
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
+from sebody.derive.formulas.inertia.rates import frame_motion, on_frame_stage
 from sebody.derive.formulas.quantities import Quantities
 from sebody.kernels.layout import InertiaTraits, Part
 
@@ -40,8 +41,9 @@ def floating(q: Quantities, frame: Frame) -> Local:
     field.prove()
     f = FloatingQuantities(q)
     return Local(
-        motion=floating_forces.frame_motion(q, frame), forces=floating_forces.forces(f),
-        share=sp.zeros(3, 1), on_frame=floating_forces.on_frame(f),
+        motion=frame_motion(q, frame), forces=floating_forces.forces(f),
+        share=sp.zeros(3, 1),
+        on_frame=on_frame_stage(q, f.turn * f.on_origin.symbols, f.turn * f.on_frame.symbols),
         energy=floating_forces.energy(f), prepared=floating_tangents.prepared(f),
         held=floating_tangents.held(f),
         column=lambda chain, velocities: floating_tangents.column(f, chain, velocities))
@@ -50,7 +52,7 @@ def floating(q: Quantities, frame: Frame) -> Local:
 INERTIA = InertiaOption(
     InertiaTraits(
         "the displacement field of the body, with slaved load modes (option C)", material=True,
-        field=True,
+        rates=True, field=True,
         constants=(
             Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
             Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),

@@ -1,0 +1,194 @@
+"""Outer faces of a mesh and integrals over them.
+
+Kinds of elements and the order of their nodes are those of meshio (VTK). The faces of solids, and
+in a plane the edges of elements, are ordered so that their normal points outwards, whatever the
+handedness of the elements; elements of shells are faces as they are.
+"""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from sebody.fem.model import FEModel
+
+# corners of the faces of each kind, and its edges in the order of its middle nodes
+_SOLIDS = {
+    "tetra": ([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
+              [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]),
+    "hexahedron": ([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6),
+                    (3, 0, 4, 7)],
+                   [(0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7), (0, 4), (1, 5),
+                    (2, 6), (3, 7)]),
+    "wedge": ([(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
+              [(0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5)]),
+}
+_PLANES = {
+    "triangle": ([(0, 1), (1, 2), (2, 0)], [(0, 1), (1, 2), (0, 2)]),
+    "quad": ([(0, 1), (1, 2), (2, 3), (3, 0)], [(0, 1), (1, 2), (2, 3), (0, 3)]),
+}
+_QUADRATIC = {"tetra10": "tetra", "hexahedron20": "hexahedron", "wedge15": "wedge",
+              "triangle6": "triangle", "quad8": "quad"}
+_REVERSED = {"line": [1, 0], "line3": [1, 0, 2], "triangle": [0, 2, 1],
+             "triangle6": [0, 2, 1, 5, 4, 3], "quad": [0, 3, 2, 1],
+             "quad8": [0, 3, 2, 1, 7, 6, 5, 4]}
+_FACE_KINDS = {2: "line", 3: "line3", 4: "quad", 6: "triangle6", 8: "quad8"}
+
+
+def faces_within(model: FEModel, nodes: Iterable[int]) -> list[tuple[str, NDArray]]:
+    """Outer faces all of whose nodes are among `nodes`.
+
+    Returns
+    -------
+    list of (kind, (m, k) of int)
+        'triangle', 'triangle6', 'quad' or 'quad8' with their nodes; in a plane 'line' or 'line3'.
+    """
+    inside = np.zeros(len(model.coordinates), dtype=bool)
+    inside[list(nodes)] = True
+    planar = model.coordinates.shape[1] == 2
+    groups: dict[str, list[tuple[NDArray, NDArray]]] = {}
+    for kind, cells in model.cells:
+        middles = model.coordinates[cells].mean(axis=1)
+        for face_kind, columns in _faces_of(kind, planar):
+            found = cells[:, columns]
+            taken = inside[found].all(axis=1)
+            groups.setdefault(face_kind, []).append((found[taken], middles[taken]))
+    result = []
+    for kind, parts in groups.items():
+        faces, middles = (np.vstack(arrays) for arrays in zip(*parts, strict=True))
+        _, first, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True,
+                                    return_counts=True)
+        outer = np.sort(first[times == 1])      # an inner face has an element on either side
+        if len(outer):
+            result.append((kind, _outward(model, kind, faces[outer], middles[outer])))
+    return result
+
+
+def _outward(model: FEModel, kind: str, faces: NDArray, middles: NDArray) -> NDArray:
+    """The faces, turned over where the element behind, of that middle, is in front of them."""
+    corners = model.coordinates[faces]
+    _, slopes, weights = face_rule(kind)
+    normal = np.einsum("fgd,g->fd", normals(corners, slopes), weights)
+    away = np.einsum("fd,fd->f", normal, corners.mean(axis=1) - middles)
+    return np.where(away[:, None] < 0, faces[:, _REVERSED[kind]], faces)
+
+
+def _faces_of(kind: str, planar: bool) -> Iterator[tuple[str, list[int]]]:
+    """Kind and nodes, in the element, of each face of an element."""
+    base = _QUADRATIC.get(kind, kind)
+    table = _PLANES if planar else _SOLIDS
+    if base in table:
+        corners, edges = table[base]
+        middle = {frozenset(edge): len({*sum(corners, ())}) + k for k, edge in enumerate(edges)}
+        for face in corners:
+            ring = zip(face, face[1:] + face[:1], strict=True)
+            middles = [middle[edge] for edge in dict.fromkeys(map(frozenset, ring))]
+            columns = [*face, *(middles if kind in _QUADRATIC else [])]
+            yield _face_kind(len(face), len(columns)), columns
+    elif not planar and base in _PLANES:
+        corners = 3 if base == "triangle" else 4
+        yield kind, list(range(2 * corners if kind in _QUADRATIC else corners))
+
+
+def _face_kind(corners: int, nodes: int) -> str:
+    return "triangle" if corners == nodes == 3 else _FACE_KINDS[nodes]
+
+
+def surface_mass(model: FEModel, nodes: NDArray) -> sparse.csr_array:
+    """``integral N_a N_b dA`` (k, k) over the outer faces within `nodes` (k,), N their functions.
+
+    Sums of its rows are the areas of the nodes (0 or less at corners of quadratic faces), its total
+    is the area; in a plane lengths in place of areas.
+    """
+    place = np.full(len(model.coordinates), -1)
+    place[nodes] = np.arange(len(nodes))
+    shape = (len(nodes), len(nodes))
+    total = sparse.csr_array(shape)
+    for kind, faces in faces_within(model, nodes):
+        values, slopes, weights = face_rule(kind)
+        corners = model.coordinates[faces]
+        areas = weights * np.linalg.norm(normals(corners, slopes), axis=-1)
+        entries = np.einsum("fg,ga,gb->fab", areas, values, values)
+        rows = np.broadcast_to(place[faces][:, :, None], entries.shape)
+        columns = np.broadcast_to(place[faces][:, None, :], entries.shape)
+        total = total + sparse.csr_array(sparse.coo_array(
+            (entries.ravel(), (rows.ravel(), columns.ravel())), shape=shape))
+    return total
+
+
+def normals(corners: NDArray, slopes: NDArray) -> NDArray:
+    """Outward normals (f, g, D), as long as the area of a unit of the face's coordinates.
+
+    Parameters
+    ----------
+    corners : (f, k, D)
+        Positions of the nodes.
+    slopes : (g, k, D - 1)
+        Derivatives of their functions at the points of integration.
+    """
+    tangents = np.einsum("fad,gac->fgcd", corners, slopes)
+    if corners.shape[2] == 2:
+        return np.stack([tangents[:, :, 0, 1], -tangents[:, :, 0, 0]], axis=-1)
+    return np.cross(tangents[:, :, 0], tangents[:, :, 1])
+
+
+def face_rule(kind: str) -> tuple[NDArray, NDArray, NDArray]:
+    """Functions (g, k), their slopes (g, k, c) and weights (g,) at the points of a kind of face.
+
+    Exact for products of two functions on flat faces with straight edges.
+    """
+    points, weights = _points(kind)
+    if kind.startswith("triangle"):
+        s, t = points.T
+        area = np.stack([1 - s - t, s, t], axis=1)
+        change = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
+        if kind == "triangle":
+            return area, np.broadcast_to(change, (len(s), 3, 2)), weights
+        first, second = [0, 1, 2], [1, 2, 0]
+        values = np.hstack([area * (2 * area - 1), 4 * area[:, first] * area[:, second]])
+        slopes = np.concatenate([
+            (4 * area - 1)[:, :, None] * change,
+            4 * (area[:, first, None] * change[second] + area[:, second, None] * change[first])],
+            axis=1)
+        return values, slopes, weights
+    if kind.startswith("line"):
+        s = points[:, 0]
+        if kind == "line":
+            return (np.stack([1 - s, 1 + s], axis=1) / 2,
+                    np.broadcast_to([[-0.5], [0.5]], (len(s), 2, 1)), weights)
+        values = np.stack([s * (s - 1) / 2, s * (s + 1) / 2, 1 - s**2], axis=1)
+        return values, np.stack([s - 0.5, s + 0.5, -2 * s], axis=1)[:, :, None], weights
+    return *_quad(points, kind == "quad8"), weights
+
+
+def _points(kind: str) -> tuple[NDArray, NDArray]:
+    """Points and weights of integration."""
+    line, weight = np.polynomial.legendre.leggauss(3)
+    if kind.startswith("line"):
+        return line[:, None], weight
+    if kind.startswith("quad"):
+        return (np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2),
+                np.outer(weight, weight).ravel())
+    # six points of degree 4: D.A. Dunavant, Int. J. Numer. Meth. Engng 21, 1985
+    parts = [(0.445948490915965, 0.223381589678011), (0.091576213509771, 0.109951743655322)]
+    points = [p for a, _ in parts for p in ((a, a), (1 - 2 * a, a), (a, 1 - 2 * a))]
+    return np.array(points), np.repeat([w for _, w in parts], 3) / 2
+
+
+def _quad(points: NDArray, quadratic: bool) -> tuple[NDArray, NDArray]:
+    """Bilinear functions of four nodes or those of eight (serendipity)."""
+    s, t = points[:, :1], points[:, 1:]
+    a, b = np.array([-1.0, 1, 1, -1]), np.array([-1.0, -1, 1, 1])
+    along, across = 1 + a * s, 1 + b * t
+    if not quadratic:
+        return along * across / 4, np.stack([a * across, b * along], axis=2) / 4
+    values = along * across * (a * s + b * t - 1) / 4
+    slopes = np.stack([a * across * (2 * a * s + b * t), b * along * (a * s + 2 * b * t)],
+                      axis=2) / 4
+    c, d = np.array([0.0, 1, 0, -1]), np.array([-1.0, 0, 1, 0])     # middles of the edges
+    level = c == 0
+    middle = np.where(level, (1 - s**2) * (1 + d * t), (1 + c * s) * (1 - t**2)) / 2
+    ds = np.where(level, -2 * s * (1 + d * t), c * (1 - t**2)) / 2
+    dt = np.where(level, d * (1 - s**2), -2 * t * (1 + c * s)) / 2
+    return np.hstack([values, middle]), np.concatenate([slopes, np.stack([ds, dt], axis=2)], axis=1)

@@ -1,0 +1,74 @@
+"""Labels, named sets and elements of an FE model's nodes, checked."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody import inputs
+from sebody.errors import InputError
+
+
+def labels(values: ArrayLike | None, count: int) -> NDArray | None:
+    """Different whole numbers, one for each of `count` nodes."""
+    if values is None:
+        return None
+    found = _whole(values, "labels", f"give {count} different whole numbers, one per node")
+    if found.shape != (count,):
+        raise InputError(f"labels have shape {found.shape}; {count} nodes need ({count},)")
+    unique, places, times = np.unique(found, return_index=True, return_counts=True)
+    if len(unique) < count:
+        twice = unique[np.argmax(times > 1)]
+        first, second = np.flatnonzero(found == twice)[:2]
+        raise InputError(f"label {twice} is that of the nodes {first} and {second}: give each node "
+                         "a label of its own")
+    return found
+
+
+def node_sets(sets: Mapping[str, Sequence[int]], count: int) -> dict[str, tuple[int, ...]]:
+    """Named sets of nodes from 0 to `count` - 1."""
+    remedy = "give a dict of names and node indices"
+    if not isinstance(sets, Mapping):
+        raise inputs.refusal("node_sets", sets, remedy)
+    found = {}
+    for name, nodes in sets.items():
+        what = f"node set {inputs.shown(inputs.name(name, 'name of a node set'))}"
+        nodes = _nodes(inputs.items(nodes, what, remedy), what, count)
+        if len(np.unique(nodes)) < nodes.size:
+            raise InputError(f"{what} names a node more than once: name it once")
+        found[name] = tuple(nodes.tolist())
+    return found
+
+
+def cells(groups: Sequence[tuple[str, ArrayLike]], count: int) -> tuple[tuple[str, NDArray], ...]:
+    """Elements by kind, of nodes from 0 to `count` - 1."""
+    remedy = "give pairs (kind, array of nodes of shape (n, k)), as meshio does"
+    found = []
+    for group in inputs.items(groups, "cells", remedy):
+        pair = inputs.items(group, "cells: one kind", remedy)
+        if len(pair) != 2:
+            raise inputs.refusal("cells: one kind", group, remedy)
+        kind = inputs.name(pair[0], "cells: a kind")
+        nodes = _nodes(pair[1], f"cells of kind {kind!r}", count)
+        if nodes.ndim != 2:
+            raise InputError(f"cells of kind {kind!r} have shape {nodes.shape}: {remedy}")
+        nodes.flags.writeable = False
+        found.append((kind, nodes))
+    return tuple(found)
+
+
+def _nodes(values: ArrayLike, what: str, count: int) -> NDArray:
+    remedy = f"give node indices from 0 to {count - 1}"
+    found = _whole(values, what, remedy)
+    outside = (found < 0) | (found >= count)
+    if outside.any():
+        raise InputError(f"{what} has the node {found[outside][0]}: {remedy}")
+    return found
+
+
+def _whole(values: ArrayLike, what: str, remedy: str) -> NDArray:
+    """An array of whole numbers."""
+    found = inputs.reals(values, what, remedy)
+    if not (found == np.floor(found)).all():
+        raise inputs.refusal(what, values, remedy)
+    return found.astype(np.int64)

@@ -1,0 +1,229 @@
+"""Body files: a reduced body in one npz file that any program can read.
+
+Arrays are members by name (``stiffness``, ``mass``, ``coordinates``, ``invariants.J0``,
+``recovery.shapes``, ...); the member ``notes`` is a JSON text with everything else: format and
+version, layout, names of the boundary nodes, units, provenance.
+"""
+
+import json
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.files import check_target, replacing
+from sebody.reduction.body import ReducedBody
+from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.recovery import Recovery
+
+FORMAT, VERSION = "sebody body", 1
+TARGET = "body file", (".npz",)     # see `files.check_target`
+PARTS = {"invariants": InertiaInvariants, "recovery": Recovery}     # of a ReducedBody
+_REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Cells of an FE model, for pictures.
+
+    Parameters
+    ----------
+    points : (n, 3), planar (n, 2)
+        Nodes [length].
+    cells : dict of (n_cells, k) by meshio's name of the cell
+    """
+
+    points: NDArray
+    cells: Mapping[str, NDArray]
+
+
+@dataclass(frozen=True, eq=False)
+class BodyFile:
+    """What a body file holds, as found: the matrices may be wrong in any way.
+
+    Parameters
+    ----------
+    parts : dict
+        Arguments of `ReducedBody`.
+    names : tuple of str
+        Of the boundary nodes.
+    units : str
+        In words; the program has none.
+    provenance : dict of str
+        What the body was made from and how.
+    mesh : Mesh, optional
+    """
+
+    parts: dict[str, Any]
+    names: tuple[str, ...]
+    units: str = ""
+    provenance: Mapping[str, str] = field(default_factory=dict)
+    mesh: Mesh | None = None
+
+    def body(self) -> ReducedBody:
+        """The body, checked.
+
+        Raises
+        ------
+        InputError
+            See `ReducedBody`.
+        """
+        return ReducedBody(**self.parts)
+
+
+def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None, *,
+              units: str = "", provenance: Mapping[str, str] | None = None,
+              mesh: Mesh | None = None) -> Path:
+    """Write a reduced body to an npz file; an older file stays until the new one is complete.
+
+    Parameters
+    ----------
+    names : tuple of str, optional
+        Of the boundary nodes, ``node 0``, ``node 1``, ... by default.
+    units : str
+        Units of its numbers, in words.
+    provenance : dict of str, optional
+        What the body was made from and how.
+    mesh : Mesh, optional
+        For pictures.
+
+    Raises
+    ------
+    InputError
+        No body, names that do not fit, or a target that cannot be written.
+    WriteError
+        Writing fails; an older file is unchanged.
+    """
+    inputs.instance(body, "body", ReducedBody, "give a ReducedBody")
+    names = checked_names(names, len(body.keeps))
+    parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
+    return write_body_file(BodyFile(parts, names, units, provenance or {}, mesh), path)
+
+
+def load_body(path: str | Path) -> ReducedBody:
+    """The body of a file.
+
+    Raises
+    ------
+    InputError
+        No such file, another kind or version of file, or a body with defects, which ``sebody
+        inspect`` lists.
+    """
+    file = read_body_file(path)
+    try:
+        return file.body()
+    except InputError as error:
+        raise InputError(f"body file {path}: {error} ('sebody inspect {path}' says more)"
+                         ) from error
+
+
+def write_body_file(file: BodyFile, path: str | Path) -> Path:
+    """Write what a body file holds; see `save_body`."""
+    path = check_target(path, *TARGET)
+    arrays: dict[str, NDArray] = {}
+    texts: dict[str, Any] = {}
+    _flatten(file.parts, "", arrays, texts)
+    if file.mesh is not None:
+        arrays["mesh.points"] = file.mesh.points
+        arrays |= {f"mesh.cells.{kind}": cells for kind, cells in file.mesh.cells.items()}
+    notes = {"format": FORMAT, "version": VERSION, "names": list(file.names), "units": file.units,
+             "provenance": dict(file.provenance), "body": texts}
+    with replacing(path, TARGET[0]) as stream:
+        np.savez_compressed(stream, notes=np.array(json.dumps(notes)), **arrays)
+    return path
+
+
+def read_body_file(path: str | Path) -> BodyFile:
+    """What a body file holds, without a check of its matrices.
+
+    Raises
+    ------
+    InputError
+        No such file, or one of another kind or version.
+    """
+    path = inputs.path(path, TARGET[0])
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        notes = json.loads(str(arrays.pop("notes")))
+        if notes["format"] != FORMAT:
+            raise InputError(f"{path} is a file of another kind ({inputs.shown(notes['format'])}):"
+                             f" {_REMEDY}")
+        _check_version(path, notes["version"])
+        return _made(arrays, notes)
+    except FileNotFoundError as error:
+        raise InputError(f"body file {path} does not exist: {_REMEDY}") from error
+    except InputError:
+        raise
+    except (BadZipFile, zlib.error, ValueError, KeyError, IndexError, TypeError, AttributeError,
+            EOFError) as error:
+        raise InputError(f"{path} is damaged or no body file: {_REMEDY}") from error
+    except OSError as error:
+        raise InputError(f"body file {path} cannot be read ({error.strerror}): {_REMEDY}"
+                         ) from error
+
+
+def checked_names(names: tuple[str, ...] | None, count: int) -> tuple[str, ...]:
+    """Names of so many boundary nodes.
+
+    Raises
+    ------
+    InputError
+        Too many, too few, no text, or twice the same.
+    """
+    if names is None:
+        return tuple(f"node {k}" for k in range(count))
+    found = tuple(inputs.name(name, "name of a boundary node") for name in inputs.items(
+        names, "names", "give a text for each boundary node"))
+    if len(found) != count or len(set(found)) != count:
+        raise inputs.refusal("names", found, f"give {count} different names, one for each "
+                             "boundary node")
+    return found
+
+
+def _check_version(path: Path, version: Any) -> None:
+    if version != VERSION:
+        newer = isinstance(version, int) and version > VERSION
+        raise InputError(f"body file {path} is of version {version}, this program reads {VERSION}: "
+                         + ("update sebody" if newer else "import the body again"))
+
+
+def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -> None:
+    """Arrays by dotted names, all other values as JSON can hold them."""
+    for name, value in parts.items():
+        if is_dataclass(value):
+            inner = {one.name: getattr(value, one.name) for one in fields(value)}
+            _flatten(inner, f"{prefix}{name}.", arrays, texts)
+        elif isinstance(value, np.ndarray):
+            arrays[prefix + name] = value
+        elif value is not None:
+            texts[prefix + name] = value
+
+
+def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
+    values = {name: _tuples(value) for name, value in notes["body"].items()} | arrays
+    parts = {name: value for name, value in values.items() if "." not in name}
+    for part, kind in PARTS.items():
+        found = {name.removeprefix(f"{part}."): value for name, value in values.items()
+                 if name.startswith(f"{part}.")}
+        if found:
+            parts[part] = kind(**found)
+    missing = {"stiffness", "mass", "coordinates", "keeps"} - set(parts)
+    if missing:
+        raise KeyError(missing)
+    cells = {name.removeprefix("mesh.cells."): array for name, array in arrays.items()
+             if name.startswith("mesh.cells.")}
+    mesh = Mesh(arrays["mesh.points"], cells) if "mesh.points" in arrays else None
+    return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"], mesh)
+
+
+def _tuples(value: Any) -> Any:
+    """Lists as tuples, however deep."""
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value

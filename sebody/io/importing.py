@@ -1,0 +1,146 @@
+"""From the files of an FE program to a body and its file."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.fem.model import FEModel
+from sebody.files import check_target
+from sebody.io.body_file import TARGET, BodyFile, Mesh, write_body_file
+from sebody.io.interfaces import Interface, boundary_items, parsed
+from sebody.io.reading import Reading
+from sebody.io.reduced import chosen_interfaces
+from sebody.io.registry import read_source
+from sebody.reduction.accuracy import Accuracy
+from sebody.reduction.body import ReducedBody
+from sebody.reduction.methods import reduce
+from sebody.reduction.rigid import rigid_motions
+
+
+def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
+    """The FE model in the files of a program.
+
+    Parameters
+    ----------
+    path : str or Path
+        One of its files; those beside it with the same stem are found.
+    kind : str, optional
+        Name of the source, see `SOURCES`; guessed from the files by default.
+
+    Raises
+    ------
+    InputError
+        Files that cannot be used, or that hold reduced matrices.
+    """
+    model = read_source(path, kind).model
+    if isinstance(model, dict):
+        raise InputError(f"{path} holds matrices that are reduced already: use import_body")
+    return model
+
+
+def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable[str] = (),
+                modes: int | Accuracy = 0, method: str = "craig-bampton", *,
+                kind: str | None = None, units: str = "",
+                output: str | Path | None = None) -> ReducedBody:
+    """A body of the files of an FE program, as ``sebody import`` makes it.
+
+    Parameters
+    ----------
+    path : str or Path
+        One of the files; those beside it with the same stem are found.
+    interfaces : dict of texts by name, or texts ``name=...``
+        Boundary nodes in order: the label of a node, two labels ``"1/2"`` where rotations have a
+        node of their own, or ``"rbe2:SET"`` and ``"rbe3:SET"`` for named sets. Of files with
+        reduced matrices their own boundary nodes, all of them and in their order by default.
+    modes : int or Accuracy
+        Number of internal modes, or what they are to achieve.
+    method : 'craig-bampton', 'guyan', 'macneal' or 'rubin'
+        See `sebody.reduction.reduce`.
+    kind : str, optional
+        Name of the source, see `SOURCES`; guessed from the files by default.
+    units : str
+        Units of the numbers, in words.
+    output : str or Path, optional
+        Body file to write.
+
+    Raises
+    ------
+    InputError
+        Files, interfaces or counts that cannot be used; nothing is written.
+    WriteError
+        The body file cannot be written.
+    """
+    if output is not None:
+        check_target(output, *TARGET)
+    file = imported(read_source(path, kind), parsed(interfaces), modes, method, units, path)
+    if output is not None:
+        write_body_file(file, output)
+    return file.body()
+
+
+def imported(reading: Reading, interfaces: list[Interface], modes: int | Accuracy, method: str,
+             units: str, path: str | Path) -> BodyFile:
+    """What is to be written of a reading."""
+    model = reading.model
+    if isinstance(model, dict):
+        return _reduced(reading, interfaces, modes, units)
+    items = boundary_items(model, interfaces, reading.rotation_nodes)
+    try:
+        body = reduce(model, items, modes, method)
+    except InputError as error:
+        by_area = any(one.tie == "rbe3" for one in interfaces) and "weights='equal'" in str(error)
+        raise InputError(f"{path}: {error}" + by_area * ", rbe3-equal:SET") from error
+    names = tuple(one.name for one in interfaces)
+    provenance = {"source": model.source or str(path), "method": f"{method}, {body.modes} modes",
+                  "FE matrices": f"{model.stiffness.shape[0]} rows, |K R| of rigid "
+                  f"motions up to {rigid_residual(model):.4e} of a row's entries", **reading.notes}
+    parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
+    mesh = Mesh(model.coordinates, dict(model.cells))
+    return BodyFile(parts, names, units or model.units, provenance, mesh)
+
+
+def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accuracy,
+             units: str) -> BodyFile:
+    """A body that the FE program has reduced, its nodes named."""
+    if modes:
+        raise InputError(f"modes is {inputs.shown(modes)}, but the files hold matrices that are "
+                         f"reduced already, with {reading.model['modes']} modes: leave modes out")
+    provenance = {"source": reading.source, "method": "reduced by the FE program", **reading.notes}
+    file = BodyFile(reading.model, reading.names, units, provenance)
+    if not interfaces:
+        return file
+    for one in interfaces:
+        if len(one.nodes) != 1 or one.keeps:
+            raise InputError(f"interface {one.name!r}: the body is reduced already, so write "
+                             f"{one.name}=NODE")
+    return chosen_interfaces(file, [str(one.nodes[0]) for one in interfaces],
+                             [one.name for one in interfaces])
+
+
+def rigid_residual(model: FEModel) -> float:
+    """Largest force of a row under rigid motion, over what its entries would make without signs.
+
+    Rounding of d printed digits leaves some ``10^-d``; a support leaves one.
+    """
+    count, dimension = model.coordinates.shape
+    present = model.rows >= 0
+    turning = present.shape[1] > dimension
+    keeps = ("full" if turning else "translation",) * count
+    middle = model.coordinates.mean(axis=0)
+    by_kinds = rigid_motions(model.coordinates, keeps, present.size, middle)
+    moves, turns = np.split(by_kinds, [count * dimension])
+    by_nodes = np.concatenate([part.reshape(count, -1, by_kinds.shape[1])
+                               for part in (moves, turns)], axis=1)
+    motions = np.zeros((len(model.stiffness.indptr) - 1, by_kinds.shape[1]))
+    motions[model.rows[present]] = by_nodes[present]
+    # lengths over the size of the body: rotations of nodes and their displacements are alike
+    size = np.ones(len(motions))
+    size[model.rows[:, :dimension][present[:, :dimension]]] = model.extent or 1.0
+    forces = np.abs(model.stiffness @ motions)
+    largest = np.max(np.abs(motions) / size[:, None], axis=0)
+    without_signs = (abs(model.stiffness) @ size)[:, None] * largest
+    return float(np.max(forces / np.maximum(without_signs, 1e-300), initial=0.0))

@@ -1,0 +1,122 @@
+"""Matrix Market: two matrices, the mapping of their rows, and the places of the nodes.
+
+Ansys writes such files by APDL (``*EXPORT, ..., MMF`` or ``HBMAT``), and so does ``scipy.io``. A
+body ``NAME`` is ``NAME_K.mtx``, ``NAME_M.mtx``, ``NAME.mapping`` with ``row node DOF`` a line, as
+``HBMAT`` writes it (DOF UX to ROTZ, or 1 to 6), and ``NAME.nodes`` with ``node x y z``, as NLIST.
+"""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from scipy import sparse
+from scipy.io import mmread
+
+from sebody.errors import InputError
+from sebody.fem.model import FEModel
+from sebody.io.reading import Reading
+from sebody.io.reduced import NAMES
+from sebody.io.text import fault, first_repeated, read_text
+
+_DIRECTIONS = {word: name for k, name in enumerate(NAMES)
+               for word in (("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ")[k], str(k + 1),
+                            name.upper())}
+_REMEDY = "give NAME_K.mtx, NAME_M.mtx, NAME.mapping and NAME.nodes, see sebody/io/README.md"
+
+
+def read(path: Path) -> Reading:
+    """The FE model of the files.
+
+    Parameters
+    ----------
+    path : Path
+        ``NAME_K.mtx`` or ``NAME_M.mtx``.
+
+    Raises
+    ------
+    InputError
+        A missing or damaged file, matrices that do not fit the mapping, or nodes without a place.
+    """
+    match = re.fullmatch(r"(.+)_[KM]", path.stem)
+    if not match:
+        raise InputError(f"{path} is not named NAME_K.mtx or NAME_M.mtx: {_REMEDY}")
+    name = match[1]
+    mapping = path.with_name(f"{name}.mapping")
+    rows = _mapping(mapping)
+    stiffness, mass = (_matrix(path.with_name(f"{name}_{kind}.mtx"), len(rows), mapping)
+                       for kind in "KM")
+    points = _nodes(path.with_name(f"{name}.nodes"))
+    index = {label: k for k, label in enumerate(points)}
+    for label, _ in rows:
+        if label not in index:
+            raise InputError(f"{mapping} has rows of node {label}, which has no place in "
+                             f"{path.with_name(f'{name}.nodes')}: list all nodes there")
+    model = FEModel(stiffness, mass, np.array(list(points.values())),
+                    dof_map=[(index[label], kind) for label, kind in rows],
+                    labels=np.array(list(points)), source=f"Matrix Market {name}")
+    return Reading(model)
+
+
+def _matrix(path: Path, size: int, mapping: Path) -> sparse.csc_array:
+    read_text(path, "matrix file", _REMEDY)
+    try:
+        matrix = sparse.csc_array(mmread(path))
+    except (ValueError, OverflowError, TypeError, StopIteration) as error:
+        raise InputError(f"matrix file {path} is no Matrix Market file, or cut off ({error}): "
+                         "export it again") from error
+    if matrix.shape != (size, size):
+        raise InputError(f"matrix file {path} has shape {matrix.shape}, but {mapping} tells of "
+                         f"{size} rows: give files of one export")
+    lower, upper = sparse.tril(matrix, -1), sparse.triu(matrix, 1)
+    if bool(lower.count_nonzero()) != bool(upper.count_nonzero()):   # one triangle, called general
+        matrix = matrix + (lower + upper).T
+    return sparse.csc_array(matrix)
+
+
+def _mapping(path: Path) -> list[tuple[int, str]]:
+    """Node and name of the DOF of every row, in the order of the rows."""
+    found: dict[int, tuple[int, str]] = {}
+    for number, line in enumerate(read_text(path, "mapping", _REMEDY).splitlines(), 1):
+        words = line.replace(",", " ").split()
+        if len(words) != 3 or not (words[0].isdecimal() and words[1].isdecimal()):
+            if found and words:
+                raise fault(path, number, "no row, node and DOF", _REMEDY)
+            continue                    # headings
+        row, node, kind = int(words[0]), int(words[1]), _DIRECTIONS.get(words[2].upper())
+        if kind is None:
+            raise fault(path, number, f"DOF {words[2]} is none of a body", "leave out elements "
+                        "with pressures, temperatures and Lagrange multipliers")
+        if row in found:
+            raise fault(path, number, f"row {row} occurs twice", "export it again")
+        found[row] = node, kind
+    missing = sorted(set(range(1, len(found) + 1)) - set(found))
+    if not found or missing:
+        raise InputError(f"mapping {path} has no row {missing[0] if missing else 1}: the file is "
+                         "cut off, export it again")
+    rows = [found[row] for row in sorted(found)]
+    twice = first_repeated(rows)
+    if twice:
+        raise InputError(f"mapping {path} gives rows {twice[0] + 1} and {twice[1] + 1} the same "
+                         f"DOF, {rows[twice[1]][1]} of node {rows[twice[1]][0]}: export it again")
+    return rows
+
+
+def _nodes(path: Path) -> dict[int, list[float]]:
+    """Places by label; lines that begin with no whole number are headings."""
+    found: dict[int, list[float]] = {}
+    for number, line in enumerate(read_text(path, "node file", _REMEDY).splitlines(), 1):
+        words = line.replace(",", " ").split()
+        if not words or not words[0].isdecimal():
+            continue
+        try:
+            place = [float(word) for word in words[1:4]]
+        except ValueError:
+            place = []
+        if len(place) != 3 or not np.isfinite(place).all():
+            raise fault(path, number, "no node with three coordinates", _REMEDY)
+        if int(words[0]) in found:
+            raise fault(path, number, f"node {words[0]} occurs twice", "list each node once")
+        found[int(words[0])] = place
+    if not found:
+        raise InputError(f"node file {path} has no nodes: {_REMEDY}")
+    return found

@@ -1,0 +1,147 @@
+"""Nastran, read by pyyeti: superelements in OP4 files, and DMIG in punch or OP2 files.
+
+``EXTSEOUT(STIFFNESS, MASS, ..., DMIGOP4)`` writes the matrices to OP4 and the boundary nodes to
+``.asm`` (or ``.pch``); ``EXTSEOUT(..., DMIGPCH)`` writes DMIG cards, whose rows know their nodes.
+Output coordinate systems of nodes (CD) are turned to the basic system.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.io.reading import Reading
+from sebody.io.reduced import reduced_parts
+
+_REMEDY = "write it with EXTSEOUT(STIFFNESS, MASS, ASMBULK, DMIGOP4) or DMIGPCH"
+_CARDS = (".asm", ".pch", ".bdf", ".dat")       # that may hold GRID cards, in this order
+
+
+def read_op4(path: Path) -> Reading:
+    """The superelement of an OP4 file and the bulk data beside it.
+
+    Raises
+    ------
+    InputError
+        A damaged file, no pair of stiffness and mass, or nodes that do not fit their rows.
+    """
+    from pyyeti.nastran import op4
+
+    found = _called(lambda: op4.read(str(path), into="dct", justmatrix=True), path)
+    found = {name.lower(): matrix for name, matrix in found.items()}
+    stiffness, mass = _pair(found, path)
+    cards = _beside(path)
+    table = _uset(cards)
+    if len(table.index) != len(stiffness):
+        raise InputError(f"{path} has {len(stiffness)} rows and {cards} tells of "
+                         f"{len(table.index)}: give files of one run")
+    return _reading(stiffness, mass, list(table.index), table, path)
+
+
+def read_dmig(path: Path) -> Reading:
+    """The superelement of the DMIG cards in a punch or OP2 file, with the GRID cards beside it.
+
+    Raises
+    ------
+    InputError
+        As for `read_op4`.
+    """
+    from pyyeti import nastran
+
+    found = _called(lambda: nastran.rddmig(str(path), square=True), path)
+    frames = {name.lower(): frame for name, frame in found.items()}
+    stiffness, mass = _pair({name: frame.values for name, frame in frames.items()}, path)
+    indices = [list(frame.index) for frame in frames.values() if frame.shape == stiffness.shape]
+    if indices[0] != indices[1]:
+        raise InputError(f"{path}: stiffness and mass are of different DOFs: {_REMEDY}")
+    own = path.suffix == ".pch" and "GRID" in path.read_text(encoding="latin-1")
+    return _reading(stiffness, mass, indices[0], _grids(path if own else _beside(path)), path)
+
+
+def _reading(stiffness: NDArray, mass: NDArray, index: list, table: Any, path: Path) -> Reading:
+    """A body from rows by (id, DOF), DOF 0 of scalar points, in output coordinate systems."""
+    points, turns = _nodes(table, path)
+    rows = [None if dof == 0 else (int(node), int(dof) - 1) for node, dof in index]
+    unknown = [node for node, _ in filter(None, rows) if node not in points]
+    if unknown:
+        raise InputError(f"{path} has rows of node {unknown[0]}, which has no GRID card: {_REMEDY}")
+    turn = np.eye(len(rows))
+    place = {row: i for i, row in enumerate(rows) if row is not None}
+    for node, axes in turns.items():
+        for first in (0, 3):
+            own = [place.get((node, first + k)) for k in range(3)]
+            if None not in own:
+                turn[np.ix_(own, own)] = axes       # output from basic components
+    parts, names = reduced_parts(turn.T @ stiffness @ turn, turn.T @ mass @ turn, rows, points,
+                                 str(path))
+    return Reading(parts, names, source=f"Nastran {path.name}")
+
+
+def _nodes(table: Any, path: Path) -> tuple[dict[int, NDArray], dict[int, NDArray]]:
+    """Places, and components in the output systems of the basic axes, (3, 3), by node."""
+    from pyyeti.nastran import rbgeom_uset
+
+    whole = table[table.index.get_level_values("dof") > 0]
+    motion = _called(lambda: rbgeom_uset(whole), path)
+    points, turns = {}, {}
+    for i, (node, dof) in enumerate(whole.index):
+        if dof == 1:
+            points[int(node)] = whole.iloc[i][["x", "y", "z"]].to_numpy(dtype=float)
+            turns[int(node)] = motion[i:i + 3, :3]
+    return points, turns
+
+
+def _uset(cards: Path) -> Any:
+    """Rows of the matrices of a superelement, in the order of its SECONCT card."""
+    from pyyeti import nastran
+
+    if cards.suffix != ".asm":
+        return _grids(cards)
+    punch = cards.with_suffix(".pch")       # its EXTRN card says which DOFs nodes keep
+    fewer = punch.exists() and "EXTRN" in punch.read_text(encoding="latin-1")
+    return _called(lambda: nastran.asm2uset(str(cards), try_rdextrn=fewer), cards)[0]
+
+
+def _grids(cards: Path) -> Any:
+    """All nodes of GRID cards."""
+    from pyyeti import nastran
+
+    return _called(lambda: nastran.bulk2uset(str(cards)), cards)[0]
+
+
+def _beside(path: Path) -> Path:
+    for suffix in _CARDS:
+        cards = path.with_suffix(suffix)
+        if cards.exists() and cards != path:
+            return cards
+    raise InputError(f"{path} has no nodes: put the bulk data with GRID cards beside it, as "
+                     f"{path.with_suffix('.asm')}, which EXTSEOUT(ASMBULK) writes")
+
+
+def _pair(found: dict[str, NDArray], path: Path) -> tuple[NDArray, NDArray]:
+    """Stiffness and mass: the matrices called K... and M... that are alike otherwise."""
+    for name, matrix in found.items():
+        other = found.get("m" + name[1:])
+        if name.startswith("k") and other is not None:
+            if matrix.shape != other.shape or matrix.shape[0] != matrix.shape[1]:
+                raise InputError(f"{path}: {name} has shape {matrix.shape} and m{name[1:]} "
+                                 f"{other.shape}: {_REMEDY}")
+            return np.asarray(matrix, dtype=float), np.asarray(other, dtype=float)
+    have = ", ".join(found) or "none"
+    raise InputError(f"{path} has no pair of matrices KXX and MXX, or KAAX and MAAX; it has "
+                     f"{have}: {_REMEDY}")
+
+
+def _called(function: Any, path: Path) -> Any:
+    """What pyyeti makes of a file; whatever it raises is said of the file."""
+    try:
+        return function()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read ({error.strerror or error}): {_REMEDY}"
+                         ) from error
+    except Exception as error:      # of many classes, of files that are cut off or of other kinds
+        raise InputError(f"{path} is damaged or of another kind ({type(error).__name__}: {error}): "
+                         f"{_REMEDY}") from error
+

@@ -1,0 +1,93 @@
+"""Bodies that an FE program has reduced: rows by node and direction, and rows of modes."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.io.body_file import BodyFile
+
+NAMES = ("x", "y", "z", "rx", "ry", "rz")
+
+
+def reduced_parts(stiffness: NDArray, mass: NDArray, rows: Sequence[tuple[int, int] | None],
+                  points: Mapping[int, NDArray], source: str) -> tuple[dict, tuple[str, ...]]:
+    """Arguments of a `ReducedBody`, and its nodes' labels as names.
+
+    Parameters
+    ----------
+    stiffness, mass : (n, n)
+    rows : sequence of (label, direction) or None
+        Of every row: node and direction, 0 to 2 translations, 3 to 5 rotations; None for a mode.
+    points : dict of (3,) by label
+        Nodes [length].
+    source : str
+        Where the rows come from, for messages.
+
+    Raises
+    ------
+    InputError
+        Nodes without a place, or with some of three directions.
+    """
+    labels = list(dict.fromkeys(row[0] for row in rows if row is not None))
+    place = {(label, k): i for i, row in enumerate(rows) if row is not None for label, k in [row]}
+    keeps, order = [], []
+    for label in labels:
+        if label not in points:
+            raise InputError(f"{source} has rows of node {label}, whose place is not given: give "
+                             "a file with the coordinates of all boundary nodes")
+        keeps.append(_keep(label, [k for k in range(6) if (label, k) in place], source))
+    for first, other in ((0, "rotation"), (3, "translation")):
+        order += [place[label, first + k] for label, keep in zip(labels, keeps, strict=True)
+                  if keep != other for k in range(3)]
+    modes = [i for i, row in enumerate(rows) if row is None]
+    order += modes
+    chosen = np.ix_(order, order)
+    return {"stiffness": stiffness[chosen], "mass": mass[chosen],
+            "coordinates": np.array([points[label] for label in labels], dtype=float),
+            "keeps": tuple(keeps), "modes": len(modes)}, tuple(map(str, labels))
+
+
+def _keep(label: int, directions: list[int], source: str) -> str:
+    found = {(0, 1, 2): "translation", (3, 4, 5): "rotation", (0, 1, 2, 3, 4, 5): "full"}.get(
+        tuple(directions))
+    if found is None:
+        have = ", ".join(NAMES[k] for k in directions)
+        raise InputError(f"{source} keeps {have} of node {label}: retain all three translations, "
+                         "all three rotations, or both, when reducing")
+    return found
+
+
+def chosen_interfaces(file: BodyFile, labels: Sequence[str], names: Sequence[str]) -> BodyFile:
+    """The body with its boundary nodes named and in another order.
+
+    Raises
+    ------
+    InputError
+        Nodes that the body does not have, or nodes of it that are left out.
+    """
+    for label in labels:
+        if label not in file.names:
+            raise InputError(f"node {label} is no boundary node of the reduced body: there are "
+                             f"{', '.join(file.names)}")
+    left = [label for label in file.names if label not in labels]
+    if left:
+        raise InputError(f"the reduced body has boundary nodes that are no interfaces: "
+                         f"{', '.join(left)}; name all of them, or reduce with fewer")
+    parts = file.parts
+    keeps = parts["keeps"]
+    order = [file.names.index(label) for label in labels]
+    rows, start = [], 0
+    for other in ("rotation", "translation"):
+        own = [k for k, keep in enumerate(keeps) if keep != other]
+        first = {k: start + 3 * i for i, k in enumerate(own)}
+        rows += [first[k] + axis for k in order if k in first for axis in range(3)]
+        start += 3 * len(own)
+    rows += range(start, len(parts["stiffness"]))
+    chosen = np.ix_(rows, rows)
+    changed = {name: parts[name][chosen] for name in ("stiffness", "mass", "damping")
+               if parts.get(name) is not None}
+    return BodyFile({**parts, **changed, "coordinates": parts["coordinates"][order],
+                     "keeps": tuple(keeps[k] for k in order)}, tuple(names), file.units,
+                    file.provenance, file.mesh)

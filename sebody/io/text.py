@@ -1,0 +1,102 @@
+"""Text files of FE programs: tables of numbers, and errors that name file and line."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.errors import InputError
+
+
+def fault(path: Path, line: int, what: str, remedy: str) -> InputError:
+    """The exception for a line that cannot be used; lines count from 1."""
+    return InputError(f"{path}, line {line}: {what}: {remedy}")
+
+
+def read_text(path: Path, what: str, remedy: str) -> str:
+    """The text of a file, whose line ends may be those of any system.
+
+    Raises
+    ------
+    InputError
+        It cannot be read or is no text.
+    """
+    path = inputs.path(path, what)
+    try:
+        return path.read_text(encoding="latin-1")
+    except FileNotFoundError as error:
+        raise InputError(f"{what} {path} does not exist: {remedy}") from error
+    except OSError as error:
+        raise InputError(f"{what} {path} cannot be read ({error.strerror}): {remedy}") from error
+
+
+def table(path: Path, columns: int, what: str, remedy: str) -> NDArray:
+    """Rows of so many finite numbers, (n, columns), separated by blanks.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is empty, ends within a line, or has another line, which the
+        message names.
+    """
+    text = read_text(path, what, remedy)
+    values = text.replace("D", "E").replace("d", "e").split()
+    try:
+        found = np.array(values, dtype=float)
+    except ValueError as error:
+        raise _worst_line(path, text, columns, remedy) from error
+    if len(found) % columns or len(text.splitlines()) * columns != len(found) or not (
+            np.isfinite(found).all()):
+        raise _worst_line(path, text, columns, remedy)
+    if not len(found):
+        raise InputError(f"{what} {path} is empty: {remedy}")
+    if not text.endswith("\n"):
+        raise fault(path, len(text.splitlines()), "the file ends within a line", remedy)
+    return found.reshape(-1, columns)
+
+
+def _worst_line(path: Path, text: str, columns: int, remedy: str) -> InputError:
+    """The first line that is no row of finite numbers."""
+    lines = text.splitlines()
+    for number, line in enumerate(lines, 1):
+        words = line.replace("D", "E").replace("d", "e").split()
+        try:
+            right = len(words) == columns and np.isfinite(np.array(words, dtype=float)).all()
+        except ValueError:
+            right = False
+        if not right:
+            return fault(path, number, f"{inputs.shown(line)} is no row of {columns} finite "
+                         "numbers", remedy)
+    return fault(path, len(lines), "the file cannot be read", remedy)
+
+
+def whole(values: NDArray, path: Path, most: int | None, what: str, remedy: str,
+          first_line: int = 1) -> NDArray:
+    """A column of whole numbers from 1 to `most`, one a line.
+
+    Raises
+    ------
+    InputError
+        Another number; the message names its line.
+    """
+    wrong = (values != np.floor(values)) | (values < 1)
+    if most is not None:
+        wrong |= values > most
+    if wrong.any():
+        k = int(np.argmax(wrong))
+        upto = "" if most is None else f" to {most}"
+        raise fault(path, first_line + k, f"{what} {values[k]:g} is no number from 1{upto}",
+                    remedy)
+    return values.astype(int)
+
+
+def first_repeated(items: Sequence) -> tuple[int, int] | None:
+    """Places of the first item that occurred before: there and here; None if all differ."""
+    seen: dict = {}
+    for k, item in enumerate(items):
+        if item in seen:
+            return seen[item], k
+        seen[item] = k
+    return None

@@ -1,0 +1,64 @@
+"""Matrices written as rows of row, column, value, counted from 1."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from sebody.errors import InputError
+from sebody.io.text import fault, table, whole
+
+
+def read_triplets(path: Path, size: int, what: str, remedy: str,
+                  rows_of: str) -> sparse.csc_array:
+    """A symmetric matrix (size, size) from a file with one triangle of it.
+
+    Parameters
+    ----------
+    what : str
+        What the file is, for messages.
+    rows_of : str
+        What tells how many rows there are, for messages.
+
+    Raises
+    ------
+    InputError
+        A line that is no entry of such a matrix, rows beyond `size`, entries on both sides of
+        the diagonal or twice, or diagonal entries that are missing, as of a file cut off.
+    """
+    found = table(path, 3, what, remedy)
+    beyond = found[:, :2].max(axis=1) > size
+    if beyond.any():
+        line = int(np.argmax(beyond))
+        raise fault(path, line + 1, f"row {found[line, :2].max():g}, but {rows_of} tells of {size}",
+                    "give files of one run of the program")
+    rows, columns = (whole(found[:, k], path, size, "row or column", remedy) for k in (0, 1))
+    _check_entries(path, rows, columns, size, remedy)
+    return symmetric(rows - 1, columns - 1, found[:, 2], size)
+
+
+def _check_entries(path: Path, rows: NDArray, columns: NDArray, size: int, remedy: str) -> None:
+    above, below = rows < columns, rows > columns
+    if above.any() and below.any():
+        line = int(np.argmax(below if above[np.argmax(above | below)] else above))
+        raise fault(path, line + 1, f"entry ({rows[line]}, {columns[line]}) is in the other "
+                    "triangle than those before it", "export one triangle of the matrix")
+    places = rows * (size + 1) + columns
+    order = np.argsort(places, kind="stable")
+    twice = np.flatnonzero(np.diff(places[order]) == 0)
+    if len(twice):
+        line = int(order[twice + 1].min())
+        raise fault(path, line + 1, f"entry ({rows[line]}, {columns[line]}) occurs twice", remedy)
+    missing = np.setdiff1d(np.arange(1, size + 1), rows[rows == columns])
+    if len(missing):
+        raise InputError(f"{path}: row {missing[0]} of {size} has no diagonal entry, the file is "
+                         f"cut off or of another run: {remedy}")
+
+
+def symmetric(rows: NDArray, columns: NDArray, values: NDArray, size: int) -> sparse.csc_array:
+    """A matrix from the entries of one triangle, counted from 0."""
+    off = rows != columns
+    entries = np.concatenate([values, values[off]])
+    places = (np.concatenate([rows, columns[off]]), np.concatenate([columns, rows[off]]))
+    return sparse.csc_array(sparse.coo_array((entries, places), shape=(size, size)))

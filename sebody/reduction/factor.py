@@ -1,0 +1,120 @@
+"""Factors of a sparse stiffness whose motions without strain are known."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import linalg, sparse
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import SuperLU, splu
+
+from sebody.errors import InputError
+
+_SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which a stiffness is singular
+_STRAIN = 1e-6  # of a motion without strain, relative to the summands of its forces
+_STILL = 1e-8  # motion of held rows that is rounding, relative to the extent of the body
+_SHOWN, _LISTED = 5, 60  # nodes that a message names, DOFs that it looks for them at
+
+
+class FactoredStiffness:
+    """Solves ``K q = f``; where motions N cost no strain, f must do no work on them.
+
+    As many DOFs as there are such motions are pinned, where these move most: a generalised inverse,
+    symmetric, whose solutions differ from others by a motion N.
+
+    Parameters
+    ----------
+    stiffness : (n, n), sparse
+        Symmetric and semidefinite.
+    free : (n, r)
+        Motions without strain, in comparable units.
+    name : function
+        Name of the DOF of a row, for messages.
+    remedy : str
+        What to do about other motions without strain.
+
+    Raises
+    ------
+    InputError
+        More motions without strain than these; the message names DOFs.
+    """
+
+    def __init__(self, stiffness: sparse.csc_array, free: NDArray, name: Callable[[int], str],
+                 remedy: str):
+        self._kept = np.arange(stiffness.shape[0])
+        if free.shape[1]:
+            order = linalg.qr(free.T, mode="r", pivoting=True)[1]
+            self._kept = np.setdiff1d(self._kept, order[:free.shape[1]])
+            stiffness = stiffness[self._kept][:, self._kept]
+        self._factor = None
+        if len(self._kept):
+            self._factor = _factorise(stiffness, lambda row: name(int(self._kept[row])), remedy)
+
+    def solve(self, forces: NDArray) -> NDArray:
+        """Displacements (n,) or (n, k) of forces, 0 at pinned DOFs."""
+        result = np.zeros(forces.shape)
+        if self._factor is not None:
+            result[self._kept] = self._factor.solve(np.ascontiguousarray(forces[self._kept]))
+        return result
+
+
+def motions_without_strain(stiffness: sparse.csc_array, rigid: NDArray, lengths: NDArray,
+                           held: NDArray) -> NDArray:
+    """Rigid motions (n, r) of `rigid` (n, k) that leave the rows `held` where they are.
+
+    Both times `lengths` (n,), so that their rows are comparable. None if the stiffness resists
+    them: a body that is tied to the ground.
+    """
+    _, values, turn = linalg.svd(np.vstack([rigid[held], np.zeros((rigid.shape[1],) * 2)]))
+    found = rigid @ turn[values < _STILL * max(1.0, values.max(initial=0.0))].T
+    motion = found / lengths[:, None]
+    summands = (abs(stiffness) @ np.abs(motion)).max(axis=0, initial=0.0)
+    strained = np.abs(stiffness @ motion).max(axis=0, initial=0.0) > _STRAIN * summands
+    return found[:, :0] if strained.any() else found
+
+
+def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: str) -> SuperLU:
+    """Factor a stiffness, refusing one that leaves a motion free."""
+    # SciPy 1.11 selects rows with 64-bit indices, which its SuperLU does not accept
+    short = (array.astype(np.intc) for array in (stiffness.indices, stiffness.indptr))
+    matrix = sparse.csc_array((stiffness.data.copy(), *short), shape=stiffness.shape)
+    diagonal = stiffness.diagonal()
+    worst = -1
+    if np.all(diagonal > 0):
+        try:
+            factor = _lu(matrix)
+        except RuntimeError:        # a pivot of exactly zero: find it beside a touch of stiffness
+            factor = _lu(matrix + sparse.diags_array(_SINGULAR / 10 * diagonal, format="csc"))
+        ratios = factor.U.diagonal()[factor.perm_c] / diagonal
+        worst = int(np.argmin(ratios))
+        if ratios[worst] > _SINGULAR:
+            return factor
+    raise InputError(
+        "S_II is singular: with the boundary clamped the body can still move without strain (a "
+        f"mechanism inside): {_suspects(stiffness, worst, name)}; {remedy}")
+
+
+def _lu(matrix: sparse.csc_array) -> SuperLU:
+    return splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+
+def _suspects(stiffness: sparse.csc_array, worst: int, name: Callable[[int], str]) -> str:
+    """DOFs without stiffness, else the loose part with the weakest pivot, else its DOF."""
+    bare = np.flatnonzero(stiffness.diagonal() <= 0)
+    if len(bare):
+        return f"{_listed(bare, name)} {'has' if len(bare) == 1 else 'have'} no stiffness"
+    count, part = connected_components(stiffness, directed=False)
+    if count == 1:
+        return f"the DOF held least is {name(worst)}"
+    rows = np.flatnonzero(part == part[worst])
+    return f"a part of {len(rows)} DOFs is loose, that of {_listed(rows, _node_of(name))}"
+
+
+def _node_of(name: Callable[[int], str]) -> Callable[[int], str]:
+    return lambda row: name(row).split(" of ", 1)[-1]
+
+
+def _listed(rows: NDArray, name: Callable[[int], str]) -> str:
+    names = list(dict.fromkeys(name(int(row)) for row in rows[:_LISTED]))
+    more = len(rows) > _LISTED or len(names) > _SHOWN
+    return ", ".join(names[:_SHOWN]) + (", ..." if more else "")

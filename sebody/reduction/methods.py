@@ -1,0 +1,182 @@
+"""Reductions of FE models behind one interface, all in one form.
+
+The reduced coordinates are those of the boundary, whose shapes are the constraint modes, and
+amplitudes of internal shapes that leave the boundary where it is: rigid motions of the boundary are
+rigid motions of the body. What tells the methods apart are the internal shapes and the mass.
+
+| method | internal shapes | mass |
+|---|---|---|
+| ``'guyan'`` | none | projected |
+| ``'craig-bampton'`` | vibration modes, boundary clamped | projected |
+| ``'rubin'`` | what free vibration modes and inertia loads leave | projected |
+| ``'macneal'`` | the same | of the free modes and rigid motions alone |
+
+Rubin's and MacNeal's bases are rigid motions R, elastic modes T of the free body and residual
+attachment modes, the answers to boundary forces F less what the modes answer. With inertia relief,
+``(I - M R R^T) F``, these answers span, beside R, the constraint modes (forces in equilibrium) and
+the static answers of the clamped body to the loads M R (the others). With constraint modes Psi and
+boundary values L the same space is that of Psi, ``T - Psi L T`` and those answers.
+
+R.J. Guyan, AIAA J. 3, 1965; R.R. Craig and M.C.C. Bampton, AIAA J. 6, 1968; R.H. MacNeal, Comput.
+Struct. 1, 1971; S. Rubin, AIAA J. 13, 1975.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import linalg, sparse
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.fem.model import FEModel
+from sebody.reduction.accuracy import Accuracy, enough_modes
+from sebody.reduction.body import ReducedBody
+from sebody.reduction.boundary import Boundary, Items, boundary_of
+from sebody.reduction.clamped import ClampedInterior, canonical_turn
+from sebody.reduction.component import ComponentModes, check_count, static_modes
+from sebody.reduction.constants import with_constants, with_shapes
+
+METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
+_DEPENDENT = 1e-10  # strain energy of a shape beside those before it, relative to its own
+_MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to the largest
+
+
+def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
+           method: str = "craig-bampton", select: Sequence[int] | None = None) -> ReducedBody:
+    """Superelement of an FE model by one of four methods; see `sebody.reduction.methods`.
+
+    Parameters
+    ----------
+    fe_model : FEModel
+        Free FE model.
+    boundary : mapping or pairs of interface and 'full', 'translation' or 'rotation'
+        Interfaces in the order wanted and the triplets kept there: indices of FE nodes,
+        `RigidFace` or `MeanFace`. A triplet not kept is an internal DOF.
+    modes : int or Accuracy
+        Number of vibration modes, from the lowest frequency up: of the clamped body, for 'macneal'
+        and 'rubin' elastic ones of the free body, beside which there are up to 6 (planar 3) more
+        internal shapes. Or what the modes are to achieve ('craig-bampton').
+    method : 'craig-bampton', 'guyan', 'macneal' or 'rubin'
+    select : sequence of int, optional
+        For 'craig-bampton': which of the modes to keep, counted from 0; default all.
+
+    Returns
+    -------
+    ReducedBody
+        With the constants of its exact inertia where the model knows the points of its mass
+        (MacNeal's mass is none of points), and with those of its stiffening where it has a
+        geometric stiffness; `ReducedBody.summary` tells.
+
+    Raises
+    ------
+    InputError
+        Unknown or repeated interfaces, triplets that nodes do not have, more modes than there are,
+        or a boundary that leaves a mechanism inside.
+    """
+    inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
+    method = inputs.choice(method, "method", METHODS)
+    _check_options(method, modes, select)
+    edge = boundary_of(fe_model, boundary)
+    matrices = tuple(edge.ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
+    interior = ClampedInterior(*matrices, edge.held, edge.means, edge.ties.rigid,
+                               edge.ties.lengths, edge.ties.name)
+    static = static_modes(matrices[0], interior, *edge.unit_motions())
+    notes = [f"{method} from {matrices[0].shape[0]} DOFs", *edge.notes]
+    free = None
+    if method in ("craig-bampton", "guyan"):
+        if isinstance(modes, Accuracy):
+            wanted = modes
+            modes, error = enough_modes(static, interior, matrices, wanted)
+            notes.append(f"dynamic stiffness of the interface within {error:.2g} up to the "
+                         f"frequency {wanted.up_to:g}")
+        component = static.with_vibrations(interior, modes, select)
+    else:
+        free = _FreeModes(edge, *matrices, modes)
+        component = free.component(static, interior)
+    reduced = component.project(*matrices)
+    if method == "macneal":
+        component, reduced = _without_residual_mass(component, reduced[0], free, matrices[1])
+        notes.append("no exact inertia: residual modes carry no mass")
+    body = ReducedBody(*reduced, edge.coordinates, edge.keeps, len(component.omega_squared),
+                       notes=tuple(notes))
+    if method == "macneal":
+        return with_shapes(body, fe_model, edge, component)
+    return with_constants(body, fe_model, edge, component, interior)
+
+
+def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | None) -> None:
+    if method == "guyan" and (isinstance(modes, Accuracy) or inputs.integer(modes, "modes") != 0):
+        raise InputError(f"modes is {inputs.shown(modes)}, but method 'guyan' has none: leave it "
+                         "out, or choose another method")
+    if select is not None and method != "craig-bampton":
+        raise InputError(f"select is for method 'craig-bampton'; {method!r} keeps all its modes")
+    if isinstance(modes, Accuracy) and (method != "craig-bampton" or select is not None):
+        raise InputError("modes=Accuracy(...) counts the modes of method 'craig-bampton' without "
+                         "select; give a number")
+
+
+class _FreeModes:
+    """Rigid motions and lowest elastic modes of the free body, of unit modal mass.
+
+    The elastic modes are those of ``(K, M)`` with momenta ``R^T M q`` of zero: inertia relief.
+    """
+
+    def __init__(self, edge: Boundary, stiffness: sparse.csc_array, mass: sparse.csc_array,
+                 modes: int):
+        ties = edge.ties
+        self._edge, self._stiffness, self._mass = edge, stiffness, mass
+        rigid = ties.rigid / ties.lengths[:, None]
+        factor = linalg.cholesky(rigid.T @ (mass @ rigid))
+        self.rigid = linalg.solve_triangular(factor, rigid.T, trans="T").T
+        momenta = sparse.csr_array((mass @ self.rigid).T)
+        free = ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
+                               ties.lengths, ties.name)
+        self.elastic = free.vibrations(check_count(modes, free, "body has {} elastic modes"))[1]
+
+    def component(self, static: ComponentModes, interior: ClampedInterior) -> ComponentModes:
+        """The constraint modes and the internal shapes that these modes and inertia loads leave."""
+        loads = self._mass @ self.rigid
+        trial = np.hstack([interior.displacement(loads),
+                           self.elastic - static.constraint @ self._edge.values(self.elastic)])
+        trial[self._edge.held] = 0.0        # not only to rounding
+        trial = trial / np.linalg.norm(trial, axis=0).clip(np.finfo(float).tiny)
+        trial = trial @ _independent(trial.T @ (self._stiffness @ trial))
+        omega_squared, turn = _vibrations(trial.T @ (self._stiffness @ trial),
+                                          trial.T @ (self._mass @ trial))
+        shapes = trial @ turn
+        turn = canonical_turn(omega_squared, shapes)
+        return replace(static, fixed_interface=shapes @ turn, omega_squared=omega_squared)
+
+
+def _without_residual_mass(component: ComponentModes, stiffness: NDArray, free: _FreeModes,
+                           mass: sparse.csc_array) -> tuple[ComponentModes, tuple]:
+    """MacNeal's mass: that of the parts of the shapes along rigid motions and free modes."""
+    momenta = np.hstack([free.rigid, free.elastic]).T @ (mass @ component.basis)
+    held = component.constraint.shape[1]
+    inner = momenta[:, held:]
+    omega_squared, turn = _vibrations(np.diag(component.omega_squared), inner.T @ inner)
+    turn = turn @ canonical_turn(omega_squared, component.fixed_interface @ turn)
+    component = replace(component, fixed_interface=component.fixed_interface @ turn,
+                        omega_squared=omega_squared)
+    momenta = np.hstack([momenta[:, :held], inner @ turn])
+    reduced = linalg.block_diag(stiffness[:held, :held], np.diag(omega_squared))
+    return component, (reduced, momenta.T @ momenta)
+
+
+def _independent(energies: NDArray) -> NDArray:
+    """Combinations (k, m) of shapes with these strain energies (k, k) that are independent."""
+    scale = np.sqrt(np.diag(energies)).clip(np.finfo(float).tiny)
+    values, vectors = linalg.eigh(energies / np.outer(scale, scale))
+    kept = values > _DEPENDENT * values.max(initial=0.0)
+    return vectors[:, kept] / scale[:, None] / np.sqrt(values[kept])
+
+
+def _vibrations(stiffness: NDArray, mass: NDArray) -> tuple[NDArray, NDArray]:
+    """omega^2 (m,) and mass-normalised vectors (k, m), without those of infinite frequency."""
+    inverse, vectors = linalg.eigh(mass, stiffness)
+    inverse, vectors = inverse[::-1], vectors[:, ::-1]
+    kept = inverse > _MASSLESS * inverse.max(initial=0.0)
+    omega_squared = 1 / inverse[kept]
+    return omega_squared, vectors[:, kept] * np.sqrt(omega_squared)

@@ -1,0 +1,37 @@
+"""Rigid motions in the reduced coordinates of a body."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def rigid_motions(coordinates: NDArray, keeps: tuple[str, ...], size: int,
+                  point: NDArray) -> NDArray:
+    """Unit rigid translations, then rotations about `point`: rows e, e x (X_i - point); e; zero.
+
+    Parameters
+    ----------
+    coordinates : (n_nodes, 3), planar (n_nodes, 2)
+        Boundary nodes.
+    keeps : tuple of str
+        Triplets that they keep.
+    size : int
+        Number of reduced coordinates.
+
+    Returns
+    -------
+    (size, 6), planar (size, 3)
+    """
+    arms = coordinates[[keep != "rotation" for keep in keeps]] - point
+    angles = sum(keep != "translation" for keep in keeps)
+    count, dimension = arms.shape
+    if dimension == 2:
+        velocities = np.column_stack([-arms[:, 1], arms[:, 0]]).reshape(-1, 1)
+    else:
+        # Row of node i: (e_1 x a, e_2 x a, e_3 x a) = -skew(a).
+        velocities = np.cross(np.eye(3), arms[:, None, :]).transpose(0, 2, 1).reshape(-1, 3)
+    axes = velocities.shape[1]
+    positions = np.hstack([np.tile(np.eye(dimension), (count, 1)), velocities])
+    rotations = np.hstack(
+        [np.zeros((angles * axes, dimension)), np.tile(np.eye(axes), (angles, 1))])
+    internal = np.zeros((size - len(positions) - len(rotations), dimension + axes))
+    return np.vstack([positions, rotations, internal])

@@ -1,0 +1,26 @@
+"""Files of FE programs, unpacked."""
+
+import tarfile
+from pathlib import Path
+
+import pytest
+
+from sebody.io import import_body
+
+DATA = Path(__file__).parents[1] / "data"
+INTERFACES = {"root": "900001/900002", "tip": "900003/900004"}
+
+
+@pytest.fixture(scope="session")
+def beam_deck(tmp_path_factory):
+    """The deck of a beam, beside the matrices that CalculiX wrote; not to be changed."""
+    folder = tmp_path_factory.mktemp("calculix")
+    with tarfile.open(DATA / "calculix/beam.tar.xz") as archive:
+        archive.extractall(folder, filter="data")
+    return folder / "beam/se.inp"
+
+
+@pytest.fixture(scope="session")
+def beam_body(beam_deck):
+    """It, reduced to its end faces and eight modes."""
+    return import_body(beam_deck, INTERFACES, 8)

@@ -1,0 +1,97 @@
+"""Bodies in files: nothing is lost, and nothing else is taken for one."""
+
+import json
+from dataclasses import fields, is_dataclass
+
+import numpy as np
+import pytest
+
+from sebody import InputError, Model
+from sebody.fem import Section, hexahedral_block, planar_beam
+from sebody.io import Mesh, load_body, read_body_file, save_body
+from sebody.reduction import RigidFace, craig_bampton
+
+SECTION = Section(area=2.0, inertia_y=0.3, inertia_z=0.4, torsion=0.2, youngs_modulus=1e4,
+                  poisson_ratio=0.25, density=1.5)
+
+
+def block():
+    model = hexahedral_block((1, 2, 3), (3, 1, 1), (3, 1, 1), 1e4, 0.25, 2.0)
+    ends = [np.flatnonzero(np.isclose(model.coordinates[:, 0], x)) for x in (1, 4)]
+    faces = [RigidFace((x, 2.5, 3.5), end) for x, end in zip((1, 4), ends, strict=True)]
+    return craig_bampton(model, [(faces[0], "full"), (faces[1], "full")], 3)
+
+
+def plane():
+    model = planar_beam((1, 2), (4, 3), SECTION, 5)
+    return craig_bampton(model, {0: "full", 3: "translation", 5: "rotation"}, 2).damped(0.02)
+
+
+def same(one, other):
+    if is_dataclass(one):
+        return all(same(getattr(one, f.name), getattr(other, f.name)) for f in fields(one))
+    return np.array_equal(one, other)
+
+
+@pytest.mark.parametrize("make", [block, plane])
+def test_a_body_comes_back_as_it_was(make, tmp_path):
+    body = make()
+    names = tuple("abc"[:len(body.keeps)])
+    save_body(body, tmp_path / "body.npz", names, units="mm, t, s", provenance={"source": "here"},
+              mesh=Mesh(body.recovery.coordinates, {"line": np.array([[0, 1]])}))
+    assert same(body, load_body(tmp_path / "body.npz"))
+    file = read_body_file(tmp_path / "body.npz")
+    assert (file.names, file.units, file.provenance) == (names, "mm, t, s", {"source": "here"})
+    np.testing.assert_array_equal(file.mesh.cells["line"], [[0, 1]])
+
+
+def test_a_model_takes_the_file(tmp_path):
+    body = block()
+    path = save_body(body, tmp_path / "body.npz")
+    model = Model()
+    nodes = [model.node(f"n{k}", point) for k, point in enumerate(body.coordinates)]
+    for k, name in enumerate((path, str(path))):
+        placed = model.superelement(f"link {k}", name, nodes).body
+        assert same(placed, body)
+
+
+def test_any_program_can_read_it(tmp_path):
+    body = block()
+    with np.load(save_body(body, tmp_path / "body.npz")) as file:
+        np.testing.assert_array_equal(file["stiffness"], body.stiffness)
+        np.testing.assert_array_equal(file["invariants.J0"], body.invariants.J0)
+        notes = json.loads(str(file["notes"]))
+    assert notes["format"] == "sebody body"
+    assert notes["names"] == ["node 0", "node 1"]
+
+
+def changed(path, **notes):
+    """The file with other notes."""
+    with np.load(path) as file:
+        arrays = dict(file)
+    found = json.loads(str(arrays.pop("notes")))
+    np.savez(path, notes=np.array(json.dumps(found | notes)), **arrays)
+
+
+def test_other_versions_are_refused_in_words(tmp_path):
+    path = save_body(block(), tmp_path / "body.npz")
+    changed(path, version=2)
+    with pytest.raises(InputError, match="is of version 2, this program reads 1: update sebody"):
+        load_body(path)
+    changed(path, version=0)
+    with pytest.raises(InputError, match="is of version 0, .*: import the body again"):
+        load_body(path)
+    changed(path, format="other")
+    with pytest.raises(InputError, match="is a file of another kind .'other'.: give one written"):
+        load_body(path)
+
+
+def test_a_defect_names_the_command_that_says_more(tmp_path):
+    path = save_body(block(), tmp_path / "body.npz")
+    with np.load(path) as file:
+        arrays = dict(file)
+    arrays["stiffness"] = arrays["stiffness"] + 50 * np.eye(len(arrays["stiffness"]))
+    np.savez(path, **arrays)
+    with pytest.raises(InputError, match=rf"body file {path}: stiffness resists rigid motion.*"
+                                         rf"'sebody inspect {path}' says more"):
+        load_body(path)
