@@ -5,7 +5,8 @@ from sebody.io.importing import import_body, read_fe_model
 from sebody.io.ngsolve_space import from_ngsolve
 from sebody.io.registry import SOURCES, Source
 from sebody.io.scikit_fem import from_skfem
+from sebody.io.sid import write_sid
 
 __all__ = ["SOURCES", "BodyFile", "Mesh", "Source", "from_ngsolve", "from_skfem",
            "import_body", "load_body", "read_body_file",
-           "read_fe_model", "save_body"]
+           "read_fe_model", "save_body", "write_sid"]

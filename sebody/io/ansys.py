@@ -4,6 +4,7 @@ Write the ``.full`` of a free model, with the sparse or block Lanczos solver. Th
 that are not in the matrices (midside nodes that were dropped, fixed ones).
 """
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -111,7 +112,7 @@ def _cells(mesh: Any, labels: np.ndarray) -> list[tuple[str, np.ndarray]]:
     return [(kind, np.array(cells)) for kind, cells in found.items()]
 
 
-def _called(function: Any, path: Path) -> Any:
+def _called(function: Callable[[], Any], path: Path) -> Any:
     """What the reader makes of a file; whatever it raises is said of the file."""
     try:
         return function()

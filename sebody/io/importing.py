@@ -12,6 +12,7 @@ from sebody.fem.model import FEModel
 from sebody.files import check_target
 from sebody.io.body_file import TARGET, BodyFile, Mesh, write_body_file
 from sebody.io.interfaces import Interface, boundary_items, parsed
+from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
 from sebody.io.reduced import chosen_interfaces
 from sebody.io.registry import read_source
@@ -37,7 +38,7 @@ def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
         Files that cannot be used, or that hold reduced matrices.
     """
     model = read_source(path, kind).model
-    if isinstance(model, dict):
+    if not isinstance(model, FEModel):
         raise InputError(f"{path} holds matrices that are reduced already: use import_body")
     return model
 
@@ -77,16 +78,17 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     if output is not None:
         check_target(output, *TARGET)
     file = imported(read_source(path, kind), parsed(interfaces), modes, method, units, path)
+    body = file.body()
     if output is not None:
         write_body_file(file, output)
-    return file.body()
+    return body
 
 
 def imported(reading: Reading, interfaces: list[Interface], modes: int | Accuracy, method: str,
              units: str, path: str | Path) -> BodyFile:
     """What is to be written of a reading."""
     model = reading.model
-    if isinstance(model, dict):
+    if not isinstance(model, FEModel):
         return _reduced(reading, interfaces, modes, units)
     items = boundary_items(model, interfaces, reading.rotation_nodes)
     try:
@@ -108,17 +110,21 @@ def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accurac
     """A body that the FE program has reduced, its nodes named."""
     if modes:
         raise InputError(f"modes is {inputs.shown(modes)}, but the files hold matrices that are "
-                         f"reduced already, with {reading.model['modes']} modes: leave modes out")
+                         "reduced already: leave modes out")
     provenance = {"source": reading.source, "method": "reduced by the FE program", **reading.notes}
-    file = BodyFile(reading.model, reading.names, units, provenance)
-    if not interfaces:
-        return file
+    modal = isinstance(reading.model, ModalBody)
     for one in interfaces:
-        if len(one.nodes) != 1 or one.keeps:
+        if len(one.nodes) != 1 or (one.keeps and not modal):
             raise InputError(f"interface {one.name!r}: the body is reduced already, so write "
                              f"{one.name}=NODE")
-    return chosen_interfaces(file, [str(one.nodes[0]) for one in interfaces],
-                             [one.name for one in interfaces])
+    labels = [str(one.nodes[0]) for one in interfaces] or list(reading.names)
+    names = tuple(one.name for one in interfaces) or reading.names
+    if modal:
+        keeps = {label: one.keeps for label, one in zip(labels, interfaces, strict=False)}
+        chosen = [keeps.get(label) or reading.model.keeps(label) for label in labels]
+        return BodyFile(reading.model.with_boundary(labels, chosen), names, units, provenance)
+    return chosen_interfaces(BodyFile(reading.model, reading.names, units, provenance), labels,
+                             names)
 
 
 def rigid_residual(model: FEModel) -> float:

@@ -5,6 +5,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from sebody.fem.model import FEModel
+from sebody.io.modal import ModalBody
 
 
 class Reading(NamedTuple):
@@ -12,8 +13,9 @@ class Reading(NamedTuple):
 
     Parameters
     ----------
-    model : FEModel or dict
-        An FE model, or the arguments of the `ReducedBody` that the program has made.
+    model : FEModel, dict or ModalBody
+        An FE model, the arguments of the `ReducedBody` that the program has made, or a body of
+        rigid motions and modes, whose boundary is still to be chosen.
     names : tuple of str
         Of the boundary nodes of a reduced body: the labels of the FE program.
     rotation_nodes : dict of label by label
@@ -24,7 +26,7 @@ class Reading(NamedTuple):
         For the provenance, such as why there is no geometric stiffness.
     """
 
-    model: FEModel | dict
+    model: FEModel | dict | ModalBody
     names: tuple[str, ...] = ()
     rotation_nodes: Mapping[int, int] = MappingProxyType({})
     source: str = ""

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.io import abaqus, ansys, calculix, matrix_market, nastran
+from sebody.io import abaqus, ansys, calculix, matrix_market, nastran, sid
 from sebody.io.reading import Reading
 from sebody.io.text import read_text
 
@@ -62,6 +62,8 @@ SOURCES = (
     Source("nastran-dmig", (".pch", ".op2"), nastran.read_dmig,
            "DMIG in a punch or OP2 file with GRID cards; reduced already", needs="pyyeti",
            extra="nastran"),
+    Source("sid", (".sid_fem", ".sid"), sid.read,
+           "Standard Input Data, where its modes span the motions of the nodes"),
 )
 _HEAD = 4000        # characters in which a sign is looked for
 

@@ -87,5 +87,5 @@ def _moments(mass: sparse.csr_array, rows: NDArray, rigid: NDArray) -> sparse.cs
     half = np.einsum("aibi->ab", B) / 2
     # B = sum m (r_a . r_b I - r_b r_a^T)
     P = half[:, None, :, None] * np.eye(3)[None, :, None, :] - B.transpose(0, 3, 2, 1)
-    H = sparse.csr_array(P.reshape(3 * len(rigid), -1))
+    H = sparse.csr_array(P.reshape(3 * len(rigid), 3 * len(rigid)))
     return sparse.block_array([[mass[x][:, x], G], [G.T, H]], format="csr")

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from sebody import InputError
-from sebody.cli import interrupts, progress, run
+from sebody.analysis import progress
+from sebody.cli import interrupts, run
 from sebody.cli.entry import main
 from sebody.scenes import hinged_beam
 
@@ -51,7 +52,8 @@ def test_a_signal_ends_the_run_and_keeps_its_results(tmp_path, capsys, monkeypat
 
 
 def test_a_process_ends_soon_after_a_signal(tmp_path, capsys):
-    code = ("import signal, sys\nfrom sebody.cli import entry, progress\n"
+    code = ("import signal, sys\n"
+            "from sebody.analysis import progress\nfrom sebody.cli import entry\n"
             "progress.Progress.__call__ = lambda bar, fraction: print(flush=True)\n"
             "sys.exit(entry.main(sys.argv[1:]))")
     process = subprocess.Popen([sys.executable, "-c", code, *LONG, *files(tmp_path)],

@@ -1,6 +1,7 @@
 """Files of FE programs, unpacked."""
 
 import tarfile
+import time
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,15 @@ def beam_deck(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def beam_body(beam_deck):
-    """It, reduced to its end faces and eight modes."""
-    return import_body(beam_deck, INTERFACES, 8)
+def beam_import(beam_deck):
+    """It, reduced to its end faces and eight modes, its file, and the seconds it took."""
+    began = time.process_time()
+    path = beam_deck.with_name("beam.npz")
+    body = import_body(beam_deck, INTERFACES, 8, output=path)
+    return body, path, time.process_time() - began
+
+
+@pytest.fixture(scope="session")
+def beam_body(beam_import):
+    """The body alone."""
+    return beam_import[0]

@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 import pytest
 
-from sebody import InputError, Model
+from sebody import InputError, Model, WriteError
 from sebody.fem import Section, hexahedral_block, planar_beam
 from sebody.io import Mesh, load_body, read_body_file, save_body
 from sebody.reduction import RigidFace, craig_bampton
@@ -30,6 +30,8 @@ def plane():
 def same(one, other):
     if is_dataclass(one):
         return all(same(getattr(one, f.name), getattr(other, f.name)) for f in fields(one))
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(same, one, other))
     return np.array_equal(one, other)
 
 
@@ -95,3 +97,28 @@ def test_a_defect_names_the_command_that_says_more(tmp_path):
     with pytest.raises(InputError, match=rf"body file {path}: stiffness resists rigid motion.*"
                                          rf"'sebody inspect {path}' says more"):
         load_body(path)
+
+
+def test_damaged_files_are_refused(tmp_path):
+    path = save_body(block(), tmp_path / "body.npz")
+    whole = path.read_bytes()
+    for spoilt in (whole[:len(whole) // 2], b"", whole.replace(b"PK", b"QK"), b"text"):
+        path.write_bytes(spoilt)
+        with pytest.raises(InputError, match="is damaged or no body file: give one written by"):
+            load_body(path)
+    with pytest.raises(InputError, match="none.npz does not exist"):
+        load_body(tmp_path / "none.npz")
+
+
+def test_a_failure_leaves_the_older_file(tmp_path, monkeypatch):
+    path = save_body(block(), tmp_path / "body.npz")
+    before = path.read_bytes()
+
+    def full(*arguments, **arrays):
+        raise OSError(28, "No space left on device")
+    monkeypatch.setattr(np, "savez_compressed", full)
+    with pytest.raises(WriteError, match="No space left on device; the older file is unchanged"):
+        save_body(plane(), path)
+    assert path.read_bytes() == before and len(list(tmp_path.iterdir())) == 1
+    with pytest.raises(InputError, match="names is .'a', 'a'.: give 2 different names"):
+        save_body(block(), path, ("a", "a"))

@@ -2,7 +2,6 @@
 
 import shutil
 import subprocess
-import time
 
 import numpy as np
 import pytest
@@ -24,17 +23,16 @@ def hertz(body):
     return np.sqrt(np.abs(squares[6:])) / (2 * np.pi)
 
 
-def test_the_beam_is_reduced_in_seconds(beam_deck, tmp_path):
-    began = time.process_time()
-    body = import_body(beam_deck, INTERFACES, 8, output=tmp_path / "beam.npz")
-    assert time.process_time() - began < 5.0
+def test_the_beam_is_reduced_in_seconds(beam_import):
+    body, path, seconds = beam_import
+    assert seconds < 5.0
     assert body.total_mass == pytest.approx(MASS, abs=5e-5)         # as it is printed
     np.testing.assert_allclose(hertz(body)[:8:2], PAIRS, atol=5e-4)
     np.testing.assert_allclose(hertz(body)[:8:2], hertz(body)[1:8:2], rtol=1e-6)
     # from above: a reduction is stiffer than the model
     assert (hertz(body)[:8:2] > WHOLE).all()
     np.testing.assert_allclose(body.coordinates, [[0, 0, 0], [141.42, 0, 0]])
-    np.testing.assert_array_equal(load_body(tmp_path / "beam.npz").mass, body.mass)
+    np.testing.assert_array_equal(load_body(path).mass, body.mass)
 
 
 def test_rigid_motion_is_as_free_as_the_digits_allow(beam_body):
@@ -81,8 +79,6 @@ def test_faces_are_tied_here_as_well(beam_deck):
     changed.write_text(deck.replace("*STEP", f"*NSET, NSET=MID\n{listed}\n*STEP", 1))
     for suffix in (".sti", ".mas", ".dof"):
         shutil.copy(beam_deck.with_suffix(suffix), changed.with_suffix(suffix))
-    with pytest.raises(InputError, match="rbe3-equal"):     # no face of the surface is among them
-        import_body(changed, {**INTERFACES, "middle": "rbe3:mid"}, 8)
     body = import_body(changed, {**INTERFACES, "middle": "rbe3-equal:mid"}, 8)
     assert body.keeps == ("full",) * 3
     np.testing.assert_allclose(body.coordinates[2], (70.71, 0, 0), atol=1e-9)

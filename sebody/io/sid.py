@@ -1,0 +1,268 @@
+"""SID, Wallrapp's Standard Input Data: written from a body, read where its modes suffice.
+
+O. Wallrapp, Standardization of flexible body modeling in multibody system codes, part 1, Mechanics
+of Structures and Machines 22, 1994. Of a frame fixed at the FE origin in the mean-axis sense, with
+displacements ``Phi q`` in it:
+
+    mdCM  m c                    J   inertia (xx, yy, zz, xy, xz, yz)
+    Ct    Phi^T M E_t            Cr  Phi^T M A_k x             Me  Phi^T M Phi
+    Gr    2 (A_k X)^T M A_l Phi  Ge  2 Phi^T M A_k Phi         Oe  Phi^T M A_k A_l x, of
+                                                (wx^2, wy^2, wz^2, wx wy, wy wz, wx wz)
+
+each ``M0 + sum_j M1(row, j, column) q_j``; ``x = X + Phi q`` and what follows it in second order,
+which is the geometric stiffness of accelerations and spin.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import LinAlgError, eigh
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.files import check_target, replacing
+from sebody.io.body_file import checked_names
+from sebody.io.modal import ModalBody, ModalNode
+from sebody.io.reading import Reading
+from sebody.io.text import fault, read_text
+from sebody.reduction.body import ReducedBody
+from sebody.reduction.rigid import rigid_motions
+
+TARGET = "SID file", (".SID_FEM", ".sid_fem", ".sid")
+_REMEDY = "give a file that begins with 'part' and 'new modal', as FEMBS and sebody write them"
+_INERTIA = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+_SPINS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
+_DIGITS = 16
+
+
+def write_sid(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None) -> Path:
+    """Write a body as SID: its free vibration modes, with constants of inertia and stiffening.
+
+    Parameters
+    ----------
+    body : ReducedBody
+        Spatial, with the constants of exact inertia, and with inertia of all its coordinates.
+        Stiffening by accelerations and spin is written; that by joint forces has no place in SID.
+    path : str or Path
+        File to write, ``.SID_FEM``.
+    names : tuple of str, optional
+        Of the nodes; numbers from 1 by default.
+
+    Raises
+    ------
+    InputError
+        A body that SID cannot hold, or a target that cannot be written.
+    WriteError
+        Writing fails; an older file is unchanged.
+    """
+    inputs.instance(body, "body", ReducedBody, "give a ReducedBody")
+    path = check_target(path, *TARGET)
+    names = (tuple(map(str, range(1, len(body.keeps) + 1))) if names is None else
+             checked_names(names, len(body.keeps)))
+    if body.planar or body.invariants is None:
+        raise InputError("SID is of spatial bodies with constants of exact inertia: reduce an FE "
+                         "model that knows its points of mass, such as one of solids")
+    try:
+        squares, shapes = eigh(body.stiffness, body.mass)
+    except LinAlgError as error:
+        raise InputError("SID: the mass is singular, so the body has modes without a frequency; "
+                         "give every coordinate inertia") from error
+    text = "\n".join(_lines(body, names, squares[6:], shapes[:, 6:])) + "\n"
+    with replacing(path, TARGET[0]) as file:
+        file.write(text.encode("ascii", "replace"))
+    return path
+
+
+def _lines(body: ReducedBody, names: tuple[str, ...], squares: NDArray, modes: NDArray
+           ) -> Iterator[str]:
+    """The file for modes (n, nq) with these squares of angular frequencies."""
+    nq = modes.shape[1]
+    yield f"{len(names):5d} {nq:5d}    :No. nodes, No. modes:S refmod frame new node"
+    yield from ("part", "  new modal =", "    refmod", f"      mass = {_real(body.total_mass)}",
+                f"      nelastq = {nq}")
+    for k, square in enumerate(squares, 1):
+        yield f"      ielastq ({k:4d}) = Eigen Mode {k:4d} : {np.sqrt(square) / 2 / np.pi:12.6g} Hz"
+    yield from ("    end refmod", "    frame")
+    positions, rotations = list(body.position_nodes), list(body.rotation_nodes)
+    for node, name in enumerate(names):
+        at = positions.index(node) if node in positions else None
+        phi = np.zeros((3, nq)) if at is None else modes[3 * at:3 * at + 3]
+        first = 3 * len(positions)
+        at = first + 3 * rotations.index(node) if node in rotations else None
+        psi = np.zeros((3, nq)) if at is None else modes[at:at + 3]
+        yield from _node(name, body.coordinates[node], phi, psi, nq)
+    yield "    end frame"
+    for name, (constant, linear) in _constants(body, squares, modes).items():
+        yield from _taylor(name, constant, linear, nq, "    ")
+    yield from ("  end modal", "end part")
+
+
+def _node(name: str, place: NDArray, phi: NDArray, psi: NDArray, nq: int) -> Iterator[str]:
+    turned = np.cross(psi.T[:, None, :], np.eye(3)[None]).transpose(2, 0, 1)   # psi x e_k
+    yield from (f"      new node = {name}", "        rframe = body ref")
+    yield from _taylor("origin", place[:, None], phi[:, :, None], nq, "        ")
+    yield from _taylor("phi", phi, None, nq, "        ")
+    yield from _taylor("psi", psi, None, nq, "        ")
+    yield from _taylor("AP", np.eye(3), turned, nq, "        ")
+    yield "      end node"
+
+
+def _constants(body: ReducedBody, squares: NDArray, modes: NDArray
+               ) -> dict[str, tuple[NDArray, NDArray | None]]:
+    """M0 (r, c) and M1 (r, nq, c) by name."""
+    one, n, nq = body.invariants.about(np.zeros(3)), len(body.mass), modes.shape[1]
+    S1, g, h = (part[..., :n] @ modes for part in (one.S1, one.g, one.h))
+    K = modes.T @ one.K[:, :n, :n] @ modes
+    J2 = modes.T @ one.J2[:, :, :n, :n] @ modes
+    Q = modes.T @ one.Q @ modes
+    by_first, by_turn, by_spin = (np.einsum("...b,bij->...ij", part[..., n:], Q)
+                                  for part in (one.S1, one.g, one.h))
+    both = h + h.transpose(1, 0, 2)
+    spins = [-(h[k, k] if k == m else both[k, m]) for k, m in _SPINS]
+    more = [-(J2[k, m] + by_spin[k, m]) if k == m else
+            -(2 * J2[k, m] + by_spin[k, m] + by_spin[m, k]) for k, m in _SPINS]
+    damping = np.zeros((nq, nq)) if body.damping is None else modes.T @ body.damping @ modes
+    return {
+        "mdCM": (one.c0[:, None], S1[:, :, None]),
+        "J": (np.array([[one.J0[k, m]] for k, m in _INERTIA]),
+              np.array([both[k, m] for k, m in _INERTIA])[:, :, None]),
+        "Ct": (S1.T, by_first.transpose(1, 2, 0)),
+        "Cr": (g.T, (K.transpose(0, 2, 1) + by_turn).transpose(1, 2, 0)),
+        "Me": (modes.T @ body.mass @ modes, None),
+        "Gr": (2 * h.transpose(0, 2, 1).reshape(3, 3 * nq), None),
+        "Ge": (2 * K.transpose(2, 1, 0).reshape(nq, 3 * nq), None),
+        "Oe": (np.array(spins).T, np.array(more).transpose(1, 2, 0)),
+        "ksigma": (np.zeros((nq, 1)), None), "Ke": (np.diag(squares), None), "De": (damping, None),
+    }
+
+
+def _taylor(name: str, constant: NDArray, linear: NDArray | None, nq: int, indent: str
+            ) -> Iterator[str]:
+    """One matrix; entries that are zero are left out."""
+    linear = linear if linear is not None and np.any(linear) else None
+    zero = linear is None and not np.any(constant)
+    numbers = {"order": int(linear is not None), "nrow": len(constant), "ncol": constant.shape[1],
+               "nq": nq, "nqn": 0, "structure": 0 if zero else 3}
+    yield indent + name
+    yield from (f"{indent}  {key} = {value}" for key, value in numbers.items())
+    for i, j in np.argwhere(constant):
+        yield f"{indent}  m0({i + 1:4d},{j + 1:4d}) = {_real(constant[i, j])}"
+    for i, q, j in np.argwhere(linear) if linear is not None else ():
+        yield f"{indent}  m1({i + 1:4d},{q + 1:4d},{j + 1:4d}) = {_real(linear[i, q, j])}"
+    yield f"{indent}end {name}"
+
+
+def _real(value: float) -> str:
+    return f"{value:.{_DIGITS}E}".replace("E", "D")
+
+
+def read(path: Path) -> Reading:
+    """The body of a SID file; its nodes become boundary nodes where its modes let them.
+
+    Raises
+    ------
+    InputError
+        A file that is cut off or of another kind.
+    """
+    found: dict[str, NDArray] = {}
+    nodes: list[ModalNode] = []
+    for where, name, matrix in _blocks(path):
+        if where is None:
+            found[name] = matrix
+        else:
+            if not nodes or nodes[-1].name != where:
+                nodes.append(ModalNode(where, np.zeros(3), None, None))
+            own = {"origin": "point", "phi": "phi", "psi": "psi"}.get(name)
+            if own:
+                value = matrix[:, 0] if own == "point" else matrix
+                nodes[-1] = nodes[-1]._replace(**{own: value})
+    missing = {"mass", "mdCM", "J", "Ct", "Cr", "Me", "Ke"} - set(found)
+    if missing or not nodes:
+        what = ", ".join(sorted(missing)) or "node"
+        raise InputError(f"SID file {path} has no {what}: it is cut off, or {_REMEDY}")
+    return Reading(_modal(path, found, nodes), tuple(node.name for node in nodes),
+                   source=f"SID {path.name}", notes={
+                       "exact inertia": "none: SID mixes its constants with those of stiffening"})
+
+
+def _modal(path: Path, found: dict[str, NDArray], nodes: list[ModalNode]) -> ModalBody:
+    nq, mass = len(found["Ke"]), float(found["mass"][0, 0])
+    shapes = {"mdCM": (3, 1), "Ct": (nq, 3), "Cr": (nq, 3), "Me": (nq, nq), "Ke": (nq, nq)}
+    for name, shape in shapes.items():
+        if found[name].shape != shape:
+            raise InputError(f"SID file {path}: {name} has shape {found[name].shape}, its {nq} "
+                             f"modes need {shape}: {_REMEDY}")
+    for node in nodes:
+        if node.phi is None or node.psi is None or {node.phi.shape, node.psi.shape} != {(3, nq)}:
+            raise InputError(f"SID file {path}: node {node.name} has no shapes phi and psi of "
+                             f"{nq} modes: {_REMEDY}")
+    J = found["J"]
+    if J.shape == (6, 1):
+        whole = np.zeros((3, 3))
+        for value, (k, m) in zip(J[:, 0], _INERTIA, strict=True):
+            whole[k, m] = whole[m, k] = value
+        J = whole
+    moment = rigid_motions(found["mdCM"].T, ("translation",), 3, np.zeros(3))[:, 3:]
+    M = np.block([[mass * np.eye(3), moment, found["Ct"].T], [moment.T, J, found["Cr"].T],
+                  [found["Ct"], found["Cr"], found["Me"]]])
+    K = np.zeros_like(M)
+    K[6:, 6:] = (found["Ke"] + found["Ke"].T) / 2
+    return ModalBody((M + M.T) / 2, K, nodes, str(path))
+
+
+def _blocks(path: Path) -> Iterator[tuple[str | None, str, NDArray]]:
+    """Node or None, name and M0 of every matrix; the mass of the body as ``mass``."""
+    node, block, sizes, entries = None, None, {}, []
+    for number, line in enumerate(read_text(path, "SID file", _REMEDY).splitlines(), 1):
+        words = line.strip()
+        key, equals, value = (part.strip() for part in words.partition("="))
+        if key == "new node":
+            node = value
+        elif words == "end node":
+            node = None
+        elif key == "mass" and equals:
+            yield None, "mass", np.array([[_value(path, number, value)]])
+        elif words in _NAMES:
+            block, sizes, entries = words, {}, []
+        elif block and words == f"end {block}":
+            yield node, block, _matrix(path, number, sizes, entries)
+            block = None
+        elif block and re.fullmatch(r"m0\s*\(\s*\d+\s*,\s*\d+\s*\)", key):
+            i, j = map(int, re.findall(r"\d+", key[2:]))
+            entries.append((i, j, _value(path, number, value)))
+        elif block and key in ("nrow", "ncol", "structure"):
+            sizes[key] = int(_value(path, number, value))
+    if block:
+        raise InputError(f"SID file {path} ends within {block}: it is cut off, write it again")
+
+
+def _matrix(path: Path, number: int, sizes: dict[str, int], entries: list) -> NDArray:
+    """M0: its structure is 0 zero, 1 diagonal, 2 symmetric, 3 full, 4 the unit matrix."""
+    shape = sizes.get("nrow", 0), sizes.get("ncol", 0)
+    found = np.eye(*shape) if sizes.get("structure") == 4 else np.zeros(shape)
+    for i, j, value in entries:
+        if not (1 <= i <= shape[0] and 1 <= j <= shape[1]):
+            raise fault(path, number, f"m0({i}, {j}) is not within {shape[0]} x {shape[1]}",
+                        "write the file again")
+        found[i - 1, j - 1] = value
+    if sizes.get("structure") == 2:
+        upper, lower = np.triu(found, 1), np.tril(found, -1)
+        found += (upper.T if not lower.any() else 0) + (lower.T if not upper.any() else 0)
+    return found
+
+
+def _value(path: Path, number: int, text: str) -> float:
+    try:
+        value = float(text.upper().replace("D", "E"))
+    except ValueError as error:
+        raise fault(path, number, f"{text!r} is no number", "write the file again") from error
+    if not np.isfinite(value):
+        raise fault(path, number, f"{text!r} is not finite", "write the file again")
+    return value
+
+
+_NAMES = {"origin", "phi", "psi", "AP", "sigma", "mdCM", "J", "Ct", "Cr", "Me", "Gr", "Ge", "Oe",
+          "ksigma", "Ke", "De"}
