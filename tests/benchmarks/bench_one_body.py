@@ -105,7 +105,7 @@ def onset(options: dict, load: Callable[[Model, float], None], exact: float) -> 
 
 
 def deepest(options: dict, case: str) -> float:
-    """Deflection of the tip as the arm spins up, two modes; NaN if it is lost."""
+    """Deflection of the tip as the arm spins up, two modes; NaN if it folds."""
     scene = spin_up.build(case, bodies=1, modes=2, **options)
     try:
         result = simulate(scene.model, scene.h, 20.0)
@@ -113,7 +113,8 @@ def deepest(options: dict, case: str) -> float:
         return math.nan
     angle = np.array([spin_up.turning(spin_up.CASES[case][1])[0](t) for t in result.t])
     x, y = result["tip.position"].T
-    return float((np.cos(angle) * y - np.sin(angle) * x).min())
+    found = (np.cos(angle) * y - np.sin(angle) * x).min()
+    return float(found) if -found < spin_up.CASES[case][0] / 2 else math.nan
 
 
 def middle_of_the_rod(options: dict) -> np.ndarray:
