@@ -49,13 +49,6 @@ def test_set_ups_are_timed_by_scene(capsys):
     assert len(found) == len(bench.SCENES) and found["planar-hinged-beam"] > 0.0
 
 
-def test_options_are_compared_on_one_body(capsys):
-    imported("bench_one_body").main(["--json"], "stretch")
-    row, = json.loads(capsys.readouterr().out)
-    assert row["C, stiffening"] == pytest.approx(row["exact"], rel=1e-3)
-    assert row["B"] == pytest.approx(0.35, abs=2e-3)
-
-
 def test_variable_steps_are_compared_with_the_best_fixed_step():
     (error, steps, spent, best), = imported("bench_accuracy").compare(
         planar_hinged_beam.build, 0.5, 0.05, 16, (1e-2,), 1)
