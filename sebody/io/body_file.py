@@ -1,8 +1,8 @@
 """Body files: a reduced body in one npz file that any program can read.
 
 Arrays are members by name (``stiffness``, ``mass``, ``coordinates``, ``invariants.J0``,
-``recovery.shapes``, ...); the member ``notes`` is a JSON text with everything else: format and
-version, layout, names of the boundary nodes, units, provenance.
+``recovery.shapes``, ``loads.NAME``, ...); the member ``notes`` is a JSON text with everything else:
+format and version, layout, names of the boundary nodes, units, provenance.
 """
 
 import json
@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.beam_stress import BeamStress
+from sebody.fem.stress import SolidStress, StressModes
 from sebody.files import check_target, replacing
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
@@ -25,6 +27,7 @@ from sebody.reduction.recovery import Recovery
 
 FORMAT, VERSION = "sebody body", 1
 TARGET = "body file", (".npz",)     # see `files.check_target`
+STRESSES = SolidStress, BeamStress, StressModes     # of a Recovery
 PARTS = {"invariants": InertiaInvariants, "recovery": Recovery}     # of a ReducedBody
 _REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
 
@@ -203,22 +206,28 @@ def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -
             _flatten(inner, f"{prefix}{name}.", arrays, texts)
         elif isinstance(value, np.ndarray):
             arrays[prefix + name] = value
+        elif isinstance(value, Mapping):
+            arrays |= {f"{prefix}{name}.{key}": array for key, array in value.items()}
         elif value is not None:
-            texts[prefix + name] = _listed(value, prefix + name, arrays)
+            texts[prefix + name] = _named(value, prefix + name, arrays)
 
 
-def _listed(value: Any, name: str, arrays: dict) -> Any:
-    """A value for JSON: arrays within tuples have the place of each in their names."""
+def _named(value: Any, name: str, arrays: dict) -> Any:
+    """A value for JSON: arrays in lists by their names, stress operators by class and fields."""
+    if isinstance(value, list | tuple):
+        return [_named(one, f"{name}/{k}", arrays) for k, one in enumerate(value)]
     if isinstance(value, np.ndarray):
         arrays[name] = value
         return {"array": name}
-    if isinstance(value, list | tuple):
-        return [_listed(one, f"{name}/{k}", arrays) for k, one in enumerate(value)]
+    if is_dataclass(value):
+        return {"part": type(value).__name__,
+                "fields": {one.name: _named(getattr(value, one.name), f"{name}/{one.name}", arrays)
+                           for one in fields(value)}}
     return value
 
 
 def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
-    values = {name: _tuples(value, arrays) for name, value in notes["body"].items()}
+    values = {name: _restored(value, arrays) for name, value in notes["body"].items()}
     values |= {name: array for name, array in arrays.items() if "/" not in name}
     parts = {name: value for name, value in values.items() if "." not in name}
     for part, kind in PARTS.items():
@@ -226,6 +235,8 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
                  if name.startswith(f"{part}.")}
         if found:
             parts[part] = kind(**found)
+    parts["loads"] = {name.removeprefix("loads."): array for name, array in arrays.items()
+                      if name.startswith("loads.")}
     missing = {"stiffness", "mass", "coordinates", "keeps"} - set(parts)
     if missing:
         raise KeyError(missing)
@@ -235,8 +246,13 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
     return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"], mesh)
 
 
-def _tuples(value: Any, arrays: dict[str, NDArray]) -> Any:
-    """Lists as tuples, however deep, with the arrays in them."""
-    if isinstance(value, dict):
+def _restored(value: Any, arrays: dict[str, NDArray]) -> Any:
+    """What `_named` was given; lists as tuples, however deep."""
+    if isinstance(value, list):
+        return tuple(_restored(one, arrays) for one in value)
+    if isinstance(value, dict) and "array" in value:
         return arrays[value["array"]]
-    return tuple(_tuples(one, arrays) for one in value) if isinstance(value, list) else value
+    if isinstance(value, dict) and "part" in value:
+        kind = {one.__name__: one for one in STRESSES}[value["part"]]
+        return kind(**{name: _restored(one, arrays) for name, one in value["fields"].items()})
+    return value
