@@ -99,6 +99,24 @@ def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
         assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
 
 
+def test_beams_are_compared_by_method():
+    rows = imported("bench_modes").beam_table((0, 1))
+    free = {(row["method"], row["modes"]): row["free-free"] for row in rows}
+    assert abs(free["rubin", 1][0] - 22.37329) < 1e-4 and abs(free["guyan", 0][0] - 26.833) < 1e-2
+    assert len(rows) == 7
+
+
+def test_a_solid_is_reduced(capsys):
+    pytest.importorskip("skfem")
+    bench = imported("bench_solid")
+    # fine enough that the patches have faces
+    bench.main(["--json"], divisions=(9, 3, 3), modes=2)
+    found = json.loads(capsys.readouterr().out)
+    assert found["dofs"] == 480 and found["order"] == 26 and found["reduced"]["seconds"] > 0.0
+    found = bench.factors(bench.curved_bar((6, 2, 2)))
+    assert found["SuperLU, minimum degree"]["entries"] > 0
+
+
 def test_recovered_stresses_are_compared_with_full_solutions():
     bench = imported("bench_recovery")
     row = bench.errors({"beam": bench.beam}, (2,))["beam"]["2"]
