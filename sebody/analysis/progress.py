@@ -19,11 +19,11 @@ class Progress:
 
     Parameters
     ----------
-    t_end : float
-        End of the run [time].
+    t_end : float, optional
+        End of the run [time]; none of work that is no run.
     """
 
-    def __init__(self, t_end: float) -> None:
+    def __init__(self, t_end: float | None = None) -> None:
         self.began = time.perf_counter()
         self.shown = False
         self._t_end = t_end
@@ -56,11 +56,14 @@ class Progress:
 
     def _remarks(self, fraction: float, now: float) -> str:
         """Simulated time, rate and time left."""
-        text = f"  t = {self._t_end * fraction:.4g} of {self._t_end:.4g}"
         passed, part = now - self._first[1], fraction - self._first[0]
-        if passed > 0 and part > 0:
-            text += (f", {self._t_end * part / passed:.3g} a second, "
-                     f"{_duration((1.0 - fraction) * passed / part)} left")
+        going = passed > 0 and part > 0
+        left = f"{_duration((1.0 - fraction) * passed / part)} left" if going else ""
+        if self._t_end is None:
+            return f"  {left}"
+        text = f"  t = {self._t_end * fraction:.4g} of {self._t_end:.4g}"
+        if going:
+            text += f", {self._t_end * part / passed:.3g} a second, {left}"
         return text + (f", run {self._repeats + 1}" if self._repeats else "")
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from sebody.cli import interrupts
 from sebody.cli.inputs import check_picture, given_arguments, source
-from sebody.cli.progress import Progress
 from sebody.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,6 +51,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Run the sweep; 1 if all of its runs fail."""
+    from sebody.analysis.progress import Progress
     from sebody.studies.sweep import sobol, sweep
     from sebody.studies.sweep.axes import distribution_of, values_of
 

@@ -95,6 +95,8 @@ class ReducedBody:
             self._store("damping", (damping + damping.T) / 2)
             checks.check_damping(self.damping, rigid, names)
         if self.invariants is not None:
+            inputs.instance(self.invariants, "invariants", InertiaInvariants,
+                            "give InertiaInvariants, as a reduction makes them")
             check_invariants(self.invariants, self.stiffness, self.mass,
                              self.rigid_modes_about(self.invariants.origin), names)
 

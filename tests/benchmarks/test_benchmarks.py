@@ -49,6 +49,13 @@ def test_set_ups_are_timed_by_scene(capsys):
     assert len(found) == len(bench.SCENES) and found["planar-hinged-beam"] > 0.0
 
 
+def test_options_are_compared_on_one_body(capsys):
+    imported("bench_one_body").main(["--json"], "stretch")
+    row, = json.loads(capsys.readouterr().out)
+    assert row["C, stiffening"] == pytest.approx(row["exact"], rel=1e-3)
+    assert row["B"] == pytest.approx(0.35, abs=2e-3)
+
+
 def test_variable_steps_are_compared_with_the_best_fixed_step():
     (error, steps, spent, best), = imported("bench_accuracy").compare(
         planar_hinged_beam.build, 0.5, 0.05, 16, (1e-2,), 1)
@@ -81,3 +88,17 @@ def test_recovered_stresses_are_compared_with_full_solutions():
     near, middle = row["moving"]
     assert near < 0.6 * row["moving, without"][0] and middle < 0.05
     assert min(bench.seconds(bench.large_field((3, 2, 2), 20, 14)).values()) > 0.0
+
+
+def test_options_are_compared_with_exact_values(monkeypatch, capsys):
+    bench = imported("bench_stiffening")
+    monkeypatch.setattr(bench, "OPTIONS", {name: bench.OPTIONS[name] for name in (
+        "B", "C + stiffening")})
+    bench.main(["--json", "propeller"])
+    (row, values), = json.loads(capsys.readouterr().out).items()
+    assert row == "propeller moment" and list(values) == ["exact", "B", "C + stiffening"]
+    assert values["C + stiffening"] == pytest.approx(values["exact"], abs=1e-3)
+    bench.main(["Euler, 4"])
+    out = capsys.readouterr().out.splitlines()
+    assert out[0] == "| | exact | B | C + stiffening |"
+    assert out[2].startswith("| Euler, 4 modes: load | 2.4674 | 3.165")
