@@ -116,7 +116,6 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
     def geometric(prestress: NDArray) -> NDArray:
         displacement = ties.spread(prestress[:n])
         tangent = fe_model.geometric_stiffness(displacement)
-        _check_geometric(tangent, fe_model.stiffness)
         G = shapes.T @ (tangent @ shapes) + boundary.second_order(
             fe_model.stiffness @ displacement, prestress[n:], basis)
         return (G + G.T) / 2

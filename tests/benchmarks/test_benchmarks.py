@@ -81,15 +81,6 @@ def test_everyday_mechanisms_run_in_every_place(monkeypatch, capsys):
     assert all(one["microseconds"] > 0.0 and one["cuts"] == 0 for one in found.values())
 
 
-def test_recovered_stresses_are_compared_with_full_solutions():
-    bench = imported("bench_recovery")
-    row = bench.errors({"beam": bench.beam}, (2,))["beam"]["2"]
-    assert max(row["static"]) < 1e-4                # at rest Guyan's shapes are exact
-    near, middle = row["moving"]
-    assert near < 0.6 * row["moving, without"][0] and middle < 0.05
-    assert min(bench.seconds(bench.large_field((3, 2, 2), 20, 14)).values()) > 0.0
-
-
 def test_options_are_compared_with_exact_values(monkeypatch, capsys):
     bench = imported("bench_stiffening")
     monkeypatch.setattr(bench, "OPTIONS", {name: bench.OPTIONS[name] for name in (
@@ -102,3 +93,23 @@ def test_options_are_compared_with_exact_values(monkeypatch, capsys):
     out = capsys.readouterr().out.splitlines()
     assert out[0] == "| | exact | B | C + stiffening |"
     assert out[2].startswith("| Euler, 4 modes: load | 2.4674 | 3.165")
+
+
+def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
+    bench = imported("bench_modes")
+    monkeypatch.setattr(bench, "MOST", 1)
+    bench.main(["--json"], bodies=2)
+    beam, weak = json.loads(capsys.readouterr().out)
+    assert (beam["body"], weak["body"]) == ("beam", "nearly_two")
+    for row in (beam, weak):
+        assert row["true"] <= bench.TOLERANCE and row["free"] <= bench.TOLERANCE
+        assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
+
+
+def test_recovered_stresses_are_compared_with_full_solutions():
+    bench = imported("bench_recovery")
+    row = bench.errors({"beam": bench.beam}, (2,))["beam"]["2"]
+    assert max(row["static"]) < 1e-4                # at rest Guyan's shapes are exact
+    near, middle = row["moving"]
+    assert near < 0.6 * row["moving, without"][0] and middle < 0.05
+    assert min(bench.seconds(bench.large_field((3, 2, 2), 20, 14)).values()) > 0.0

@@ -99,7 +99,7 @@ def planar_beams(h: float, elements: int) -> Run:
         mbs.AddObject(CoordinateConstraint(markerNumbers=[ground, held]))
     base, tip = (mbs.AddMarker(MarkerNodeRigid(nodeNumber=node)) for node in (nodes[0], nodes[-1]))
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _rotated(solve(system, mbs, tip, h, t_end, modified=False), np.pi / 4)
+    return _rotated(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
 
 
 def spatial_beams(h: float, elements: int, t_end: float = T_END) -> Run:
