@@ -154,8 +154,7 @@ def _faces(drawn: Scenery, eye: _Eye, k: int) -> tuple[list[NDArray], NDArray]:
     polygons, colors, depths = [], [], []
     for number, body in enumerate(drawn.bodies):
         corners = eye.seen(vertices(body, k))[body.surface.triangles]
-        away = np.cross(corners[:, 1, :2] - corners[:, 0, :2],
-                        corners[:, 2, :2] - corners[:, 0, :2]) < 0
+        away = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] < 0
         colors.append(_shaded(corners, COLORS[number % len(COLORS)]))
         polygons += list(corners[..., :2])
         depths.append(corners[..., 2].mean(axis=1) - BEHIND * away)
