@@ -41,6 +41,7 @@ INERTIA_OPTIONS = {
     "c": InertiaTraits(
         "the displacement field of the body, with slaved load modes (option C)",
         material=True,
+        rates=True,
         field=True,
         constants=(
             Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
@@ -58,6 +59,19 @@ INERTIA_OPTIONS = {
             Part("lam", ("resultants",), "eigenvalues of the resultants"),
             Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
             Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
+        ),
+    ),
+    "d": InertiaTraits(
+        "the rigid part of the motion, and rates of deformation (option D)",
+        material=True,
+        rates=True,
+        constants=(
+            Part("columns", (1,), "columns of C: n of a damped body, else none"),
+            Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
+            Part("rigid_rows", ("motions", "n"),
+                 "S1, then Gam: first moment of mass and mean rotation of y", columns=True),
+            Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
+            Part("C", ("n", "damped"), "reduced damping", columns=True),
         ),
     ),
 }

@@ -25,8 +25,8 @@ ROOMS = {
     "io": {"fem", "reduction"},
     "model": {"kernels", "generated", "fem", "reduction", "io"},    # of generated the options alone
     "assembly": {"kernels", "generated", "engine", "reduction", "model"},   # the options likewise
-    "results": {"kernels", "engine", "model", "assembly"},
-    "analysis": {"kernels", "engine", "model", "assembly", "results"},
+    "results": {"kernels", "engine", "reduction", "model", "assembly"},
+    "analysis": {"kernels", "generated", "engine", "reduction", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "io", "results"},
     "studies": {"kernels", "generated", "engine", "fem", "reduction", "io", "model", "assembly",
@@ -38,7 +38,7 @@ RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
-PICTURES = {"plots", "draw", "paper_figures"}       # modules that may import matplotlib
+PICTURES = {"plots", "drawing", "draw", "paper_figures"}       # modules that may import matplotlib
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # readers, and what they may import

@@ -112,10 +112,10 @@ def check_inertia(layout: Layout, frame: str, inertia: str, frames: Mapping[str,
     LayoutError
         With the frames that the option can have, or because all its kernels are damped.
     """
-    if options[inertia].field and layout.damped:
+    if options[inertia].rates and layout.damped:
         raise LayoutError(f"layout {layout.name}: kernels of inertia option {inertia!r} take "
                           "damped bodies, too: leave out the d")
-    if options[inertia].field and frames[frame].incremental:
+    if options[inertia].rates and frames[frame].incremental:
         others = " or ".join(repr(name) for name, other in frames.items() if not other.incremental)
         raise LayoutError(f"inertia option {inertia!r} needs the exact rates of a frame that "
                           f"depends on the state alone, which {frame!r} does not: use {others}")

@@ -17,11 +17,7 @@ SUPERELEMENTS = (
     ("f2", "mean_small", "b"),
     ("f2", "converged_mean", "a"),
     ("f2t1", "converged_mean", "b"),
-    ("f2r1", "converged_mean", "b"),
-    ("f3", "converged_mean", "b"),
     ("f2t1", "positions", "b"),
-    ("t8", "positions", "b"),
-    ("f8", "converged_mean", "b"),
     ("planar-f2", "converged_mean", "b"),
     ("planar-f2d", "converged_mean", "b"),
     ("planar-f2m2", "converged_mean", "b"),
@@ -40,5 +36,9 @@ SUPERELEMENTS = (
     ("any", "positions", "c"),
     ("planar-any", "converged_mean", "c"),
     ("planar-any", "positions", "c"),
+    ("any", "converged_mean", "d"),
+    ("any", "positions", "d"),
+    ("planar-any", "converged_mean", "d"),
+    ("planar-any", "positions", "d"),
 )
 ELEMENTS = tuple(CATALOGUE)

@@ -1,7 +1,7 @@
 """Frames and inertia options by name: a kernel combines one of each."""
 
 from sebody.derive.formulas.frames import converged_mean, mean, mean_small, positions
-from sebody.derive.formulas.inertia import option_a, option_b, option_c
+from sebody.derive.formulas.inertia import option_a, option_b, option_c, option_d
 from sebody.kernels.layout import FrameTraits, InertiaTraits
 
 FRAMES = {
@@ -14,6 +14,7 @@ INERTIA_OPTIONS = {
     "a": option_a.INERTIA,
     "b": option_b.INERTIA,
     "c": option_c.INERTIA,
+    "d": option_d.INERTIA,
 }
 
 

@@ -15,6 +15,7 @@ from sebody.derive.formulas.elastic import ELASTIC, VirtualWork, conjugate_to
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
 from sebody.derive.formulas.gravity import TAKEN_OFF, Gravity, gravity, linearized
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
+from sebody.derive.formulas.inertia.rates import rigid_angle
 from sebody.derive.formulas.kinematics import local_displacement, local_velocity
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.kernels.layouts import Layout, check_frame, check_inertia
@@ -206,5 +207,6 @@ def _names(q: Quantities) -> dict[sp.Expr, sp.Symbol]:
     for vector, values in ((q.psi, (q.e0, q.e1, q.e2)), (q.beta, (q.b0, q.b1))):
         s = vector.symbols.dot(vector.symbols)
         names |= {tangent_inverse(k, s): value.symbols[0] for k, value in enumerate(values)}
-    s = q.beta0.symbols.dot(q.beta0.symbols)
-    return names | {stumpff(k, s): getattr(q, f"c{k}").symbols[0] for k in range(2, 6)}
+    s, carried = (v.symbols.dot(v.symbols) for v in (q.beta0, rigid_angle(q)))
+    names |= {stumpff(k, s): getattr(q, f"c{k}").symbols[0] for k in range(2, 6)}
+    return names | {stumpff(k, carried): getattr(q, f"r{k}").symbols[0] for k in range(1, 8)}

@@ -35,6 +35,8 @@ def chain(parts: tuple[Part, ...], planar: bool) -> list[str]:
         lines.append(f"{part.name} = at({start})")
         if part.name == "sizes":        # of all parts that follow
             lines += _counts(known)
+        if part.name == "columns":
+            lines.append("damped = int(columns[0])")
     return lines
 
 

@@ -22,7 +22,7 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     residual = printer.lines(kernel.residual)
     in_residual = _counted(printer)
     energy = [*printer.lines(kernel.energy), *templates.ENERGY_OUTPUTS[planar]]
-    energy += templates.FRICTION_FIELD * kernel.options[1].traits.field
+    energy += templates.FRICTION_FIELD * kernel.options[1].traits.rates
     prepared = printer.lines(kernel.prepared)
     printer.operations, printer.products = Counter(), 0
     tangent = printer.lines(kernel.tangent)
@@ -48,7 +48,7 @@ def _head(kernel: Superelement) -> dict[str, object]:
             "rotations": layout.rotations, "nodes": _nodes(layout),
             "first_rotation": layout.first_rotation,
             "first_mode": layout.first_mode, "n_modes": layout.modes,
-            "damped": None if inertia.traits.field else layout.damped,
+            "damped": None if inertia.traits.rates else layout.damped,
             "space": "motion in a plane" if layout.planar else "motion in space",
             "modes": "any number of" if layout.modes is None else layout.modes,
             "version": templates.VERSION, "sympy": sympy.__version__,
@@ -69,7 +69,7 @@ def _names(kernel: Superelement, uses: Resources) -> set[str]:
     names = {*templates.SUPERELEMENT_NAMES, *(product_name(name, kernel.layout)
                                               for name in uses.calls)}
     names |= set(templates.DAMPING_NAMES) if kernel.layout.damped else set()
-    names |= {"AT_PORT", "POWERS"} if kernel.options[1].traits.field else set()
+    names |= {"AT_PORT", "POWERS"} if kernel.options[1].traits.rates else set()
     names |= set(templates.GENERAL_NAMES) if kernel.layout.nodes is None else set()
     return names | ({"Part"} if kernel.declared else set())
 

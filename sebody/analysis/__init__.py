@@ -1,5 +1,16 @@
 """What a user runs: simulations, equilibria, small motion about a state, restarts."""
 
+from sebody.analysis.ensembles import (
+    Ensemble,
+    Outcome,
+    Output,
+    at_time,
+    final,
+    integral,
+    maximum,
+    minimum,
+    rms,
+)
 from sebody.analysis.limits import spin_limit
 from sebody.analysis.linearization import (
     Linearization,
@@ -13,13 +24,22 @@ from sebody.analysis.restart import resume, save_state
 from sebody.analysis.statics import equilibrium
 
 __all__ = [
+    "Ensemble",
     "Linearization",
     "Modes",
+    "Outcome",
+    "Output",
     "Vibrations",
+    "at_time",
     "equilibrium",
+    "final",
+    "integral",
     "linearize",
+    "maximum",
+    "minimum",
     "modes",
     "resume",
+    "rms",
     "save_state",
     "spin_limit",
     "vibrations",

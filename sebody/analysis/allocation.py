@@ -19,6 +19,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.system import System
 from sebody.kernels.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
+from sebody.kernels.rotations import rotate
 from sebody.model.mechanism import Mechanism
 from sebody.results.recording import record_counts
 
@@ -37,8 +38,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     counts = record_counts(numbering)
     n, total, ports = numbering.free, numbering.total, counts["ports"]
     q, v = _start(model, numbering)
-    R = np.zeros(9 * counts["rotations"])
-    R.reshape(-1, 9)[:, ::4] = 1.0
+    R = _rotations(model, numbering)
     zeros = np.zeros
     clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
     clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
@@ -49,7 +49,8 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     state = State.of(
         counts,
         aux=zeros(total), aux_change=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
-        v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total), T=R.copy(),
+        v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total),
+        T=_identities(len(R)),
         loads=zeros(3 * ports), loads_old=zeros(3 * ports), powers=zeros(ports),
         powers_old=zeros(ports), coefficients=coefficients,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
@@ -66,8 +67,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
-    for frames in (state.frames, state.frames_old):
-        frames.reshape(-1, 9)[:, ::4] = 1.0
+    state.frames[:] = state.frames_old[:] = _identities(len(state.frames))
     return state
 
 
@@ -78,12 +78,30 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
         for triplet in (node.position, node.rotation):
             if triplet is not None and id(triplet) in numbering.triplets:
                 at = stretch(numbering, triplet)
-                q[at] = triplet.start
+                # of a rotation in space R has it, and q the increment in a step
+                q[at] = 0.0 if id(triplet) in numbering.rotations else triplet.start
                 v[at] = triplet.rate if triplet.solved else 0.0
     for body in model.bodies.values():
         first = numbering.modes[body.name]
         v[first:first + body.body.modes] = body.mode_rates
     return q, v
+
+
+def _rotations(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Initial rotation matrices, row by row."""
+    found = _identities(9 * len(numbering.rotations))
+    for triplet in model.triplets():
+        if id(triplet) in numbering.rotations and triplet.start.any():
+            at = 9 * numbering.rotations[id(triplet)]
+            rotate(found, at, *triplet.start, found, at)
+    return found
+
+
+def _identities(size: int) -> NDArray:
+    """Identity matrices, row by row, of so many numbers."""
+    found = np.zeros(size)
+    found.reshape(-1, 9)[:, ::4] = 1.0
+    return found
 
 
 def _expansion_size(system: System) -> int:

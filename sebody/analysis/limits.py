@@ -7,11 +7,11 @@ import warnings
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import eigh, null_space
+from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.analysis.quality import remarks
+from sebody.analysis.softening import cautious_limit, divergence, reach, stiffens
 from sebody.analysis.thresholds import FLAT, LINEAR
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
@@ -87,11 +87,12 @@ class Watch:
     def _compare(self, body: Superelement, spin: NDArray, speed: float) -> None:
         if f"spin {body.name}" in self._said:
             return
+        axis = np.array([0.0, 0.0, 1.0]) if body.body.planar else spin / speed
         limit = spin_limit(body, spin / speed)
-        if speed > limit:
+        if speed * reach(body, axis) > limit:
             self.say(f"spin {body.name}", f"spin {speed:.3g} rad/s is above the limit {limit:.3g} "
-                     f"of body {body.name!r}, whose stiffness does not grow with it: divide it in "
-                     "two")
+                     f"of body {body.name!r}, whose stiffness does not grow with it: "
+                     f"{_remedy(body)}")
 
 
 class Group(NamedTuple):
@@ -102,7 +103,7 @@ class Group(NamedTuple):
     places: NDArray         # (b, m) first coordinates of the rotations
     rotations: NDArray      # (b, m) numbers of the rotation matrices, in space
     weights: NDArray        # (b, m) frame weights of the rotations
-    least: NDArray          # (b,) lower bounds of the limits of spin
+    least: NDArray          # (b,) spins below which nothing is compared
 
 
 def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
@@ -112,9 +113,9 @@ def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
         parts = [(numbering.triplets[id(t)], numbering.rotations.get(id(t), 0), weight)
                  for t, weight in zip(body.rotations, body.alpha_r, strict=True)
                  if id(t) in numbering.triplets]
-        key = id(body.body), body.frame, tuple(body.alpha_r)
+        key = id(body.body), body.frame, body.inertia, tuple(body.alpha_r)
         if key not in limits:
-            limits[key] = spin_limit(body, None)
+            limits[key] = np.inf if stiffens(body) else cautious_limit(body)
         if parts:
             found.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True),
                                                      limits[key]))
@@ -122,18 +123,19 @@ def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
             for bodies, *columns in (zip(*rows, strict=True) for rows in found.values())]
 
 
-def spin_limit(body: Superelement, axis: NDArray | None) -> float:
-    """Spin about an axis of the frame at which one linear body diverges.
+def spin_limit(body: Superelement, axis: ArrayLike | None) -> float:
+    """Spin about an axis of the frame at which one body diverges, by its linearisation.
 
-    With options A and B the kinetic energy of a steady spin W is that of the velocities
-    ``W axis x x`` of the nodes, so deflections feel the stiffness ``S - W^2 A^T M A`` with
-    ``A = skew(axis)`` at positions. Motions that the frame follows are no deflections. One node is
-    taken as the pivot of the rotation: the one that gives the lowest limit.
+    In axes that spin with it the body has the stiffness ``S - W^2 D``, see
+    `sebody.analysis.softening`; one node stays where it is. The limit is the lowest that any node,
+    held with the frame or by itself, gives. Of bodies without geometric stiffening it says when
+    they fail: in bending, and with option B in torsion. Stiffened ones diverge where the structure
+    does: slender ones at the critical speed of rotation about their own axis.
 
     Parameters
     ----------
     axis : (3,) or None
-        Direction; None for the smallest value that any axis could have.
+        Direction; None for a lower bound over all axes.
 
     Raises
     ------
@@ -141,48 +143,22 @@ def spin_limit(body: Superelement, axis: NDArray | None) -> float:
         No superelement, or no direction.
     """
     inputs.instance(body, "body", Superelement, "give a superelement of a model")
+    planar = body.body.planar
     if axis is not None:
-        axis = inputs.vector(axis, "axis", None if body.body.planar else 3)
+        axis = inputs.vector(axis, "axis", None if planar else 3)
         if not np.any(axis):
             raise inputs.refusal("axis", axis, "give its direction")
         axis = axis / np.linalg.norm(axis)
-    reduced = body.body
-    planar, count = reduced.planar, len(reduced.position_nodes)
-    d, size = (2, 1) if planar else (3, 3)
-    n = reduced.stiffness.shape[0]
-    rotate = np.zeros((n, n))
-    if axis is None:
-        rotate[:d * count, :d * count] = np.eye(d * count)
-    else:
-        own = (np.array([[0.0, -1.0], [1.0, 0.0]]) if planar else
-               np.cross(np.eye(3), axis).T)
-        for i in range(count):
-            rotate[d * i:d * i + d, d * i:d * i + d] = own
-    inertia = rotate.T @ reduced.mass @ rotate
-    lowest = np.inf
-    for pivot in range(count):
-        held = np.zeros((d + size, n))
-        held[:d, d * pivot:d * pivot + d] = np.eye(d)
-        for j, weight in enumerate(body.alpha_r):
-            first = d * count + size * j
-            held[d:, first:first + size] = weight * np.eye(size)
-        if body.frame == "positions":
-            held[d:] = _fit(reduced)
-        free = null_space(held)
-        largest = eigh(free.T @ inertia @ free, free.T @ reduced.stiffness @ free,
-                       eigvals_only=True)[-1]
-        lowest = min(lowest, 1 / np.sqrt(largest) if largest > 0 else np.inf)
-    return float(lowest)
+    return divergence(body, np.array([0.0, 0.0, 1.0]) if planar else axis)
 
 
-def _fit(reduced) -> NDArray:
-    """Rotation of the frame of best fit by small deflections, rows of ``sum X_j x u_j``."""
-    points = reduced.coordinates[list(reduced.position_nodes)]
-    points = points - points.mean(axis=0)
-    rows = np.zeros((3, reduced.stiffness.shape[0]))
-    for j, X in enumerate(points):
-        rows[:, 3 * j:3 * j + 3] = np.cross(np.eye(3), X).T
-    return rows
+def _remedy(body: Superelement) -> str:
+    """What to do about a spin."""
+    if body.body.invariants is None:
+        return "divide it in two, or reduce it from an FE model with its mass"
+    if body.inertia != "c":
+        return "divide it in two, or take inertia='c'"
+    return "divide it in two, or give its FE model a geometric stiffness"
 
 
 def _spread(body: Superelement) -> float:

@@ -16,6 +16,8 @@ from sebody.model.model import Model
 from sebody.results.result import Result
 
 ITERATIONS = 25
+RESISTED = 100              # where motions are resisted
+LARGEST = 0.5               # correction then, as a share of the extent or in radians
 SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
 PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 
@@ -65,7 +67,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         kept = state.now.copy()
         target = min(share + step, 1.0)
         state.loads[:], state.coefficients[FIELD:] = target * loads, target * field
-        if _balance(run, tolerance, steady.times(np.sqrt(target))):
+        spinning = steady.times(np.sqrt(target))
+        if _balance(run, tolerance, spinning) or _settle(run, tolerance, spinning, kept):
             share = target
             state.now[RECORD_T] = share
             run.rows.append(state.now[None].copy())
@@ -86,22 +89,42 @@ def _result(run: Simulation) -> Result:
     return run.result()
 
 
-def _balance(run: Simulation, tolerance: float, spin: Spin) -> bool:
-    """Newton's iteration with the exact tangent; False where it does not converge."""
+def _settle(run: Simulation, tolerance: float, spin: Spin, start: NDArray) -> bool:
+    """Again from the start of the load step, towards the least effective potential.
+
+    Motions of a mechanism have no stiffness but that of the spin, which changes as they turn: at 45
+    degrees to the spin an arm has none.
+    """
+    if not spin.rotates:
+        return False
+    run.state.now[:] = start
+    return _balance(run, tolerance, spin, True)
+
+
+def _balance(run: Simulation, tolerance: float, spin: Spin, resisted: bool = False) -> bool:
+    """Newton's iteration with the exact tangent; False where it does not converge.
+
+    Where it is `resisted`, the mass times the squared spin is added to the tangent, less of it the
+    smaller the corrections get.
+    """
     system, state, n = run.system, run.state, run.numbering.free
     size = system.magnitude[:n]
     sized = size > 0.0              # not modes and multipliers, which have no magnitude
     state.frames_old[:] = state.frames
-    for _ in range(ITERATIONS):
+    resistance = float(resisted)
+    for _ in range(RESISTED if resisted else ITERATIONS):
         spin.move(run)
-        tangent, residual = rotating(run, spin)
+        tangent, residual = rotating(run, spin, resistance)
         solver = Scaled(tangent)
         correction = np.zeros(run.numbering.total)
         correction[:n] = _solution(solver, residual)
         to_body_axes(system, state.frames, correction, True)
         change = np.abs(correction[:n][sized] / size[sized]).max()
-        if not np.isfinite(change) or change > 1.0:
+        if not np.isfinite(change) or change > 1.0 and not resisted:
             return False
+        if resisted:
+            resistance = min(change, 1.0)
+            correction *= min(1.0, LARGEST / max(change, tolerance))
         state.R_old[:], state.dq[:] = state.R, -correction
         state.q[:] -= correction
         update_rotations(system, state)

@@ -49,6 +49,11 @@ class Spin:
         """Whether the angular velocity is not zero."""
         return bool(np.any(self.velocity))
 
+    @property
+    def squared(self) -> float:
+        """Square of the angular velocity."""
+        return float(np.sum(self.velocity**2))
+
     def move(self, run: Simulation) -> None:
         """Set velocities and accelerations to those of the rotation, of fixed nodes, too."""
         state = run.state

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody.assembly.carried import carried_constants
 from sebody.assembly.contracts import (
     check_element,
     check_superelement,
@@ -146,16 +147,18 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     points = reduced.coordinates[list(reduced.position_nodes)]
     origin = body.alpha @ points
     of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
-    damping = {} if reduced.damping is None else {"C": reduced.damping}
+    option = INERTIA_OPTIONS[body.inertia]
+    damping = {} if option.rates or reduced.damping is None else {"C": reduced.damping}
     values = {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
             "alpha_rs": body.alpha_r, "X": points - origin, "S": reduced.stiffness,
             "M": reduced.mass, "mass_columns": of_translations, "mass_rows": of_translations.T,
             "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
             "full": [_filled(body)], "masses": [reduced.total_mass], **damping}
-    if not INERTIA_OPTIONS[body.inertia].field:
+    if not option.rates:
         return values
+    if not option.field:
+        return values | carried_constants(reduced)
     conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts_of(body), values)
-    values.pop("C", None)
     return values | floating_constants(reduced.invariants.about(origin), reduced.stiffness,
                                        conditions, reduced.damping)
 

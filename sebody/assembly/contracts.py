@@ -18,6 +18,7 @@ from sebody.kernels.layout import (
     ContractError,
     Counts,
     Row,
+    carried_counts,
     first_mode,
     floating_counts,
     superelement_counts,
@@ -128,11 +129,11 @@ def counts_of(body: Superelement) -> Counts:
     reduced = body.body
     counts = superelement_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
                                  reduced.planar, _width(body))
-    if not INERTIA_OPTIONS[body.inertia].field:
-        return counts
-    return counts | floating_counts(reduced.planar, _width(body), reduced.invariants.slaved,
-                                    reduced.invariants.resultants,
-                                    reduced.damping is not None)
+    option, damped = INERTIA_OPTIONS[body.inertia], reduced.damping is not None
+    if option.field:
+        return counts | floating_counts(reduced.planar, _width(body), reduced.invariants.slaved,
+                                        reduced.invariants.resultants, damped)
+    return counts | carried_counts(reduced.planar, _width(body), damped) if option.rates else counts
 
 
 def _width(body: Superelement) -> int:

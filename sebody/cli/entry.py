@@ -16,13 +16,14 @@ from sebody.cli import (
     inspect,
     interrupts,
     listing,
+    plot,
     run,
     warm,
 )
 from sebody.errors import InputError, SebodyError
 
 # in the order of the help
-COMMANDS = (run, listing, importing, inspect, check, bench, chart, atlas, warm)
+COMMANDS = (run, listing, plot, importing, inspect, check, bench, chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

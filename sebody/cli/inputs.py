@@ -14,6 +14,7 @@ from sebody.errors import InputError
 from sebody.studies.catalogue import builder
 
 if TYPE_CHECKING:
+    from sebody.results.result import Result
     from sebody.scenes.scene import Scene
 
 
@@ -87,6 +88,23 @@ def check_picture(path: Path | None) -> None:
         from sebody.results import plots
 
         plots.check_picture(path)
+
+
+def labelled_results(paths: Sequence[str]) -> "dict[str, Result]":
+    """Saved results by the names of their files, by the whole paths where names are the same.
+
+    Raises
+    ------
+    InputError
+        No such file, one that is no result, or one that is given twice.
+    """
+    from sebody.results.result import Result
+
+    names = [Path(path).stem for path in paths]
+    labels = names if len(set(names)) == len(names) else list(paths)
+    if len(set(labels)) < len(labels):
+        raise InputError(f"results {', '.join(paths)}: one is given twice, leave it out")
+    return {label: Result.load(path) for label, path in zip(labels, paths, strict=True)}
 
 
 def check_distinct(targets: Mapping[str, Path | None]) -> None:

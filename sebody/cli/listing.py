@@ -1,4 +1,4 @@
-"""``sebody list``: scenes and kernels there are, and the parameters of a scene."""
+"""``sebody list``: scenes and kernels there are, parameters of a scene, quantities of a result."""
 
 import argparse
 import inspect
@@ -14,17 +14,27 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser("list", help="list scenes and kernels, or parameters of a scene")
     parser.add_argument("scene", nargs="?", metavar="SCENE",
-                        help="name of a scene or FILE.py: list its parameters")
+                        help="name of a scene or FILE.py: list its parameters; FILE.npz: list its "
+                             "quantities")
     return parser
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the lists."""
-    if options.scene:
+    if options.scene and options.scene.endswith(".npz"):
+        _list_quantities(options.scene)
+    elif options.scene:
         _list_parameters(options.scene)
     else:
         _list_all()
     return 0
+
+
+def _list_quantities(path: str) -> None:
+    from sebody.results.quantities import names
+    from sebody.results.result import Result
+
+    print("\n".join(names(Result.load(path))))
 
 
 def _list_parameters(scene: str) -> None:
@@ -61,7 +71,8 @@ def _list_all() -> None:
         if kernel.layout:
             print(f"  {kernel.layout:14} {kernel.frame:16} {kernel.inertia}")
     print("  frame 'node' is the converged_mean kernel with all weight on one node\n"
-          "  inertia a: angular velocities in frame axes, b: material, c: displacement field\n"
+          "  inertia a: angular velocities in frame axes, b: material, c: displacement field,\n"
+          "  d: rigid part of the motion and rates of deformation\n"
           "  layout any: every other one; faster or damped: python -m sebody.derive LAYOUT")
     print("\njoints and loads")
     print("  " + ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout))

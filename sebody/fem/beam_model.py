@@ -41,7 +41,26 @@ def beam_model(nodes: NDArray, pairs: NDArray, lengths: NDArray, axes: NDArray,
         matrices.append(assemble(elements.dofs, matrix, size))
     return FEModel(*matrices, nodes, node_dofs,
                    mass_field=_mass_field(elements, nodes, pairs, size),
-                   geometric_stiffness=BeamPrestress(elements, size), cells=[("line", pairs)])
+                   geometric_stiffness=BeamPrestress(elements, size), cells=[("line", pairs)],
+                   outlines=_outlines(sections, axes))
+
+
+def _outlines(sections: Sequence[StiffnessSection], axes: NDArray) -> NDArray:
+    """Edges of the elements' sections, (n, corners, 3), about the axis in axes of the model.
+
+    Of sections with fewer corners than others the last one is repeated.
+    """
+    edges = [np.array(section.outline or _equivalent(section)) for section in sections]
+    most = max(map(len, edges))
+    corners = np.array([np.pad(edge, ((0, most - len(edge)), (0, 0)), "edge") for edge in edges])
+    return corners @ axes[:, 1:]
+
+
+def _equivalent(section: StiffnessSection) -> list[tuple[float, float]]:
+    """Rectangle with the radii of gyration of a section."""
+    y, z = (np.sqrt(3 * bending / section.axial)
+            for bending in (section.bending_z, section.bending_y))
+    return [(-y, -z), (y, -z), (y, z), (-y, z)]
 
 
 @dataclass(frozen=True, eq=False)

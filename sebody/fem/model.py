@@ -48,6 +48,8 @@ class FEModel:
         Kind of the elements, by meshio's names, and their nodes.
     source, units : str
         Where the model comes from and its units, in words.
+    outlines : (n_lines, corners, 3), optional
+        Edges of the sections of the cells of kind line, about their axes, for pictures [length].
 
     Raises
     ------
@@ -68,6 +70,7 @@ class FEModel:
     cells: Sequence[tuple[str, NDArray]] = ()
     source: str = ""
     units: str = ""
+    outlines: NDArray | None = None
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
 
     def __post_init__(self) -> None:
@@ -90,6 +93,11 @@ class FEModel:
             mesh.cells(self.cells, count)
         for name, value in zip(("labels", "node_sets", "cells"), checked, strict=True):
             object.__setattr__(self, name, value)
+        if self.outlines is not None:
+            lines = sum(len(nodes) for kind, nodes in self.cells if kind == "line")
+            object.__setattr__(self, "outlines", inputs.array(
+                self.outlines, "outlines", (lines, None, 3),
+                remedy=f"give corners (x, y, z) for each of the {lines} cells of kind line"))
 
     def _check_nodes(self) -> None:
         """Coordinates, and the rows of every node."""

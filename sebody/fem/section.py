@@ -1,10 +1,12 @@
 """Cross-sections of beams: by geometry and material, or by stiffnesses and inertia a length."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 from sebody import inputs
 from sebody.errors import InputError
+
+Outline = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True)
@@ -27,11 +29,15 @@ class StiffnessSection:
         Rotary inertia a length about x, y and z [mass length]; may be zero.
     shear_y, shear_z : float, optional
         Shear stiffnesses for shear forces along y and z [force]; None: no shear deformation.
+    outline : tuple of (float, float), optional
+        Corners (y, z) of its edge one after the other, for pictures [length]; None: a rectangle
+        with its radii of gyration.
 
     Raises
     ------
     InputError
-        A stiffness or mass that is not positive and finite, or a negative inertia.
+        A stiffness or mass that is not positive and finite, a negative inertia, or an outline of
+        fewer than three corners.
     """
 
     axial: float
@@ -44,12 +50,14 @@ class StiffnessSection:
     inertia_z: float
     shear_y: float | None = None
     shear_z: float | None = None
+    outline: Outline | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if value is not None:
-                _check_number(self, field.name, value, field.name.startswith("inertia"))
+        _check_outline(self)
+        for one in fields(self):
+            value = getattr(self, one.name)
+            if one.name != "outline" and value is not None:
+                _check_number(self, one.name, value, one.name.startswith("inertia"))
 
     @property
     def stiffnesses(self) -> "StiffnessSection":
@@ -78,12 +86,14 @@ class Section:
     shear_factor : float or (float, float), optional
         Shear correction factor k of the shear stiffness k G A, two for shear forces along y and
         z; None: no shear deformation (Euler-Bernoulli).
+    outline : tuple of (float, float), optional
+        As in `StiffnessSection`.
 
     Raises
     ------
     InputError
-        A value that is not positive and finite, a Poisson's ratio outside (-1, 0.5], or other
-        than one or two shear factors.
+        A value that is not positive and finite, a Poisson's ratio outside (-1, 0.5], other than
+        one or two shear factors, or an outline of fewer than three corners.
     """
 
     area: float
@@ -94,12 +104,13 @@ class Section:
     poisson_ratio: float
     density: float
     shear_factor: float | tuple[float, float] | None = None
+    outline: Outline | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name not in ("poisson_ratio", "shear_factor"):
-                _check_number(self, field.name, value)
+        _check_outline(self)
+        for one in fields(self):
+            if one.name not in ("poisson_ratio", "shear_factor", "outline"):
+                _check_number(self, one.name, getattr(self, one.name))
         if isinstance(self.shear_factor, (tuple, list)) and len(self.shear_factor) != 2:
             raise InputError(
                 f"Section.shear_factor is {self.shear_factor}; give one number, or two for shear "
@@ -131,6 +142,7 @@ class Section:
             inertia_z=self.density * self.inertia_z,
             shear_y=shear[0],
             shear_z=shear[1],
+            outline=self.outline,
         )
 
     def _shear_factors(self) -> tuple:
@@ -169,3 +181,14 @@ def part_of(section: AnySection, first: float, last: float) -> AnySection:
 def _check_number(section: object, name: str, value: float, may_be_zero: bool = False) -> None:
     bound = {"least": 0} if may_be_zero else {"above": 0}
     inputs.number(value, f"{type(section).__name__}.{name}", **bound)
+
+
+def _check_outline(section: Section | StiffnessSection) -> None:
+    """Corners as a tuple, which can be compared and is a key."""
+    if section.outline is None:
+        return
+    what = f"{type(section).__name__}.outline"
+    corners = inputs.array(section.outline, what, (None, 2))
+    if len(corners) < 3:
+        raise InputError(f"{what} has {len(corners)} corners: give at least three pairs (y, z)")
+    object.__setattr__(section, "outline", tuple(map(tuple, corners.tolist())))

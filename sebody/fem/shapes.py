@@ -10,7 +10,9 @@ import numpy as np
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.fem.section import Section
+from sebody.fem.section import Outline, Section
+
+ROUND = 16              # corners of a circle in pictures
 
 
 def rectangle(height: float, width: float, youngs_modulus: float, poisson_ratio: float,
@@ -38,7 +40,8 @@ def rectangle(height: float, width: float, youngs_modulus: float, poisson_ratio:
     series = np.sum(np.tanh(n * np.pi * long / (2 * short)) / n**5.0)
     torsion = long * short**3 / 3 * (1 - 192 / np.pi**5 * short / long * series)
     return Section(height * width, height * width**3 / 12, width * height**3 / 12, torsion,
-                   youngs_modulus, poisson_ratio, density, _rectangle_factor(poisson_ratio))
+                   youngs_modulus, poisson_ratio, density, _rectangle_factor(poisson_ratio),
+                   _box(height, width))
 
 
 def circle(radius: float, youngs_modulus: float, poisson_ratio: float, density: float) -> Section:
@@ -89,8 +92,10 @@ def tube(radius: float, thickness: float, youngs_modulus: float, poisson_ratio: 
     second = np.pi / 4 * (radius**4 - inner**4)
     both, ratio = (1 + (inner / radius)**2)**2, (inner / radius)**2
     factor = 6 * (1 + nu) * both / ((7 + 6 * nu) * both + (20 + 12 * nu) * ratio)
+    around = 2 * np.pi * np.arange(ROUND) / ROUND
+    outline = tuple(zip(radius * np.cos(around), radius * np.sin(around), strict=True))
     return Section(np.pi * (radius**2 - inner**2), second, second, 2 * second, youngs_modulus,
-                   nu, density, factor)
+                   nu, density, factor, outline)
 
 
 def i_profile(height: float, width: float, web: float, flange: float, youngs_modulus: float,
@@ -134,7 +139,18 @@ def i_profile(height: float, width: float, web: float, flange: float, youngs_mod
     return Section(area, (2 * flange * width**3 + clear * web**3) / 12,
                    (width * height**3 - (width - web) * clear**3) / 12,
                    (2 * width * flange**3 + middle * web**3) / 3, youngs_modulus, nu, density,
-                   (along_web, along_flanges))
+                   (along_web, along_flanges), _i_outline(height, width, web, clear))
+
+
+def _box(height: float, width: float) -> Outline:
+    y, z = height / 2, width / 2
+    return (-y, -z), (y, -z), (y, z), (-y, z)
+
+
+def _i_outline(height: float, width: float, web: float, clear: float) -> Outline:
+    y, z, inner, half = height / 2, width / 2, clear / 2, web / 2
+    right = ((-y, z), (-inner, z), (-inner, half), (inner, half), (inner, z), (y, z))
+    return *right, *((a, -b) for a, b in reversed(right))
 
 
 def _rectangle_factor(poisson_ratio: float) -> float:

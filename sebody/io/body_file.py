@@ -30,21 +30,6 @@ _REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
-    """Cells of an FE model, for pictures.
-
-    Parameters
-    ----------
-    points : (n, 3), planar (n, 2)
-        Nodes [length].
-    cells : dict of (n_cells, k) by meshio's name of the cell
-    """
-
-    points: NDArray
-    cells: Mapping[str, NDArray]
-
-
-@dataclass(frozen=True, eq=False)
 class BodyFile:
     """What a body file holds, as found: the matrices may be wrong in any way.
 
@@ -58,14 +43,18 @@ class BodyFile:
         In words; the program has none.
     provenance : dict of str
         What the body was made from and how.
-    mesh : Mesh, optional
     """
 
     parts: dict[str, Any]
     names: tuple[str, ...]
     units: str = ""
     provenance: Mapping[str, str] = field(default_factory=dict)
-    mesh: Mesh | None = None
+
+    @property
+    def mesh(self) -> tuple[NDArray, tuple[tuple[str, NDArray], ...]] | None:
+        """FE nodes (n, 3), planar (n, 2), and elements by kind, if the body knows its shapes."""
+        recovery = self.parts.get("recovery")
+        return recovery and (recovery.points, recovery.cells)
 
     def body(self) -> ReducedBody:
         """The body, checked.
@@ -80,7 +69,7 @@ class BodyFile:
 
 def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None, *,
               units: str = "", provenance: Mapping[str, str] | None = None,
-              mesh: Mesh | None = None) -> Path:
+              recovery: bool = True) -> Path:
     """Write a reduced body to an npz file; an older file stays until the new one is complete.
 
     Parameters
@@ -91,8 +80,9 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
         Units of its numbers, in words.
     provenance : dict of str, optional
         What the body was made from and how.
-    mesh : Mesh, optional
-        For pictures.
+    recovery : bool
+        Whether shapes and mesh of the FE model are kept, most of the file's size; without them
+        there are no displacements inside the body.
 
     Raises
     ------
@@ -104,7 +94,9 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     inputs.instance(body, "body", ReducedBody, "give a ReducedBody")
     names = checked_names(names, len(body.keeps))
     parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
-    return write_body_file(BodyFile(parts, names, units, provenance or {}, mesh), path)
+    if not inputs.flag(recovery, "recovery"):
+        parts["recovery"] = None
+    return write_body_file(BodyFile(parts, names, units, provenance or {}), path)
 
 
 def load_body(path: str | Path) -> ReducedBody:
@@ -130,9 +122,6 @@ def write_body_file(file: BodyFile, path: str | Path) -> Path:
     arrays: dict[str, NDArray] = {}
     texts: dict[str, Any] = {}
     _flatten(file.parts, "", arrays, texts)
-    if file.mesh is not None:
-        arrays["mesh.points"] = file.mesh.points
-        arrays |= {f"mesh.cells.{kind}": cells for kind, cells in file.mesh.cells.items()}
     notes = {"format": FORMAT, "version": VERSION, "names": list(file.names), "units": file.units,
              "provenance": dict(file.provenance), "body": texts}
     with replacing(path, TARGET[0]) as stream:
@@ -204,11 +193,29 @@ def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -
         elif isinstance(value, np.ndarray):
             arrays[prefix + name] = value
         elif value is not None:
-            texts[prefix + name] = value
+            texts[prefix + name] = _encoded(value, prefix + name, arrays)
+
+
+def _encoded(value: Any, name: str, arrays: dict) -> Any:
+    """A value as JSON holds it; arrays within it become members, and are referred to."""
+    if isinstance(value, np.ndarray):
+        arrays[name] = value
+        return {"array": name}
+    if isinstance(value, tuple | list):
+        return [_encoded(one, f"{name}.{k}", arrays) for k, one in enumerate(value)]
+    return value
+
+
+def _decoded(value: Any, arrays: dict) -> Any:
+    """The same the other way; what is listed are tuples."""
+    if isinstance(value, dict):
+        return arrays.pop(value["array"])
+    return tuple(_decoded(one, arrays) for one in value) if isinstance(value, list) else value
 
 
 def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
-    values = {name: _tuples(value) for name, value in notes["body"].items()} | arrays
+    values = {name: _decoded(value, arrays) for name, value in notes["body"].items()}
+    values |= arrays
     parts = {name: value for name, value in values.items() if "." not in name}
     for part, kind in PARTS.items():
         found = {name.removeprefix(f"{part}."): value for name, value in values.items()
@@ -218,12 +225,4 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
     missing = {"stiffness", "mass", "coordinates", "keeps"} - set(parts)
     if missing:
         raise KeyError(missing)
-    cells = {name.removeprefix("mesh.cells."): array for name, array in arrays.items()
-             if name.startswith("mesh.cells.")}
-    mesh = Mesh(arrays["mesh.points"], cells) if "mesh.points" in arrays else None
-    return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"], mesh)
-
-
-def _tuples(value: Any) -> Any:
-    """Lists as tuples, however deep."""
-    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+    return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"])

@@ -277,6 +277,11 @@ def floating_counts(planar: bool, unknowns: int, slaved: int, resultants: int,
                    "stressing": resultants * free, "damped": free * damped}
 
 
+def carried_counts(planar: bool, unknowns: int, damped: bool = False) -> dict[str, int]:
+    """The further counts of option D."""
+    return axes_of(planar) | {"damped": unknowns * damped}
+
+
 def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: int) -> int:
     """Scratch memory of a superelement's kernel: rows, and squares of as many rows."""
     longest = max(unknowns + MARGIN * (work_squares > 0), 9 * rotations)
@@ -286,11 +291,12 @@ def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: in
 def axes_of(planar: bool) -> dict[str, int]:
     """The counts that follow from the space: of a position, a rotation, a symmetric matrix.
 
-    ``lines`` are a first moment, a rotation and an inertia for each coordinate, ``blocks`` an
-    inertia and two rotations.
+    ``motions`` are those of a rigid body, ``lines`` a first moment, a rotation and an inertia for
+    each coordinate, ``blocks`` an inertia and two rotations.
     """
     D, turns, pairs = (2, 1, 1) if planar else (3, 3, 6)
-    return {"D": D, "pairs": pairs, "lines": D + turns + pairs, "blocks": pairs + 2 * turns}
+    return {"D": D, "pairs": pairs, "motions": D + turns, "lines": D + turns + pairs,
+            "blocks": pairs + 2 * turns}
 
 
 def first_rotation(positions: int, planar: bool) -> int:
@@ -321,6 +327,8 @@ class InertiaTraits(NamedTuple):
     summary: str
     material: bool                  # T in material angular velocities; else in those of the frame
     modes_apart: bool = False       # internal modes meet in S, M and C alone, nowhere else
+    rates: bool = False             # T in rates of deformation: frames that depend on the state
+    # alone, and the same kernels for bodies with and without damping
     field: bool = False             # T of the displacement field, from integrals over the body
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
 

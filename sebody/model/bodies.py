@@ -38,7 +38,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     nodes : iterable of Node or str
         One node for each boundary node of the body, in its order.
     frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
-    inertia : {'a', 'b', 'c'}
+    inertia : {'a', 'b', 'c', 'd'}
     rotation : (3, 3), planar (2, 2), optional
         Rotates vectors from FE axes to global axes; identity by default.
     frame_node : int

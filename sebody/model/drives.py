@@ -49,7 +49,7 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
     constants = dict(zip(("n", "m"), vectors[1:], strict=True)) if vectors else {}
     name = chosen_name(model, name, f"angle at {a.name}")
     equation = Element(name, model.kind_of("turn_drive"), rotations(a, b), constants, 1, history)
-    return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors)))
+    return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
 
 
 def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayLike,
@@ -68,7 +68,7 @@ def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayL
     name = chosen_name(model, name, f"slide at {a.name}")
     equation = Element(name, model.kind_of("slide_drive"), positions(a, b) + rotations(a),
                        constants, 1, history)
-    return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors)))
+    return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
 
 
 def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: object,

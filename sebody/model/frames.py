@@ -31,7 +31,7 @@ def check_options(frame: str, inertia: str) -> None:
         raise InputError(f"frame {frame!r} is unknown: use one of {', '.join(sorted(FRAMES))}")
     if not isinstance(inertia, str) or inertia not in INERTIAS:
         raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
-    if options.INERTIA_OPTIONS[inertia].field and FRAMES[frame].traits.incremental:
+    if options.INERTIA_OPTIONS[inertia].rates and FRAMES[frame].traits.incremental:
         others = ", ".join(sorted(n for n, f in FRAMES.items() if not f.traits.incremental))
         raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "
                          f"the state alone, which {frame!r} does not: use one of {others}")
@@ -48,12 +48,12 @@ def check_invariants(name: str, body: ReducedBody, inertia: str) -> None:
     if options.INERTIA_OPTIONS[inertia].field and body.invariants is None:
         raise InputError(f"superelement {name!r}: inertia {inertia!r} needs the mass and modes of "
                          "the FE model, and the body has reduced matrices alone: reduce it from a "
-                         "model, or use inertia='b'")
+                         "model, use inertia='d', or use inertia='b' as the paper does")
 
 
 def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
     """Whether the body is damped and the kernels of its option are not for both kinds."""
-    return body.damping is not None and not options.INERTIA_OPTIONS[inertia].field
+    return body.damping is not None and not options.INERTIA_OPTIONS[inertia].rates
 
 
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:

@@ -73,7 +73,7 @@ def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.
     if vectors:
         grounded = to is None and not explicit
         equations.append(_parallel(a, None if grounded else b, vectors))
-    return _joint(model, name, a, b, equations, Axes.of(a, vectors), shared)
+    return _joint(model, what, name, a, b, equations, Axes.of(a, vectors), shared)
 
 
 def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayLike,
@@ -91,7 +91,7 @@ def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayL
     name = _named(model, name, what, a)
     equations = _together(model, a, b, to, what, explicit)
     shared = () if equations else ("position",)
-    return _joint(model, name, a, b, [*equations, _perpendicular(a, b, e, n)],
+    return _joint(model, what, name, a, b, [*equations, _perpendicular(a, b, e, n)],
                   Axes.of(a, (n, e, np.cross(n, e))), shared)
 
 
@@ -103,7 +103,8 @@ def cylindrical(model: Mechanism, node: Node | str, axis: ArrayLike,
     a, b = pair(model, node, to, what)
     vectors = axes(model, axis, what, a)
     equations = [_on_line(model, "cylindrical", a, b, vectors[1:]), _parallel(a, b, vectors)]
-    return _joint(model, _named(model, name, what, a), a, b, equations, Axes.of(a, vectors))
+    return _joint(model, what, _named(model, name, what, a), a, b, equations,
+                  Axes.of(a, vectors))
 
 
 def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
@@ -113,7 +114,8 @@ def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
     a, b = pair(model, node, to, what)
     vectors = along(model, axis, what, a)
     equations = [_on_line(model, "prismatic", a, b, vectors[1:]), *_turn_together(model, a, b)]
-    return _joint(model, _named(model, name, what, a), a, b, equations, Axes.of(a, vectors))
+    return _joint(model, what, _named(model, name, what, a), a, b, equations,
+                  Axes.of(a, vectors))
 
 
 def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
@@ -124,7 +126,8 @@ def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
     vectors = along(model, axis, what, b)
     triplet(a, "rotation")
     equations = [_on_line(model, what, a, b, vectors[1:])]
-    return _joint(model, _named(model, name, what, a), b, a, equations, Axes.of(a, vectors))
+    return _joint(model, what, _named(model, name, what, a), b, a, equations,
+                  Axes.of(a, vectors))
 
 
 def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
@@ -136,7 +139,8 @@ def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
     vectors = axes(model, normal, what, a)
     on_plane = Equations("on_plane", positions(a, b) + rotations(a), {"n1": vectors[0]}, 1)
     name = chosen_name(model, name, f"{what} at {a.name}")
-    return _joint(model, name, a, b, [on_plane, _parallel(a, b, vectors)], Axes.of(a, vectors))
+    return _joint(model, what, name, a, b, [on_plane, _parallel(a, b, vectors)],
+                  Axes.of(a, vectors))
 
 
 def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
@@ -150,7 +154,8 @@ def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
     a, b = pair(model, node, to, what, ("position",))
     name = _named(model, name, what, a)
     equations = _together(model, a, b, to, what, explicit)
-    return _joint(model, name, a, b, equations, Axes.of(a), () if equations else ("position",))
+    return _joint(model, what, name, a, b, equations, Axes.of(a),
+                  () if equations else ("position",))
 
 
 def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
@@ -168,7 +173,7 @@ def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
             a.rotation.fixed = True
         else:
             share(model, b.rotation, a.rotation, "rotation")
-    return _joint(model, name, a, b, equations, Axes.of(a), shared)
+    return _joint(model, "weld", name, a, b, equations, Axes.of(a), shared)
 
 
 def distance(model: Mechanism, node: Node | str, to: Node | str,
@@ -180,17 +185,18 @@ def distance(model: Mechanism, node: Node | str, to: Node | str,
         raise InputError(f"distance between {a.name!r} and {b.name!r} is zero: use a spherical "
                          "joint for nodes that start together")
     rod = Equations(model.kind_of("distance"), positions(a, b), {"length": length}, 1)
-    return _joint(model, _named(model, name, "distance", a), a, b, [rod], None)
+    return _joint(model, "distance", _named(model, name, "distance", a), a, b, [rod], None)
 
 
 def _named(model: Mechanism, name: str | None, what: str, a: Node) -> str:
     return chosen_name(model, name, f"{what.removesuffix(' joint')} at {a.name}")
 
 
-def _joint(model: Mechanism, name: str, node: Node, to: Node, equations: list[Equations],
-           axes: Axes | None, shared: tuple[str, ...] = ()) -> Joint:
+def _joint(model: Mechanism, what: str, name: str, node: Node, to: Node,
+           equations: list[Equations], axes: Axes | None, shared: tuple[str, ...] = ()) -> Joint:
     """Add a joint between two nodes, some of whose triplets are shared or fixed."""
-    joint = Joint(name, tuple(Element(name, *one) for one in equations), node, to, axes)
+    joint = Joint(name, tuple(Element(name, *one) for one in equations), node, to, axes,
+                  what.removesuffix(" joint"))
     model.joints.append(joint)
     other = to if model.nodes.get(to.name) is to else None
     model.connections += [Connection(kind, node, other, joint) for kind in shared]

@@ -152,6 +152,7 @@ class Joint:
     node: Node          # its force and moment are those on this node
     to: Node            # from this one, which is fixed if the joint is to the ground
     axes: Axes | None   # none of a distance, whose axis is the line between the nodes
+    kind: str           # revolute, universal, ..., weld, distance; drive
 
     @property
     def multipliers(self) -> int:

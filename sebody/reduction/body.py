@@ -14,7 +14,7 @@ from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.rigid import rigid_motions
-from sebody.reduction.summary import summary
+from sebody.reduction.summary import mode_lines, place
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -149,7 +149,17 @@ class ReducedBody:
 
     def summary(self) -> str:
         """Order, mass, frequencies and effective masses of the internal modes, and the notes."""
-        return summary(self)
+        nodes, n = len(self.coordinates), len(self.mass)
+        centre = self.centre_of_mass
+        kept = zip(self.coordinates, self.keeps, strict=True)
+        return "\n".join([
+            f"{nodes} boundary node{'s' * (nodes > 1)}, {n - self.modes} boundary coordinates, "
+            f"{self.modes} internal modes",
+            f"mass {self.total_mass:.6g}, centre of mass {place(centre)}",
+            *(f"boundary node {k} at {place(point)} keeps {keep!r}"
+              for k, (point, keep) in enumerate(kept)),
+            *mode_lines(self.stiffness, self.mass, self.rigid_modes_about(centre), self.modes),
+            *self.notes])
 
     def displacements(self, y: ArrayLike) -> NDArray:
         """Displacements of all FE nodes, with those of second order, (n_nodes, dofs_per_node).
@@ -167,10 +177,14 @@ class ReducedBody:
         if self.recovery is None:
             raise InputError("the body has no shapes of an FE model, so it knows no displacements "
                              "inside; reduce the FE model with craig_bampton")
-        y = np.asarray(y, dtype=float)
-        following = np.zeros(0) if self.invariants is None else self.invariants.Q @ y @ y / 2
-        field = self.recovery.shapes @ np.concatenate([y, following])
+        field = self.recovery.all_dofs(self.with_followers(np.asarray(y, dtype=float)[None]))
         return field.reshape(len(self.recovery.coordinates), -1)
+
+    def with_followers(self, y: NDArray) -> NDArray:
+        """Reduced coordinates (k, n) with those that follow in second order, (k, N)."""
+        if self.invariants is None:
+            return y
+        return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
 
     def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> "ReducedBody":

@@ -56,6 +56,17 @@ class ComponentModes:
         ])
         return block_diag(boundary, np.diag(self.omega_squared)), reduced_mass
 
+    def with_rigid(self, rigid: NDArray, values: NDArray) -> "ComponentModes":
+        """Constraint modes that make rigid motions (n_dofs, r) of their boundary values (n_b, r).
+
+        They are that but for rounding, which is large where parts of the body hang softly.
+        """
+        unit = np.abs(values).max(axis=1, keepdims=True)
+        unit[unit == 0] = 1.0
+        missing = rigid - self.constraint @ values
+        return replace(self, constraint=self.constraint + missing @ (
+            np.linalg.pinv(values / unit) / unit.T))
+
     def with_vibrations(self, interior: ClampedInterior, modes: int,
                         select: Sequence[int] | None = None) -> "ComponentModes":
         """The same boundary with the lowest modes of its interior, or with those selected of them.

@@ -46,7 +46,8 @@ def with_shapes(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
 
 
 def _recovery(fe_model: FEModel, shapes: NDArray) -> Recovery:
-    return Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs)
+    return Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
+                    cells=fe_model.cells, labels=fe_model.labels, outlines=fe_model.outlines)
 
 
 def _inertia_note(fe_model: FEModel) -> str:

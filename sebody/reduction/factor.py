@@ -67,10 +67,13 @@ def motions_without_strain(stiffness: sparse.csc_array, rigid: NDArray, lengths:
     """
     _, values, turn = linalg.svd(np.vstack([rigid[held], np.zeros((rigid.shape[1],) * 2)]))
     found = rigid @ turn[values < _STILL * max(1.0, values.max(initial=0.0))].T
-    motion = found / lengths[:, None]
-    summands = (abs(stiffness) @ np.abs(motion)).max(axis=0, initial=0.0)
-    strained = np.abs(stiffness @ motion).max(axis=0, initial=0.0) > _STRAIN * summands
-    return found[:, :0] if strained.any() else found
+    return found if is_strainless(stiffness, found / lengths[:, None]) else found[:, :0]
+
+
+def is_strainless(stiffness: sparse.csc_array, motions: NDArray) -> bool:
+    """Whether a stiffness resists motions (n, k) to rounding alone."""
+    summands = (abs(stiffness) @ np.abs(motions)).max(axis=0, initial=0.0)
+    return bool(np.all(np.abs(stiffness @ motions).max(axis=0, initial=0.0) <= _STRAIN * summands))
 
 
 def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: str) -> SuperLU:

@@ -37,6 +37,7 @@ from sebody.reduction.boundary import Boundary, Items, boundary_of
 from sebody.reduction.clamped import ClampedInterior, canonical_turn
 from sebody.reduction.component import ComponentModes, check_count, static_modes
 from sebody.reduction.constants import with_constants, with_shapes
+from sebody.reduction.factor import is_strainless
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
 _DEPENDENT = 1e-10  # strain energy of a shape beside those before it, relative to its own
@@ -79,10 +80,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     method = inputs.choice(method, "method", METHODS)
     _check_options(method, modes, select)
     edge = boundary_of(fe_model, boundary)
-    matrices = tuple(edge.ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
-    interior = ClampedInterior(*matrices, edge.held, edge.means, edge.ties.rigid,
-                               edge.ties.lengths, edge.ties.name)
-    static = static_modes(matrices[0], interior, *edge.unit_motions())
+    matrices, interior, static = clamped(fe_model, edge)
     notes = [f"{method} from {matrices[0].shape[0]} DOFs", *edge.notes]
     free = None
     if method in ("craig-bampton", "guyan"):
@@ -104,6 +102,21 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     if method == "macneal":
         return with_shapes(body, fe_model, edge, component)
     return with_constants(body, fe_model, edge, component, interior)
+
+
+def clamped(fe_model: FEModel, edge: Boundary
+            ) -> tuple[tuple[sparse.csc_array, sparse.csc_array], ClampedInterior, ComponentModes]:
+    """Stiffness and mass of independent DOFs, the interior, and the constraint modes of a boundary.
+    """
+    ties = edge.ties
+    stiffness, mass = (ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
+    interior = ClampedInterior(stiffness, mass, edge.held, edge.means, ties.rigid, ties.lengths,
+                               ties.name)
+    static = static_modes(stiffness, interior, *edge.unit_motions())
+    rigid = ties.rigid / ties.lengths[:, None]
+    if is_strainless(stiffness, rigid):
+        static = static.with_rigid(rigid, edge.values(rigid))
+    return (stiffness, mass), interior, static
 
 
 def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | None) -> None:

@@ -127,8 +127,8 @@ class GeometricStiffness:
         With each shape the body has the displacement (n_dofs,) of the same column of `motions`.
         """
         size = len(self._stiffness)
-        if shapes.shape[1] == 0:
-            return np.zeros((0, 0)), np.zeros((0, size, size))
+        if shapes.shape[1] == 0 or self._elastic.shape[1] == 0:     # nothing could become stiffer
+            return np.zeros((shapes.shape[1], 0)), np.zeros((0, size, size))
         G = np.array([self._of(shape) for shape in shapes.T])
         relative = self._elastic.T @ G @ self._elastic
         turn, singular, _ = np.linalg.svd(relative.reshape(len(G), -1), full_matrices=False)

@@ -17,6 +17,7 @@ from sebody.assembly import numbering
 from sebody.assembly.numbering import Numbering
 from sebody.model import histories, mechanism, parts
 from sebody.model.mechanism import Mechanism
+from sebody.reduction import invariants, recovery
 
 
 def _kinds(*modules: ModuleType) -> dict[str, type]:
@@ -25,7 +26,7 @@ def _kinds(*modules: ModuleType) -> dict[str, type]:
             if isinstance(kind, type) and (is_dataclass(kind) or hasattr(kind, "_fields"))}
 
 
-KINDS = _kinds(parts, histories, mechanism, numbering)
+KINDS = _kinds(parts, histories, mechanism, numbering, invariants, recovery)
 
 
 def described(model: Mechanism, numbers: Numbering) -> tuple[str, NDArray]:
@@ -53,6 +54,7 @@ class _Writer:
         self.arrays: list[NDArray] = []
         self._length = 0
         self._places: dict[int, int] = {}   # id(part) -> place in the list
+        self._known: dict[int, tuple[NDArray, list]] = {}   # id(array) -> it, what stands for it
 
     def of(self, value: Any) -> Any:
         """A value for JSON: plain ones as they are, others as lists that begin with their kind."""
@@ -85,15 +87,18 @@ class _Writer:
         return self._places[id(value)]
 
     def _array(self, value: NDArray) -> list:
-        first = self._length
-        self.arrays.append(value.astype(float).ravel())
-        self._length += value.size
-        return ["array", first, list(value.shape), value.dtype.str]
+        if id(value) not in self._known:        # bodies may share arrays: each is kept once
+            first = self._length
+            self.arrays.append(value.astype(float).ravel())
+            self._length += value.size
+            self._known[id(value)] = value, ["array", first, list(value.shape), value.dtype.str]
+        return self._known[id(value)][1]
 
 
 class _Reader:
     def __init__(self, text: dict, numbers: NDArray) -> None:
         self._numbers = numbers
+        self._arrays: dict[tuple, NDArray] = {}
         self._parts = [object.__new__(KINDS[kind]) for kind, _ in text["parts"]]
         for part, (_, values) in zip(self._parts, text["parts"], strict=True):
             for name, value in values.items():
@@ -109,8 +114,11 @@ class _Reader:
             return self._parts[rest[0]]
         if kind == "array":
             first, shape, dtype = rest
-            values = self._numbers[first:first + int(np.prod(shape))]
-            return values.reshape(shape).astype(dtype)
+            key = first, *shape
+            if key not in self._arrays:
+                values = self._numbers[first:first + int(np.prod(shape))]
+                self._arrays[key] = values.reshape(shape).astype(dtype)
+            return self._arrays[key]
         if kind == "tuple of names":
             return KINDS[rest[0]](*map(self.made, rest[1]))
         if kind == "by part":

@@ -77,9 +77,9 @@ def effort(what: str, recording: Recording, name: str) -> NDArray:
     """Thrust or torque of a drive along or about its axis, (n,): times the rate it is the power."""
     drive = drives(recording)[name]
     own = "rotation" if what == "torque" else "position"
-    if own != _driven(drive):
+    if own != driven(drive):
         other = "thrust" if what == "torque" else "torque"
-        raise InputError(f"drive {name!r} moves a {_driven(drive)}: ask for {name}.{other}")
+        raise InputError(f"drive {name!r} moves a {driven(drive)}: ask for {name}.{other}")
     if isinstance(drive, Joint):
         values = recording.balance.of_joint(drive, own)
         if own == "position":       # it pushes the other node along the axis
@@ -112,7 +112,8 @@ def power(recording: Recording, name: str) -> NDArray:
     return recording.powers[:, recording.numbering.port_names.index(name)]
 
 
-def _driven(drive: Joint | Motion) -> str:
+def driven(drive: Joint | Motion) -> str:
+    """Whether a drive moves a position or a rotation."""
     if isinstance(drive, Motion):
         return drive.place.kind
     return drive.constraints[0].places[0].kind

@@ -37,9 +37,20 @@ def check_picture(path: str | Path) -> None:
     InputError
         matplotlib is missing, the folder does not exist, or the file type is unknown.
     """
+    check_matplotlib()
+    check_target(path, "picture", SUFFIXES)
+
+
+def check_matplotlib() -> None:
+    """Refuse a picture where there is nothing to draw it with.
+
+    Raises
+    ------
+    InputError
+        matplotlib is missing.
+    """
     if find_spec("matplotlib") is None:
         raise InputError("pictures need matplotlib: pip install sebody[plot]")
-    check_target(path, "picture", SUFFIXES)
 
 
 def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:

@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from difflib import get_close_matches
 from functools import partial
 from typing import NamedTuple
 
@@ -16,6 +17,8 @@ from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
 from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording, record_counts
+
+ALIKE = 0.75            # ratio of `difflib` from which a name is near another
 
 
 class NodeQuantity(NamedTuple):
@@ -51,13 +54,22 @@ def look_up(recording: Recording, name: str) -> NDArray:
         if quantity in one.quantities and owner in one.names(recording):
             return one.quantities[quantity](recording, owner)
     found = [one for one in OWNERS if owner in one.names(recording)]
+    near = get_close_matches(name, names(recording), cutoff=ALIKE)
+    meant = f"did you mean {' or '.join(map(repr, near))}? " if near else ""
     if found:
-        raise InputError(f"{quantity!r} is unknown: " + "; ".join(
+        raise InputError(f"{quantity!r} is unknown: {meant}" + "; ".join(
             f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
     offers = [one.offer.format(names=", ".join(one.names(recording)) or f"any {one.kind}",
                                quantities=_enumerated(one.quantities)) for one in OWNERS]
-    raise InputError(f"{name!r} is unknown: {'; '.join(offers)}; of the model "
+    raise InputError(f"{name!r} is unknown: {meant}{'; '.join(offers)}; of the model "
                      f"{', '.join(OF_MODEL)}")
+
+
+def names(recording: Recording) -> list[str]:
+    """Names of all quantities that there are: those of the model, then by owner."""
+    return list(OF_MODEL) + list(dict.fromkeys(
+        f"{owner}.{quantity}" for one in OWNERS for owner in one.names(recording)
+        for quantity in one.quantities if _has(recording, one.kind, owner, quantity)))
 
 
 def _enumerated(names: Iterable[str]) -> str:
@@ -189,3 +201,27 @@ OWNERS = (
           lambda recording: recording.numbering.port_names,
           {"work": forces.work, "power": forces.power}),
 )
+
+
+def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
+    """Whether an owner of a kind has one of the quantities of this kind."""
+    model = recording.model
+    place = "rotation" if quantity.endswith("moment") else "position"
+    if kind == "node":
+        triplet = getattr(model.nodes[owner], "rotation" if OF_NODE[quantity].rotational else
+                          "position")
+        return (triplet is not None and id(triplet) in recording.numbering.triplets
+                and (triplet.fixed or not quantity.startswith("reaction")))
+    if quantity == "modes":
+        return owner in model.bodies and model.bodies[owner].body.modes > 0
+    if kind == "node of a body":
+        body, node = forces.nodes_of_bodies(recording)[owner]
+        return (node, place) in forces.bodies(recording)[body].places
+    if quantity == "multipliers":
+        return bool(forces.joints(recording)[owner].constraints)
+    if kind == "drive":
+        return (quantity == "torque") == (forces.driven(forces.drives(recording)[owner])
+                                          == "rotation")
+    if kind == "spring or load":
+        return any(kept == place for _, kept in forces.loads(recording)[owner].places)
+    return True

@@ -10,6 +10,7 @@ from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
 from sebody.files import check_target, replacing
 from sebody.results.advice import kernels_that_pay
 from sebody.results.energy_balance import energy_balance
+from sebody.results.field import Field
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
@@ -86,6 +87,16 @@ class Result(Recording):
     def __getitem__(self, name: str) -> NDArray:
         """History of a quantity by name; see the class, and `quantities.look_up` for errors."""
         return look_up(self, name)
+
+    def field(self, name: str) -> Field:
+        """Displacements, velocities and accelerations of the FE nodes of a superelement.
+
+        Raises
+        ------
+        InputError
+            No such superelement, or one without the shapes of an FE model.
+        """
+        return Field(self, name)
 
     def energy_balance(self) -> float:
         """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.

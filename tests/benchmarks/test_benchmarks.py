@@ -72,3 +72,14 @@ def test_everyday_mechanisms_run_in_every_place(monkeypatch, capsys):
     found = json.loads(capsys.readouterr().out)["door"]
     assert list(found) == list(bench.PLACES)
     assert all(one["microseconds"] > 0.0 and one["cuts"] == 0 for one in found.values())
+
+
+def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
+    bench = imported("bench_modes")
+    monkeypatch.setattr(bench, "MOST", 1)
+    bench.main(["--json"], bodies=2)
+    beam, weak = json.loads(capsys.readouterr().out)
+    assert (beam["body"], weak["body"]) == ("beam", "nearly_two")
+    for row in (beam, weak):
+        assert row["true"] <= bench.TOLERANCE and row["free"] <= bench.TOLERANCE
+        assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5

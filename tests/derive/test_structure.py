@@ -127,10 +127,10 @@ def test_file_names(variant, name):
     assert file_name(variant) == name
 
 
-@pytest.mark.parametrize("layout", ["f2", "planar-f2d", "t8"])
+@pytest.mark.parametrize("layout", ["f2", "planar-f2d", "f2t1"])
 def test_no_scratch_row_is_idle(layout):
     """Every row is read or written by the steps, and every array of the steps is somewhere."""
-    frame = "positions" if layout == "t8" else "converged_mean"
+    frame = "positions" if layout == "f2t1" else "converged_mean"
     path = ROOT / "generated" / f"superelement_{layout.replace('-', '_')}_{frame}_b.py"
     tree = ast.parse(path.read_text())
     used = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]

@@ -5,7 +5,7 @@ import sympy as sp
 
 from sebody.derive.formulas import elastic, elements, forces, joints, kinematics
 from sebody.derive.formulas.frames import positions
-from sebody.derive.formulas.inertia import option, option_a, option_b
+from sebody.derive.formulas.inertia import option, option_a, option_b, rigid_part
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.kernels import linearize, superelement
 from sebody.derive.kernels.layouts import Layout
@@ -237,3 +237,15 @@ def test_linearizer_of_a_stage(planar):
     assert first.sets[0][1] == 2 * q.dv.symbols
     second = chain.stage(Stage("sum", "position", adds=((q.F, 3 * q.h.symbols),)))
     assert second.adds[0] == (q.space.d(q.F), 3 * q.space.d(q.h).symbols)
+
+
+@pytest.mark.parametrize("name, message", [
+    ("along_tangent", "tangent of the rigid part"), ("turned", "rotation of the rigid part"),
+    ("on_first", "inertia on the first moment"), ("on_phi", "inertia on the rotation"),
+    ("on_frame", "inertia of a rigid part on the frame"), ("momentum", "velocity of the centre")])
+def test_wrong_rigid_part(monkeypatch, name, message):
+    """A factor lost in one of its formulas: derivation fails, before anything is emitted."""
+    right = getattr(rigid_part, name)
+    monkeypatch.setattr(rigid_part, name, lambda *given: right(*given) * 2)
+    with pytest.raises(DerivationError, match=message):
+        rigid_part.prove.__wrapped__()

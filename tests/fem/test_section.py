@@ -201,3 +201,46 @@ def test_frequencies_do_not_depend_on_the_unit_of_length():
 def test_bad_input_is_named(build, text):
     with pytest.raises(InputError, match=text):
         build()
+
+
+def area_and_moments(outline):
+    """Area, I_y and I_z of a polygon by Green's theorem; corners run against the clock."""
+    y, z = np.array(outline).T
+    y1, z1 = np.roll(y, -1), np.roll(z, -1)
+    cross = y * z1 - y1 * z
+    return (cross.sum() / 2, (cross * (z**2 + z * z1 + z1**2)).sum() / 12,
+            (cross * (y**2 + y * y1 + y1**2)).sum() / 12)
+
+
+@pytest.mark.parametrize("section, rel", [
+    (rectangle(0.3, 0.1, 2e11, 0.3, 7800), 1e-12),
+    (i_profile(0.3, 0.2, 0.02, 0.03, 2e11, 0.3, 7800), 1e-12),
+    (circle(0.3, 2e11, 0.3, 7800), 0.06)])      # a polygon of 16 corners has 2.6 % less area
+def test_outlines_have_area_and_moments_of_the_section(section, rel):
+    found = np.abs(area_and_moments(section.outline))
+    wanted = section.area, section.inertia_y, section.inertia_z
+    np.testing.assert_allclose(found, wanted, rtol=rel)
+
+
+def test_a_section_without_an_outline_is_a_rectangle_of_its_radii_of_gyration():
+    plain = Section(2.0, 0.3, 0.7, 0.5, 1e6, 0.3, 1.0)
+    model = straight_beam((0, 0, 0), (0, 0, 4), plain, 2, up=(1, 1, 0))
+    y, z = np.array([1, 1, 0]) / np.sqrt(2), np.array([-1, 1, 0]) / np.sqrt(2)
+    corners = np.column_stack([model.outlines[1] @ y, model.outlines[1] @ z])
+    area, I_y, I_z = area_and_moments(corners)
+    assert (I_y / area, I_z / area) == pytest.approx((0.3 / 2.0, 0.7 / 2.0))
+    assert np.abs(model.outlines[..., 2]).max() < 1e-12
+
+
+@pytest.mark.parametrize("outline, said", [
+    (((0, 0), (1, 0)), "Section.outline has 2 corners: give at least three"),
+    ((1, 2, 3), "Section.outline has shape"), ("box", "Section.outline is 'box'")])
+def test_outlines_that_are_none(outline, said):
+    with pytest.raises(InputError, match=said):
+        replace(Section(2.0, 0.3, 0.7, 0.5, 1e6, 0.3, 1.0), outline=outline)
+
+
+def test_outlines_of_other_cells_are_refused():
+    model = straight_beam((0, 0, 0), (1, 0, 0), rectangle(0.1, 0.1, 1e6, 0.3, 1.0), 2)
+    with pytest.raises(InputError, match="give corners .* each of the 2 cells of kind line"):
+        replace(model, outlines=model.outlines[:1])

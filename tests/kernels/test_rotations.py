@@ -81,6 +81,8 @@ def test_stumpff_groups(s):
         assert relative(value, c(k, s)) <= TOLERANCE
     for k, value in enumerate(rotations.stumpff_2345(s), 2):
         assert relative(value, c(k, s)) <= TOLERANCE
+    for k, value in enumerate(rotations.stumpff_1_to_7(s), 1):
+        assert relative(value, c(k, s)) <= TOLERANCE
 
 
 @pytest.mark.parametrize("s", SQUARES)

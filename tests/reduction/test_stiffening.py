@@ -150,6 +150,7 @@ def test_what_does_not_stiffen_is_left_out():
     elbow = frame(points, [(0, 1), (2, 1)], SLENDER, 6)
     slaved, resultants = counts(craig_bampton(elbow, {0: "full", 1: "full", 2: "full"}, 2))
     assert slaved >= 9 and resultants == 12
+    assert counts(craig_bampton(elbow, {0: "full"}, 0)) == (0, 0)     # rigid
     # nothing inside that could move
     assert cantilever(modes=0, elements=1).invariants.slaved == 0
 

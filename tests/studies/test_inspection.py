@@ -8,7 +8,7 @@ import pytest
 from sebody import InputError
 from sebody.cli.entry import main
 from sebody.fem import hexahedral_block
-from sebody.io import Mesh, read_body_file, save_body
+from sebody.io import read_body_file, save_body
 from sebody.reduction import RigidFace, craig_bampton
 from sebody.studies.inspection import free_rigid_motion, inspect
 
@@ -30,9 +30,7 @@ def body():
 
 @pytest.fixture
 def path(body, tmp_path):
-    cells = np.array([[0, 1, 2, 3]])
-    mesh = Mesh(np.vstack([body.coordinates, body.coordinates + 1]), {"quad": cells})
-    return save_body(body, tmp_path / "body.npz", ("left", "right"), units="m, kg, s", mesh=mesh)
+    return save_body(body, tmp_path / "body.npz", ("left", "right"), units="m, kg, s")
 
 
 def spoilt(path, **matrices):

@@ -19,26 +19,26 @@ work.
 
 import sympy as sp
 
-from sebody.derive.formulas import gravity
-from sebody.derive.formulas.damping import rates
-from sebody.derive.formulas.frames.frame import Frame, origin_stage
+from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import slaved
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
+from sebody.derive.formulas.inertia.rates import (
+    MOVING,
+    STRAINED,
+    Form,
+    energies_stage,
+    form_value,
+    frame_motion,
+    on_frame_stage,
+    quadratic_forms,
+    second_derivatives,
+)
 from sebody.derive.formulas.inertia.resultants import resultants
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.linearize import Linearizer
 from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import (
-    Call,
-    Repeat,
-    Solve,
-    Stage,
-    Step,
-    Values,
-    cross,
-)
-from sebody.derive.symbolic.variation import along
+from sebody.derive.symbolic.steps import Call, Repeat, Stage, Step
 from sebody.kernels.layout import InertiaTraits, Part, axes_of
 
 PLACE, RATE, SECOND = "Lz", "Lv", "La"      # local tangents, and the rows they multiply
@@ -133,30 +133,12 @@ class _Floating:
         """All steps."""
         q = self.q
         return Local(
-            motion=self.frame_motion(), forces=self.forces(), share=sp.zeros(3, 1),
-            on_frame=Stage("inertia and weight on the frame", "element",
-                           adds=((q.F, self.on_origin.symbols), (q.W, self.on_frame.symbols)),
-                           continues=True),
+            motion=frame_motion(q, self.frame), forces=self.forces(), share=sp.zeros(3, 1),
+            on_frame=on_frame_stage(q, self.on_origin.symbols, self.on_frame.symbols),
             energy=self.energy(), prepared=self.prepared(),
             held=(gathered("dy", "dz"), *slaved.varied(),
                   self.tangent_times("block_times", PLACE, "dz", "N")),
             column=self.column)
-
-    def frame_motion(self) -> tuple[Step, ...]:
-        """Rates of the local coordinates and of the frame, twice; gravity."""
-        q, Om0 = self.q, self.q.Om0.symbols
-        second = {"eu": "eud", "ep": "epd", "em": "emd", "Om0": "Om0d"}
-        in_time = (along(q.vs.symbols, q.acc.symbols + cross(q.vs.symbols, Om0))
-                   | along(q.v0.symbols, q.a0.symbols + cross(q.v0.symbols, Om0))
-                   | along(q.u.symbols, q.eu.symbols) | along(q.psi.symbols, q.ep.symbols)
-                   | along(q.Om.symbols, q.A.symbols) | along(q.vm.symbols, q.am.symbols))
-        clock = Linearizer(q.space, in_time, lambda quantity: getattr(q, second[quantity.name]))
-        solve = [clock.step(step) for step in self.frame.velocity if isinstance(step, Solve)]
-        of_y = [step for step in rates(q) if step.sets]
-        modes = Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),))
-        return (*self.frame.velocity, modes, origin_stage(q, q.v0, q.vs),
-                origin_stage(q, q.a0, q.acc), *of_y, *solve, *map(clock.step, of_y),
-                gravity.in_frame_axes(q))
 
     def forces(self) -> tuple[Step, ...]:
         """Local forces: integrals, then factors of the columns, then their products."""
@@ -322,31 +304,19 @@ class _Floating:
 
     def energy(self) -> tuple[Step, ...]:
         """Energies; momentum and its moment about the global origin."""
-        q, R0 = self.q, self.q.R0.symbols
-        squared, elastic = (self.of_element(name, "scalar", "squares", first=k)
-                            for k, name in enumerate(("moving", "elastic")))
+        q = self.q
+        squared, elastic = (form_value(q, name, k).symbols[0]
+                            for name, k in (("moving", MOVING), ("elastic", STRAINED)))
         pushed, turned = field.momenta(self.motion, self.sums)
-        x0, gamma = q.x0.symbols, q.gamma.symbols
-        moment = self.sums.c + q.mass.symbols[0] * R0.T * x0
+        kinetic = field.kinetic_energy(self.motion, self.sums, squared)
         return (
-            Call("momentum of deformation, Mbar zdot", "block_times",
-                 ("Mz", "zd", "moved", "N", "N", "hN"), ("Mz", "zd", "moved")),
-            Call("twice its energy", "rows_times", ("moved", "zd", "squares", "N", "1", "hN"),
-                 ("moved", "zd", "squares")),
-            Call("elastic force, Sbar y", "block_times",
-                 ("Sz", "z", "moved", "free", "free", "hn"), ("Sz", "z", "moved")),
-            Call("twice its energy", "rows_times",
-                 ("moved", "z", "at(squares, 1)", "free", "1", "hn"), ("moved", "z", "squares")),
-            Call("damping force, Cbar ydot", "block_times",
-                 ("Cz", "zd", "moved", "free", "damped", "hn"), ("Cz", "zd", "moved")),
-            Call("its power", "rows_times",
-                 ("moved", "zd", "at(squares, 2)", "free", "1", "hn"), ("moved", "zd", "squares")),
-            Stage("energies, momentum and its moment about the origin", "element", sets=(
-                (q.kinetic, sp.Matrix([field.kinetic_energy(self.motion, self.sums,
-                                                            squared.symbols[0])])),
-                (q.strain, elastic.symbols / 2 + sp.Matrix([self.stress.energy])),
-                (q.potential, sp.Matrix([-moment.dot(gamma)])), (q.P, R0 * pushed),
-                (q.H, cross(x0, R0 * pushed) + R0 * turned))))
+            *quadratic_forms(
+                Form("momentum of deformation, Mbar zdot", "twice its energy", "Mz", "zd", "N", "N",
+                     "hN"),
+                Form("elastic force, Sbar y", "twice its energy", "Sz", "z", "free", "free", "hn"),
+                Form("damping force, Cbar ydot", "its power", "Cz", "zd", "free", "damped", "hn")),
+            energies_stage(q, kinetic, elastic / 2 + self.stress.energy, pushed, turned,
+                           self.sums.c))
 
 
 def gathered(row: str, to: str) -> Call:
@@ -361,14 +331,6 @@ def scattered(row: str, to: str) -> Call:
                 (row, "kept", to))
 
 
-def second_derivatives(q: Quantities) -> tuple[Values, ...]:
-    """Of the coefficients of ``T^-1``, in space."""
-    if q.space.planar:
-        return ()
-    return (Values("second derivative of the coefficients of T^-1", (q.e2,),
-                   "inverse_tangent_second", q.psi, 30),)
-
-
 def _derivative(form: sp.Expr, quantity: Quantity) -> sp.Matrix:
     """Derivatives by the components of a quantity, in its shape."""
     return quantity.symbols.applyfunc(
@@ -378,7 +340,7 @@ def _derivative(form: sp.Expr, quantity: Quantity) -> sp.Matrix:
 INERTIA = InertiaOption(
     InertiaTraits(
         "the displacement field of the body, with slaved load modes (option C)", material=True,
-        field=True,
+        rates=True, field=True,
         constants=(
             Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
             Part("kept", ("free",), "local coordinates that determine the others in the frame"),

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.abi import Arguments, call_kernel
 from sebody.kernels.layout import (
     AT_POSITIONS,
@@ -23,6 +24,7 @@ from sebody.kernels.layout import (
     RESIDUAL,
     TANGENT,
     Row,
+    carried_counts,
     first_mode,
     first_rotation,
     floating_counts,
@@ -70,7 +72,7 @@ class Case(NamedTuple):
     loads: NDArray = np.zeros(3)    # amplitude and two rates
     slaved: int = 0             # of option C: coordinates that follow the others
     resultants: int = 0         # and stress resultants of second order
-    damped: bool = False        # whether the constants have its damping
+    damped: bool = False        # whether the constants of options C and D have its damping
 
     @property
     def planar(self) -> bool:
@@ -105,9 +107,12 @@ class Case(NamedTuple):
     @property
     def counts(self) -> dict[str, int]:
         """The counts that sizes of the constants are products of."""
-        return superelement_counts(
-            self.n_positions, self.n_rotations, self.planar, self.n) | floating_counts(
-            self.planar, self.n, self.slaved, self.resultants, self.damped)
+        counts = superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n)
+        option = INERTIA_OPTIONS.get(getattr(self.module, "INERTIA", ""))
+        if option is not None and option.field:
+            return counts | floating_counts(self.planar, self.n, self.slaved, self.resultants,
+                                            self.damped)
+        return counts | carried_counts(self.planar, self.n, self.damped)
 
     @property
     def row(self) -> Row:

@@ -19,6 +19,8 @@ from sebody.kernels.layout import (
     TANGENT,
     first_mode,
 )
+from sebody.studies.check import carried
+from sebody.studies.check.carried import is_carried
 from sebody.studies.check.definitions import (
     frame_rotation,
     frame_traits,
@@ -119,6 +121,9 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
         slaved, resultants = FOLLOWING[seed % len(FOLLOWING)]
         case = case._replace(slaved=slaved, resultants=resultants, damped=damping > 0)
         values |= generic_constants(random, case, values, damping)
+    elif is_carried(case):
+        case = case._replace(damped=damping > 0)
+        values |= carried.generic_constants(random, case, M, damping)
     return with_constants(case, values | _declared(case, values, random))
 
 
@@ -197,6 +202,8 @@ def energies(case: Case) -> float:
     d, V = case.dimension, y @ constants["S"] @ y / 2
     if is_floating(case):
         terms, V, moment = kinetic_terms(case), strain(case, y), first_moment(case, y)
+    elif is_carried(case):
+        terms, moment = carried.kinetic_terms(case), carried.first_moment(case, y)
     else:
         yd = local_velocities(case)
         terms = np.array([yd @ constants["M"] @ yd / 2])

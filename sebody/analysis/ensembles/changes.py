@@ -1,0 +1,292 @@
+"""Changes of a model that is built: how each quantity of a part is set and put back."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.model.bodies import superelement
+from sebody.model.histories import History, history
+from sebody.model.model import Model
+from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
+from sebody.reduction import ReducedBody
+from sebody.reduction.scaling import scaled
+
+# what can be varied of springs, and the constant of their kernels
+OF_SPRINGS = {"stiffness": "k", "damping": "c", "cubic": "k3", "length": "length", "rest": "rest",
+              "turning_stiffness": "kt", "turning_damping": "ct"}
+SIGNED = {"rest"}       # of these, what may be negative
+MOTION, BODIES, LOADS = "motion", "bodies", "loads"     # what a change has an effect on
+
+
+@dataclass(frozen=True)
+class Handle:
+    """A quantity of a model that can be set.
+
+    Parameters
+    ----------
+    base : ndarray or ReducedBody
+        Its value in the model as built.
+    set : function
+        Sets a value.
+    reset : function
+        Puts back what was there.
+    touches : str
+        MOTION where initial velocities may have to be fitted anew, BODIES where masses change the
+        fit, LOADS where neither.
+    least, above : float, optional
+        Bounds of the values.
+    """
+
+    base: Any
+    set: Callable[[Any], None]
+    reset: Callable[[], None]
+    touches: str
+    least: float | None = None
+    above: float | None = None
+
+    @property
+    def whole(self) -> bool:
+        """Whether the values are objects."""
+        return not isinstance(self.base, np.ndarray)
+
+    def checked(self, name: str, values: Any) -> Any:
+        """Values of some runs, (runs, *shape), or objects.
+
+        Raises
+        ------
+        InputError
+            Another shape, or a value outside the bounds.
+        """
+        if self.whole:
+            found = inputs.items(values, name, "give a list of ReducedBody objects")
+            for one in found:
+                inputs.instance(one, f"{name}: one", ReducedBody, "give ReducedBody objects")
+            return found
+        remedy = "give " + (f"an array (runs, {', '.join(map(str, self.base.shape))})"
+                            if self.base.shape else "one number for each run")
+        found = inputs.array(values, name, (None, *self.base.shape), remedy=remedy)
+        lowest = found.reshape(len(found), -1).min(axis=1, initial=np.inf)
+        for bound, wrong, wanted in ((self.least, np.less, "at least"),
+                                     (self.above, np.less_equal, "above")):
+            if bound is not None and wrong(lowest, bound).any():
+                run = int(np.argmin(lowest))
+                raise InputError(f"{name} of run {run} is {inputs.shown(found[run])}: it must be "
+                                 f"{wanted} {bound:g}")
+        return found
+
+
+def _attribute(owner: object, attribute: str, touches: str, base: NDArray | None = None,
+               made: Callable[[NDArray], Any] = np.array, **bounds: float) -> Handle:
+    """Handle of an attribute that is replaced by what `made` makes of a value."""
+    before = getattr(owner, attribute)
+    return Handle(np.array(before, dtype=float) if base is None else base,
+                  lambda value: setattr(owner, attribute, made(value)),
+                  lambda: setattr(owner, attribute, before), touches, **bounds)
+
+
+def gravity(model: Model) -> Handle:
+    """Acceleration of free fall."""
+    return _attribute(model, "gravity_field", LOADS)
+
+
+# nodes and joints
+
+
+def position(model: Model, node: Node, name: str) -> Handle:
+    """Initial position."""
+    return _attribute(_triplet(node, "position", name), "start", MOTION)
+
+
+def rotation(model: Model, node: Node, name: str) -> Handle:
+    """Initial rotation."""
+    return _attribute(_triplet(node, "rotation", name), "start", MOTION)
+
+
+def velocity(model: Model, node: Node, name: str) -> Handle:
+    """Initial velocity."""
+    return _rate(_triplet(node, "position", name), name)
+
+
+def angular_velocity(model: Model, node: Node, name: str) -> Handle:
+    """Initial angular velocity."""
+    return _rate(_triplet(node, "rotation", name), name)
+
+
+def joint_position(model: Model, joint: Joint, name: str) -> Handle:
+    """Where a joint with the ground holds its node."""
+    fixed = joint.to.position
+    if joint.to not in model.grounds or fixed is None:
+        raise InputError(f"{name}: joint {joint.name!r} is not to the ground, so its place belongs "
+                         "to its bodies: vary positions of nodes, or build the model anew")
+    return _attribute(fixed, "start", MOTION)
+
+
+def _triplet(node: Node, kind: str, name: str) -> Triplet:
+    found = getattr(node, kind)
+    if found is None:
+        raise InputError(f"{name}: node {node.name!r} has no {kind}; give another node")
+    if found.root is not None:
+        raise InputError(f"{name}: node {node.name!r} is at the end of a rigid link: vary "
+                         f"{found.root.name} and its rotation")
+    return found
+
+
+def _rate(triplet: Triplet, name: str) -> Handle:
+    if triplet.fixed:
+        raise InputError(f"{name}: {triplet.name} is fixed or moved: vary its drive")
+    base, given = triplet.rate, triplet.given
+
+    def assign(rate: NDArray, is_given: bool) -> None:
+        triplet.rate, triplet.given = rate, is_given
+    return Handle(np.array(base, dtype=float), lambda value: assign(np.array(value), True),
+                  lambda: assign(base, given), MOTION)
+
+
+# bodies
+
+
+def body_factor(quantity: str) -> Callable[[Model, Superelement, str], Handle]:
+    """Handle of a factor of stiffness, mass or damping; those of one body add up."""
+    def make(model: Model, body: Superelement, name: str) -> Handle:
+        if quantity == "damping" and body.body.damping is None:
+            raise InputError(f"{name}: superelement {body.name!r} has no damping to scale: build "
+                             "it from body.damped(...)")
+        before = body.body
+
+        def assign(value: NDArray) -> None:
+            placed = model.bodies[body.name]        # perhaps with another body
+            placed.body = scaled(placed.body, **{quantity: float(value)})
+
+        def put_back() -> None:
+            body.body = before
+        bound = {"least": 0.0} if quantity == "damping" else {"above": 0.0}
+        return Handle(np.array(1.0), assign, put_back, BODIES, **bound)
+    return make
+
+
+def whole_body(model: Model, body: Superelement, name: str) -> Handle:
+    """Another reduced body in the place of a superelement's."""
+    order = list(model.bodies)
+
+    def put(made: Superelement) -> None:
+        placed = model.bodies | {body.name: made}
+        model.bodies = {one: placed[one] for one in order}
+
+    def assign(value: ReducedBody) -> None:
+        _check_like(name, value, body.body)
+        others = {n: b for n, b in model.bodies.items() if n != body.name}
+        model.bodies = others
+        model.own_names.discard(body.name)
+        try:
+            made = superelement(model, body.name, value, body.nodes, frame=body.frame,
+                                inertia=body.inertia, frame_node=int(np.argmax(body.alpha)))
+        finally:
+            model.own_names.add(body.name)
+            put(body)
+        put(replace(made, mode_rates=body.mode_rates))
+    return Handle(body.body, assign, lambda: put(body), BODIES)
+
+
+def _check_like(name: str, value: ReducedBody, base: ReducedBody) -> None:
+    for what in ("keeps", "modes"):
+        own, wanted = getattr(value, what), getattr(base, what)
+        if own != wanted:
+            raise InputError(f"{name}: one has {what} {own}, the model's {wanted}: give bodies of "
+                             "one layout, or build a model for each")
+
+
+def rigid_mass(model: Model, body: Element, name: str) -> Handle:
+    """Factor of the mass and inertia of a rigid body."""
+    before = body.constants
+    return _constants(body, lambda factor: {k: factor * np.asarray(v) for k, v in before.items()},
+                      BODIES, np.array(1.0), above=0.0)
+
+
+# loads, springs and drives
+
+
+def _constants(element: Element, made: Callable[[NDArray], dict], touches: str,
+               base: NDArray, **bounds: float) -> Handle:
+    """Handle of some constants of an element; other handles may have set others."""
+    before = element.constants
+
+    def assign(value: NDArray) -> None:
+        element.constants = {**element.constants, **made(value)}
+
+    def put_back() -> None:
+        element.constants = before
+    return Handle(base, assign, put_back, touches, **bounds)
+
+
+def load_amplitude(model: Model, load: Element, name: str) -> Handle:
+    """Factor of a force, torque or mode force."""
+    direction = next((c for c in ("d", "factor") if c in load.constants), None)
+    if direction is None:
+        raise InputError(f"{name}: {load.name!r} is no force or torque: it has no amplitude")
+    before = np.array(load.constants[direction], dtype=float)
+    return _constants(load, lambda factor: {direction: factor * before}, LOADS, np.array(1.0))
+
+
+def spring_constant(quantity: str) -> Callable[[Model, Element, str], Handle]:
+    """Handle of a constant of springs and dampers."""
+    constant = OF_SPRINGS[quantity]
+
+    def make(model: Model, spring: Element, name: str) -> Handle:
+        if constant not in spring.constants:
+            raise InputError(f"{name}: {spring.name!r} has no {quantity}")
+        bound = {} if quantity in SIGNED else {"least": 0.0}
+        return _constants(spring, lambda value: {constant: value}, LOADS,
+                          np.array(spring.constants[constant], dtype=float), **bound)
+    return make
+
+
+def load_table(model: Model, load: Element, name: str) -> Handle:
+    """Values of a load's table, at its times."""
+    if load.history is None:
+        raise InputError(f"{name}: {load.name!r} has no history")
+    return _table(load, name, LOADS)
+
+
+def _table(element: Element, name: str, touches: str) -> Handle:
+    before = element.history
+    linear = not before.functions and not before.waves and all(
+        not any(piece[2:]) for piece in before.pieces)
+    if not linear or len(before.times) < 2:
+        raise InputError(f"{name}: the history of {element.name!r} is no table of values: vary its "
+                         "amplitude")
+    values = np.array([piece[0] for piece in before.pieces])
+
+    def made(rows: NDArray) -> History:
+        # corners matter to variable steps alone, which ensembles do not have
+        return replace(history(np.column_stack([before.times, rows])), corners=before.corners)
+    return _attribute(element, "history", touches, values, made)
+
+
+def drive_amplitude(model: Model, drive: Joint | tuple[Triplet, Motion], name: str) -> Handle:
+    """Factor of a prescribed motion."""
+    motion = drive if isinstance(drive, Joint) else drive[1]
+    before = motion.history
+    if before.functions:
+        raise InputError(f"{name}: the motion of {motion.name!r} is a function of time: give a "
+                         "table or a ready profile to vary its amplitude")
+
+    def made(factor: NDArray) -> History:
+        f = float(factor)
+        return replace(before, pieces=tuple(tuple(f * c for c in p) for p in before.pieces),
+                       waves=tuple((f * A, w, p) for A, w, p in before.waves))
+    if isinstance(drive, Joint):
+        return _attribute(drive.constraints[0], "history", MOTION, np.array(1.0), made)
+    triplet, motions = drive[0], list(drive[0].motions)
+
+    def assign(value: NDArray) -> None:
+        triplet.motions = [motion._replace(history=made(value)) if m is motion else m
+                           for m in triplet.motions]
+
+    def put_back() -> None:
+        triplet.motions = motions
+    return Handle(np.array(1.0), assign, put_back, MOTION)

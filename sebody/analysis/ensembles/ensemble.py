@@ -1,0 +1,120 @@
+"""Many runs of one model with other numbers, in threads."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sebody import inputs
+from sebody.analysis.ensembles.handles import given, handles
+from sebody.analysis.ensembles.member import kinematic_quantities
+from sebody.analysis.ensembles.outcome import Outcome
+from sebody.analysis.ensembles.outputs import Output, outputs_of
+from sebody.analysis.ensembles.work import Work, processors
+from sebody.analysis.simulation import Simulation
+from sebody.engine.state import Scheme
+from sebody.errors import InputError
+from sebody.model.model import Model
+from sebody.reduction import ReducedBody
+
+Values = ArrayLike | Sequence[ReducedBody]
+
+
+class Ensemble:
+    """Many runs of a model with different numbers: built once, run in threads.
+
+    Parameters
+    ----------
+    model : Model
+        Must not be changed while runs go on; `run` leaves it as it was.
+    h : float
+        Fixed step, also the output grid [time].
+    scheme : Scheme, optional
+        `generalized_alpha` with rho 0.9 by default.
+    output_every : int
+        Every so many steps a state is recorded, from which outputs are made.
+
+    Raises
+    ------
+    InputError
+        As `Simulation`.
+
+    Examples
+    --------
+    >>> ensemble = Ensemble(model, h=0.01)
+    >>> outcome = ensemble.run({"motor.amplitude": amplitudes, "beam.stiffness": factors},
+    ...                        t_end=3.0, outputs={"tip": maximum("tip.position")})
+    >>> outcome["tip"].shape
+    (10000, 3)
+    """
+
+    def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
+                 output_every: int = 1):
+        self.model, self.scheme = model, scheme
+        self._template = Simulation(model, h, scheme, output_every)
+        self.h, self.every = self._template.h, self._template.every
+
+    @property
+    def parameters(self) -> list[str]:
+        """Names of all that can be varied; see `sebody.analysis.ensembles.handles`."""
+        return list(handles(self.model))
+
+    def run(self, parameters: Mapping[str, Values], t_end: float,
+            outputs: Mapping[str, Output | str], threads: int | None = None,
+            progress: Callable[[float], None] | None = None) -> Outcome:
+        """Run the model once for each set of values.
+
+        Results do not depend on the number of threads, bit for bit, nor on which runs are asked for
+        together.
+
+        Parameters
+        ----------
+        parameters : mapping
+            Values by name: the first axis of each array counts the runs.
+        t_end : float
+            End of all runs [time].
+        outputs : mapping
+            What is kept of each run, by names of your choice: a quantity (its history), or what
+            `maximum`, `minimum`, `rms`, `integral`, `final` or `at_time` return.
+        threads : int, optional
+            By default one for each processor.
+        progress : callable, optional
+            Called with the part of the runs that is done.
+
+        Raises
+        ------
+        InputError
+            Before the first run: unknown names, arrays of different lengths, values that a body
+            cannot have, an unknown quantity, a time that is no multiple of the step.
+        """
+        found, runs = given(self.model, parameters)
+        last = self._last_step(t_end)
+        kept = outputs_of(outputs, last * self.h)
+        kinematic, shapes = kinematic_quantities(self._template, kept)
+        threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
+        values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
+        outcome = self._empty(kept, shapes, runs, last)
+        began = time.perf_counter()
+        work = Work(self._template, found, values, kept, kinematic, last, outcome)
+        work.go(min(threads, max(runs, 1)), progress)
+        outcome.seconds = time.perf_counter() - began
+        return outcome
+
+    def _last_step(self, t_end: float) -> int:
+        t_end = inputs.number(t_end, "t_end", above=0)
+        last = round(t_end / self.h)
+        if last < 1 or abs(t_end / self.h - last) > 1e-6:
+            raise InputError(f"t_end is {t_end:g}, which is no multiple of the step {self.h:g}: "
+                             "give one")
+        return last
+
+    def _empty(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
+               runs: int, last: int) -> Outcome:
+        count = last // self.every + 1
+        values = {}
+        for name, one in outputs.items():
+            shape = () if one.norm else shapes[one.quantity]
+            values[name] = np.full((runs, *((count,) if one.kind == "history" else ()), *shape),
+                                   np.nan)
+        return Outcome(values, np.arange(count) * self.every * self.h, np.full(runs, np.nan))

@@ -1,0 +1,38 @@
+"""``sebody plot``: histories, phase plots and spectra of saved results."""
+
+import argparse
+from pathlib import Path
+
+from sebody.cli.inputs import check_distinct, check_picture, labelled_results
+
+
+def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
+    """The parser of the command."""
+    parser = commands.add_parser(
+        "plot", help="draw quantities of a saved result, or of several to compare")
+    parser.add_argument("result", metavar="RESULT.npz",
+                        help="file written by 'sebody run SCENE --output FILE.npz'; its quantities "
+                             "are listed by 'sebody list FILE.npz'")
+    parser.add_argument("words", nargs="*", metavar="QUANTITY",
+                        help="tip.position, tip.position.x, tip.velocity.norm, energy, or over "
+                             "each other tip.position.x:y; further files RESULT.npz are compared; "
+                             "an overview by default")
+    parser.add_argument("--spectrum", action="store_true", help="power spectral densities")
+    parser.add_argument("--output", type=Path, metavar="FILE.png", required=True,
+                        help="png, svg or pdf")
+    return parser
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read the results and draw."""
+    check_picture(options.output)
+    from sebody.results.drawing import plot
+    from sebody.results.result import OUTPUT
+
+    others = [word for word in options.words if word.endswith(OUTPUT[1])]
+    check_distinct({"--output": options.output, "RESULT": Path(options.result)})
+    plot(labelled_results([options.result, *others]),
+         *(word for word in options.words if word not in others),
+         output=options.output, spectrum=options.spectrum)
+    print(f"picture: {options.output}")
+    return 0

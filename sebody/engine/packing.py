@@ -1,0 +1,87 @@
+"""Groups of arrays whose numbers lie in one buffer: a copy of it begins a run."""
+
+from collections.abc import Iterator
+from dataclasses import fields
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.engine.arrays import Arrays
+
+ALIGNED = 8     # numbers of a cache line: arrays begin at whole ones
+
+Group = TypeVar("Group", bound=Arrays)
+
+
+class Places:
+    """Where the arrays of floats of some groups lie in one buffer, by group, member and size.
+
+    Parameters
+    ----------
+    groups : Arrays
+        Members that are views of an earlier member of their group keep being views of it.
+    """
+
+    def __init__(self, *groups: Arrays):
+        self.size = 0
+        self._first: dict[int, int] = {}        # address of an array -> place
+        self._sizes: dict[int, int] = {}
+        for array in (a for group in groups for a in _floats(group)):
+            if array.size and self._within(array) is None:
+                self._first[array.ctypes.data] = self.size
+                self._sizes[array.ctypes.data] = array.size
+                self.size += -(-array.size // ALIGNED) * ALIGNED
+
+    def of(self, array: NDArray) -> slice:
+        """The part of the buffer that an array of the groups has."""
+        first = self._within(array) if array.size else 0
+        assert first is not None, "an array of another group"
+        return slice(first, first + array.size)
+
+    def packed(self, group: Group, buffer: NDArray) -> Group:
+        """The same group with its floats in `buffer`, which gets their contents.
+
+        Integers are copied where a run writes to them; the pattern of a model is shared.
+        """
+        made = {}
+        for one in fields(group):
+            value = getattr(group, one.name)
+            if isinstance(value, Arrays):
+                made[one.name] = self.packed(value, buffer)
+            elif value.dtype == np.float64:
+                view = buffer[self.of(value)].reshape(value.shape)
+                view[...] = value
+                made[one.name] = view
+            else:
+                made[one.name] = value
+        return type(group)(**made)
+
+    def _within(self, array: NDArray) -> int | None:
+        """Place of an array, or of the part of a larger one that it is."""
+        address = array.ctypes.data
+        if address in self._first:
+            return self._first[address]
+        for start, first in self._first.items():
+            if start <= address < start + 8 * self._sizes[start]:
+                return first + (address - start) // 8
+        return None
+
+
+def _floats(group: Arrays) -> Iterator[NDArray]:
+    for one in fields(group):
+        value = getattr(group, one.name)
+        if isinstance(value, Arrays):
+            yield from _floats(value)
+        elif value.dtype == np.float64:
+            yield value
+
+
+def patterns(group: Arrays) -> Iterator[NDArray]:
+    """The arrays of a group that are not of floats, in order: what two models share."""
+    for one in fields(group):
+        value = getattr(group, one.name)
+        if isinstance(value, Arrays):
+            yield from patterns(value)
+        elif value.dtype != np.float64:
+            yield value

@@ -1,0 +1,225 @@
+"""Curves of histories: what the words of a user, such as ``tip.position.x:y``, show of results."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.results.result import Result
+
+AXES = "xyz"
+NORM = "norm"                   # component: the length of a vector
+GROUPS = {"energy": ("energy.kinetic", "energy.strain", "energy.potential",
+                     "energy.external_work"),
+          "constraints": ("constraints.position", "constraints.velocity")}
+SEGMENTS = 4                    # at least, of a history in Welch's method, each half overlapping
+FEWEST = 16                     # samples of a spectrum
+UNEVEN = 1e-6                   # of a step: by how much times of a spectrum may differ from a grid
+SMALL_ANGLE = 1e-6              # rad: below, the axis of a rotation is that of the sample before
+
+
+class Curve(NamedTuple):
+    """A line of a panel."""
+
+    label: str
+    x: NDArray
+    y: NDArray
+
+
+class Panel(NamedTuple):
+    """Curves over common axes."""
+
+    title: str
+    x_label: str
+    y_label: str
+    curves: list[Curve]
+    kind: str = "history"       # history, phase or spectrum
+
+
+class Values(NamedTuple):
+    """Components of a history."""
+
+    name: str
+    labels: tuple[str, ...]     # of the components; one that is empty for a number
+    numbers: NDArray            # (n, components)
+
+
+def panels(results: Mapping[str, Result], words: Sequence[str], spectrum: bool = False
+           ) -> list[Panel]:
+    """One panel for each word; of several results one for each component.
+
+    Parameters
+    ----------
+    results : mapping
+        Results by their label.
+    words : sequence of str
+        Quantities, components (``tip.position.x``, ``tip.velocity.norm``, ``beam.modes.0``),
+        groups (``energy``), or two components with a colon between them, for phase plots.
+    spectrum : bool
+        Power spectral densities in place of histories.
+
+    Raises
+    ------
+    InputError
+        A quantity or component there is not, a result of one state, or one without a spectrum.
+    """
+    for label, result in results.items():
+        if len(result.t) < 2:
+            raise InputError(f"{label} holds the state at t = {result.t[0]:g} alone, which makes "
+                             "no curve: run the model to a later time")
+    found: list[Panel] = []
+    for word in words:
+        inputs.name(word, "name of a quantity")
+        first = next(iter(results.values()))
+        pair = _pair(first, word)
+        if pair and spectrum:
+            raise InputError(f"{word} is a phase plot, which has no spectrum: name one quantity")
+        found += _phase(results, word, *pair) if pair else _histories(results, word)
+    return [_spectrum(panel) for panel in found] if spectrum else found
+
+
+def values(result: Result, word: str) -> Values:
+    """Components of a quantity, of a component, or of a group of numbers.
+
+    Rotations are given by their rotation vector, which is followed through full turns.
+
+    Raises
+    ------
+    InputError
+        A quantity or component there is not.
+    """
+    if word in GROUPS:
+        return Values(word, tuple(name.partition(".")[2].replace("_", " ")
+                                  for name in GROUPS[word]),
+                      np.column_stack([result[name] for name in GROUPS[word]]))
+    name, _, component = word.rpartition(".")
+    if name and (component in (*AXES, NORM) or component.isdecimal()):
+        return _component(values(result, name), component)
+    history = result[word]
+    if history.ndim == 3:
+        history = rotation_vectors(history)
+    if history.ndim == 1:
+        return Values(word, ("",), history[:, None])
+    count = history.shape[1]
+    labels = tuple(AXES[:count]) if count in (2, 3) and not word.endswith(
+        (".modes", ".multipliers", ".forces")) else tuple(map(str, range(count)))
+    return Values(word, labels, history)
+
+
+def _component(whole: Values, component: str) -> Values:
+    name = f"{whole.name}.{component}"
+    if whole.labels == ("",):
+        raise InputError(f"{name} is unknown: {whole.name} is one number, it has no components")
+    if component == NORM:
+        return Values(name, ("",), np.linalg.norm(whole.numbers, axis=1)[:, None])
+    if component not in whole.labels:
+        raise InputError(f"{name} is unknown: {whole.name} has the components "
+                         f"{', '.join((*whole.labels, NORM))}")
+    k = whole.labels.index(component)
+    return Values(name, ("",), whole.numbers[:, k:k + 1])
+
+
+def rotation_vectors(matrices: NDArray) -> NDArray:
+    """Rotation vectors (n, 3) of matrices (n, 3, 3), continued through full turns."""
+    vectors = Rotation.from_matrix(matrices).as_rotvec()
+    angles = np.linalg.norm(vectors, axis=1)
+    known = angles > SMALL_ANGLE
+    if not known.any():
+        return vectors
+    # the axis of a small rotation is that of the last larger one, of the first ones the first's
+    last = np.maximum.accumulate(np.where(known, np.arange(len(angles)), -1))
+    last[last < 0] = np.flatnonzero(known)[0]
+    axes = (vectors / np.maximum(angles, SMALL_ANGLE)[:, None])[last]
+    turned = np.einsum("ni,ni->n", axes[1:], axes[:-1]) < 0
+    signs = np.concatenate([[1.0], np.cumprod(np.where(turned, -1.0, 1.0))])
+    return np.unwrap(signs * angles)[:, None] * signs[:, None] * axes
+
+
+def _pair(result: Result, word: str) -> tuple[str, str] | None:
+    """The two sides of the colon of a phase plot; colons in names of parts are none."""
+    for at, letter in enumerate(word):
+        if letter == ":" and _is_known(result, word[:at]):
+            return word[:at], word[at + 1:]
+    if word.count(":") == 1 and not _is_known(result, word):
+        return tuple(word.split(":"))
+    return None
+
+
+def _is_known(result: Result, word: str) -> bool:
+    try:
+        values(result, word)
+    except InputError:
+        return False
+    return True
+
+
+def _phase(results: Mapping[str, Result], word: str, across: str, up: str) -> list[Panel]:
+    if up in (*AXES, NORM) or up.isdecimal():
+        up = f"{across.rpartition('.')[0]}.{up}"        # tip.position.x:y
+    curves = []
+    for label, result in results.items():
+        curves.append(Curve(label, *(_one(result, word, side) for side in (across, up))))
+    return [Panel(f"{up} over {across}", across, up, curves, "phase")]
+
+
+def _one(result: Result, word: str, side: str) -> NDArray:
+    """The numbers of one side of a phase plot."""
+    found = values(result, side)
+    if len(found.labels) > 1:
+        raise InputError(f"{word}: {side} has the components {', '.join(found.labels)}: a phase "
+                         f"plot takes one of them, such as {side}.{found.labels[0]}")
+    return found.numbers[:, 0]
+
+
+def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
+    found = {label: values(result, word) for label, result in results.items()}
+    first = next(iter(found.values()))
+    if len(results) == 1:
+        t = next(iter(results.values())).t
+        curves = [Curve(label, t, column)
+                  for label, column in zip(first.labels, first.numbers.T, strict=True)]
+        return [Panel(first.name, "time", _plain(first.name), curves)]
+    made = []
+    for component in first.labels:
+        name = f"{first.name}.{component}".rstrip(".")
+        curves = []
+        for label, one in found.items():
+            if component not in one.labels:
+                raise InputError(f"{label} has no {name}: {one.name} has the components "
+                                 f"{', '.join(one.labels)}")
+            curves.append(Curve(label, results[label].t,
+                                one.numbers[:, one.labels.index(component)]))
+        made.append(Panel(name, "time", _plain(name), curves))
+    return made
+
+
+def _plain(name: str) -> str:
+    """The quantity of a name, for the axis."""
+    parts = name.split(".")
+    quantity = parts[-1] if not (parts[-1] in (*AXES, NORM) or parts[-1].isdecimal()) else parts[-2]
+    return quantity.replace("_", " ")
+
+
+def _spectrum(panel: Panel) -> Panel:
+    """Power spectral densities of the curves, by the method of Welch (1967)."""
+    curves = [Curve(curve.label, *_density(panel.title, curve)) for curve in panel.curves]
+    return Panel(panel.title, "frequency [1/time]", "power spectral density", curves, "spectrum")
+
+
+def _density(title: str, curve: Curve) -> tuple[NDArray, NDArray]:
+    from scipy.signal import welch  # takes half a second to import
+
+    steps = np.diff(curve.x)
+    if len(curve.x) < FEWEST:
+        raise InputError(f"{title} has {len(curve.x)} samples: a spectrum takes at least {FEWEST}, "
+                         "keep more states or run longer")
+    if np.ptp(steps) > UNEVEN * steps.mean():
+        raise InputError(f"{title} is not sampled evenly, between {steps.min():.3g} and "
+                         f"{steps.max():.3g}: a spectrum takes equal steps")
+    segment = max(FEWEST, 2 * len(curve.x) // (SEGMENTS + 1))
+    frequencies, density = welch(curve.y, 1.0 / steps.mean(), nperseg=segment)
+    return frequencies[1:], density[1:]         # the mean is taken off
