@@ -19,7 +19,8 @@ CORNERS = np.array(list(product((0.0, 1.0), repeat=3))) * SIZES
 PUSH = [(0.0, 0.0), (0.3, 40.0), (0.6, 0.0)]
 
 
-def build(layout: str = "small", modes: int = 6, elements: int = 4) -> Scene:
+def build(layout: str = "small", modes: int = 6, elements: int = 4,
+          inertia: str | None = None) -> Scene:
     """The scene.
 
     Parameters
@@ -30,6 +31,8 @@ def build(layout: str = "small", modes: int = 6, elements: int = 4) -> Scene:
         Internal modes.
     elements : int
         Finite elements a member.
+    inertia : str
+        Inertia option: a or b of the paper, c of the displacement field; the best by default.
     """
     keeps = {"small": "translation", "full": "full"}
     keep = keeps[inputs.choice(layout, "layout", keeps)]
@@ -41,7 +44,8 @@ def build(layout: str = "small", modes: int = 6, elements: int = 4) -> Scene:
     nodes = [model.node(name, point, keep) for name, point in zip(
         ("base", "b", "c", "d", "e", "f", "g", "tip"), CORNERS, strict=True)]
     model.superelement("box", body, nodes,
-                       frame="positions" if layout == "small" else "converged_mean")
+                       frame="positions" if layout == "small" else "converged_mean",
+                       inertia=inertia)
     model.fix("base", "position")
     model.force("tip", (0.2, 1.0, -0.6), PUSH)
     return Scene("box", "box of members with eight translation-only corners, on a spherical joint",

@@ -23,7 +23,7 @@ def link_body(modes: int = 4, elements: int = 10) -> ReducedBody:
     return craig_bampton(fe_model, [(0, "full"), (elements, "full")], modes)
 
 
-def build(links: int = 16, modes: int = 4) -> Scene:
+def build(links: int = 16, modes: int = 4, inertia: str | None = None) -> Scene:
     """The scene: a chain let go from the horizontal.
 
     Parameters
@@ -32,6 +32,8 @@ def build(links: int = 16, modes: int = 4) -> Scene:
         Number of links, the first one hinged to the ground.
     modes : int
         Internal modes a link.
+    inertia : str
+        Inertia option: a or b of the paper, c of the displacement field; the best by default.
     """
     links = inputs.integer(links, "links", least=1)
     body, model = link_body(modes), Model()
@@ -41,7 +43,7 @@ def build(links: int = 16, modes: int = 4) -> Scene:
     last = base
     for k in range(links):
         end = model.node("tip" if k == links - 1 else f"joint {k + 1}", (k + 1.0, 0.0, 0.0))
-        model.superelement(f"link {k + 1}", body, [last, end])
+        model.superelement(f"link {k + 1}", body, [last, end], inertia=inertia)
         if k < links - 1:
             last = model.node(f"base {k + 2}", end.point, at=end)
             model.revolute(end, AXIS, to=last)

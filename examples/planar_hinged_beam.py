@@ -5,8 +5,8 @@ from sebody.scenes.hinged_beam import SECTION, TORQUE
 from sebody.scenes.scene import Scene
 
 
-def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 2,
-          elements: int = 20, bodies: int = 1) -> Scene:
+def build(frame: str = "converged_mean", inertia: str | None = None, modes: int = 2,
+          elements: int = 20, bodies: int = 1, stiffening: bool | None = None) -> Scene:
     """The scene; two modes in the plane are what is left of the four of the spatial one.
 
     Parameters
@@ -14,17 +14,20 @@ def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 2,
     frame : str
         Frame of the bodies: converged_mean, or node (attached to their first node).
     inertia : str
-        Inertia option: velocities in frame axes (a) or material (b), or exact with stiffening (c).
+        Inertia option: a or b of the paper, c of the displacement field; the best by default.
     modes : int
         Internal modes a body.
     elements : int
         Finite elements of the whole beam; bodies with one element and no modes are nonlinear beams.
     bodies : int
         Number of equal superelements the beam is divided into.
+    stiffening : bool
+        With option c: whether stresses stiffen the bodies; by default all but nonlinear beams.
     """
     model = Model(planar=True)
     base, tip = model.node("base", (0.0, 0.0)), model.node("tip", (100.0, 100.0))
-    model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia)
+    model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia,
+               stiffening=stiffening)
     model.revolute(base)
     model.torque(base, 1.0, TORQUE)
     return Scene("planar-hinged-beam", "the paper's hinged beam in its plane", model, h=0.01,

@@ -15,7 +15,8 @@ POINTS = np.array([[0.0, 0.0, 0.0], [60.0, 0.0, 0.0], [60.0, 40.0, 0.0]])
 PUSH = [(0.0, 0.0), (0.5, 60.0), (1.0, 0.0)]
 
 
-def build(layout: str = "small", modes: int = 6, elements: int = 10) -> Scene:
+def build(layout: str = "small", modes: int = 6, elements: int = 10,
+          inertia: str | None = None) -> Scene:
     """The scene.
 
     Parameters
@@ -26,6 +27,8 @@ def build(layout: str = "small", modes: int = 6, elements: int = 10) -> Scene:
         Internal modes.
     elements : int
         Finite elements a leg.
+    inertia : str
+        Inertia option: a or b of the paper, c of the displacement field; the best by default.
     """
     keeps = {"small": "translation", "full": "full"}
     keep = keeps[inputs.choice(layout, "layout", keeps)]
@@ -34,7 +37,7 @@ def build(layout: str = "small", modes: int = 6, elements: int = 10) -> Scene:
     model = Model()
     base, elbow = model.node("base", POINTS[0]), model.node("elbow", POINTS[1])
     tip = model.node("tip", POINTS[2], keep)
-    model.superelement("frame", body, [base, elbow, tip])
+    model.superelement("frame", body, [base, elbow, tip], inertia=inertia)
     model.revolute(base, axis=(0, 0, 1))
     model.force(tip, (-1.0, 0.5, 0.3), PUSH)
     return Scene("right-angle-frame", "right-angle frame with a translation-only load node", model,

@@ -18,7 +18,8 @@ ELEMENTS = 24
 
 
 def build(bodies: int = 1, modes: int = 5, elements: int = ELEMENTS,
-          frame: str = "converged_mean", inertia: str = "b") -> Scene:
+          frame: str = "converged_mean", inertia: str | None = None,
+          stiffening: bool | None = None) -> Scene:
     """The scene, moving from the start.
 
     Parameters
@@ -32,13 +33,15 @@ def build(bodies: int = 1, modes: int = 5, elements: int = ELEMENTS,
     frame : str
         Frame of the bodies: converged_mean, or node (attached to their first node).
     inertia : str
-        Inertia option: velocities in frame axes (a) or material (b), or exact with stiffening (c).
+        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+    stiffening : bool
+        With option c: whether stresses stiffen the bodies; by default all but nonlinear beams.
     """
     model = Model(planar=True)
     pin = model.node("pin", (RADIUS, 0.0))
     slider = model.node("slider", (RADIUS + LENGTH, 0.0))
     model.beam("rod", (pin, slider), SECTION, elements, bodies, modes, frame=frame,
-               inertia=inertia)
+               inertia=inertia, stiffening=stiffening)
     model.point_mass("slider", slider, SLIDER)
     model.slider(slider, axis=(1.0, 0.0))
     model.move(pin, (RADIUS, 0.0), (lambda t: cos(SPEED * t) - 1.0,

@@ -12,8 +12,9 @@ TORQUE = [(0.0, 0.0), (0.2, 200.0), (10.0, 200.0), (10.2, 0.0)]
 PUSH = [(15.0, 0.0), (15.2, 100.0), (15.4, 0.0)]
 
 
-def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 8,
-          elements: int = 20, frame_node: int = 0, bodies: int = 1) -> Scene:
+def build(frame: str = "converged_mean", inertia: str | None = None, modes: int = 8,
+          elements: int = 20, frame_node: int = 0, bodies: int = 1,
+          stiffening: bool | None = None) -> Scene:
     """The scene: a torque of impulse 2000 about z at the base, an impulse of 20 along z at 15.
 
     Parameters
@@ -21,7 +22,7 @@ def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 8,
     frame : str
         Frame of the bodies: converged_mean, mean, mean_small, or node (attached to a node).
     inertia : str
-        Inertia option: velocities in frame axes (a) or material (b), or exact with stiffening (c).
+        Inertia option: a or b of the paper, c of the displacement field; the best by default.
     modes : int
         Internal modes a body.
     elements : int
@@ -30,11 +31,13 @@ def build(frame: str = "converged_mean", inertia: str = "b", modes: int = 8,
         With frame=node, the node of a body that its frame is attached to: 0 or 1.
     bodies : int
         Number of equal superelements the beam is divided into.
+    stiffening : bool
+        With option c: whether stresses stiffen the bodies; by default all but nonlinear beams.
     """
     model = Model()
     base, tip = model.node("base", (0.0, 0.0, 0.0)), model.node("tip", (LENGTH, 0.0, 0.0))
     model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia,
-               frame_node=frame_node)
+               stiffening=stiffening, frame_node=frame_node)
     model.fix(base, "position")
     model.torque(base, (0, 0, 1), TORQUE)
     model.force(tip, (0, 0, 1), PUSH)

@@ -7,7 +7,7 @@ The frame is held, or spins steadily, so its energy needs no kinematics: ``L = z
 import numpy as np
 
 from sebody.fem import StiffnessSection, hexahedral_block, straight_beam
-from sebody.reduction import RigidFace, craig_bampton
+from sebody.reduction import RigidFace, component_modes, craig_bampton
 
 SLENDER = StiffnessSection(axial=1e5, bending_y=1.0, bending_z=1.0, torsion=1.0, mass=1.0,
                            inertia_x=2e-7, inertia_y=1e-7, inertia_z=1e-7)
@@ -17,6 +17,17 @@ CLAMPED = [0, 1, 2, 6, 7, 8]    # node 0 of a beam with two full boundary nodes
 def cantilever(section=SLENDER, modes=4, elements=24, select=None):
     model = straight_beam([0, 0, 0], [1, 0, 0], section, elements)
     return craig_bampton(model, [(0, "full"), (elements, "full")], modes, select)
+
+
+def with_torsion(section, elements, bending, torsion):
+    """Two-node body with lateral bending and torsion modes."""
+    model = straight_beam([0, 0, 0], [1, 0, 0], section, elements)
+    rows = np.r_[0:3, 6 * elements:6 * elements + 3, 3:6, 6 * elements + 3:6 * elements + 6]
+    modes = component_modes(model.stiffness, model.mass, rows, 3 * elements).fixed_interface
+    size = np.abs(modes.reshape(elements + 1, 6, -1)).max(axis=0)
+    kinds = np.array([size[1], size[2], 1e-3 * size[3]]).argmax(axis=0)
+    chosen = [*np.flatnonzero(kinds == 0)[:bending], *np.flatnonzero(kinds == 2)[:torsion]]
+    return craig_bampton(model, [(0, "full"), (elements, "full")], 3 * elements, sorted(chosen))
 
 
 class Spinning:

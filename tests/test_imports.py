@@ -25,7 +25,7 @@ ROOMS = {
     "io": {"fem", "reduction"},
     "model": {"kernels", "generated", "fem", "reduction", "io"},    # of generated the options alone
     "assembly": {"kernels", "generated", "engine", "reduction", "model"},   # the options likewise
-    "results": {"kernels", "engine", "reduction", "model", "assembly"},
+    "results": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly"},
     "analysis": {"kernels", "generated", "engine", "reduction", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "io", "results"},
@@ -38,11 +38,15 @@ RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
-PICTURES = {"plots", "drawing", "draw", "paper_figures"}       # modules that may import matplotlib
+# modules that may import matplotlib
+PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "picture", "paper_figures"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
-# readers, and what they may import
-SOURCES = {"nastran": "pyyeti", "ansys": "ansys", "ngsolve_space": "ngsolve"}
+# modules of extras by room, and what they may import
+OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
+          "results/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
+          "results/vtk_series": {"meshio"}, "results/film": {"PIL", "imageio"},
+          "studies/places": {"distributed"}, "studies/table": {"pandas"}}
 
 
 def module(path: Path) -> str:
@@ -109,7 +113,7 @@ def test_packages_of_others(path):
     allowed = PACKAGES.get(own, RUNTIME) | {"sebody"}
     allowed |= {"matplotlib", "mpl_toolkits"} if path.stem in PICTURES else set()
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()
-    allowed |= {SOURCES[path.stem]} if own == "io" and path.stem in SOURCES else set()
+    allowed |= OTHERS.get(f"{own}/{path.stem}", set())
     allowed |= {"sympy"} if path.stem in FORMULAS else set()
     tops = {name.split(".")[0] for name in imported(path.read_text())}
     unknown = tops - allowed

@@ -1,5 +1,6 @@
 """What a user runs: simulations, equilibria, small motion about a state, restarts."""
 
+from sebody.analysis.campbell import Campbell, campbell
 from sebody.analysis.ensembles import (
     Ensemble,
     Outcome,
@@ -11,6 +12,7 @@ from sebody.analysis.ensembles import (
     minimum,
     rms,
 )
+from sebody.analysis.frequency import FrequencyResponse, frequency_response
 from sebody.analysis.limits import spin_limit
 from sebody.analysis.linearization import (
     Linearization,
@@ -24,15 +26,19 @@ from sebody.analysis.restart import resume, save_state
 from sebody.analysis.statics import equilibrium
 
 __all__ = [
+    "Campbell",
     "Ensemble",
+    "FrequencyResponse",
     "Linearization",
     "Modes",
     "Outcome",
     "Output",
     "Vibrations",
     "at_time",
+    "campbell",
     "equilibrium",
     "final",
+    "frequency_response",
     "integral",
     "linearize",
     "maximum",

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sebody import inputs
+from sebody.analysis.progress import showing
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.numbering import rotational
@@ -24,7 +25,7 @@ HOPELESS = 0.5      # two refinements must reduce the difference of runs by this
 
 def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance | None = None,
                     scheme: Scheme | None = None,
-                    progress: Callable[[float], None] | None = None) -> Result:
+                    progress: Callable[[float], None] | bool | None = None) -> Result:
     """Run a model so that its error in time is within a tolerance; steps are chosen.
 
     The run is repeated with a finer local tolerance until the difference of the last two runs shows
@@ -38,6 +39,8 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
         Output grid [time].
     tolerance : Tolerance
         Allowed error of the run, by default 1e-3 of the extent and 1e-3 rad.
+    scheme, progress
+        As for `Simulation` and its `run_to`; a bar counts the runs.
 
     Returns
     -------
@@ -56,6 +59,13 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     wanted = given(tolerance) or Tolerance()
     points = [np.abs(node.point).max() for node in model.nodes.values()]
     wanted.check_reachable(max(points, default=0.0))
+    with showing(progress, t_end) as show:
+        return _refined(model, h, t_end, wanted, scheme, show)
+
+
+def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Scheme | None,
+             progress: Callable[[float], None] | None) -> Result:
+    """The run that is within the tolerance `wanted`, after coarser ones."""
     share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
     before: Result | None = None
     differences: list[float] = []
@@ -80,7 +90,7 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
         now.error = differences[-1] / max((now.steps / before.steps)**2 - 1.0, 1.0)
         if now.error <= 1.0:
             for message in now.warnings:
-                warnings.warn(message, LimitWarning, stacklevel=2)
+                warnings.warn(message, LimitWarning, stacklevel=3)
             return now
         if len(differences) > 2 and differences[-1] > HOPELESS * differences[-3]:
             raise SimulationError(

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.analysis.quality import remarks
-from sebody.analysis.softening import cautious_limit, divergence, reach, stiffens
+from sebody.analysis.softening import cautious_limit, divergence, reach
 from sebody.analysis.thresholds import FLAT, LINEAR
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
@@ -113,9 +113,9 @@ def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
         parts = [(numbering.triplets[id(t)], numbering.rotations.get(id(t), 0), weight)
                  for t, weight in zip(body.rotations, body.alpha_r, strict=True)
                  if id(t) in numbering.triplets]
-        key = id(body.body), body.frame, body.inertia, tuple(body.alpha_r)
+        key = id(body.body), body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in limits:
-            limits[key] = np.inf if stiffens(body) else cautious_limit(body)
+            limits[key] = np.inf if body.stiffening else cautious_limit(body)
         if parts:
             found.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True),
                                                      limits[key]))
@@ -158,6 +158,8 @@ def _remedy(body: Superelement) -> str:
         return "divide it in two, or reduce it from an FE model with its mass"
     if body.inertia != "c":
         return "divide it in two, or take inertia='c'"
+    if body.body.invariants.stiffens:
+        return "divide it in two, or let it stiffen with stiffening=True"
     return "divide it in two, or give its FE model a geometric stiffness"
 
 

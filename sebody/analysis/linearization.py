@@ -65,6 +65,29 @@ def _summed(run: Simulation | Result, *weights: float) -> csc_matrix:
     return summed(run)
 
 
+def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray, NDArray]:
+    """Mass, damping and stiffness of all unknowns, multipliers included, in their own axes.
+
+    Raises
+    ------
+    InputError
+        A state that cannot be evaluated.
+    """
+    if run.system is None:
+        raise InputError("the result was read from a file, which holds no compiled functions: give "
+                         "that of a run or of an equilibrium")
+    watch = run.watch if isinstance(run, Simulation) else Watch()
+    watch.look(run.model, run.numbering, run.state.now[None].copy())
+    user_faults.forget(run.model)
+    matrices = (_turning(run, spin) if spin.rotates else
+                tuple(derivative(run, *weights) for weights in np.eye(3)))
+    M, C, K = (A.toarray() for A in matrices)
+    if not all(np.isfinite(A).all() for A in (K, C, M)):
+        did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
+        raise InputError(f"the state cannot be evaluated: {did}")
+    return M, C, K
+
+
 class Linearization(NamedTuple):
     """``mass xi'' + damping xi' + stiffness xi = 0`` for motion ``free @ xi`` of the unknowns.
 
@@ -93,16 +116,7 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     """
     inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
                     "of an equilibrium")
-    steady = Spin.of(run, spin)
-    watch = run.watch if isinstance(run, Simulation) else Watch()
-    watch.look(run.model, run.numbering, run.state.now[None].copy())
-    user_faults.forget(run.model)
-    matrices = (_turning(run, steady) if steady.rotates else
-                tuple(derivative(run, *weights) for weights in np.eye(3)))
-    M, C, K = (A.toarray() for A in matrices)
-    if not all(np.isfinite(A).all() for A in (K, C, M)):
-        did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
-        raise InputError(f"the state cannot be evaluated: {did}")
+    M, C, K = small_motion(run, Spin.of(run, spin))
     n = len(K)
     multipliers = np.flatnonzero(run.system.is_multiplier[:n])
     moving = np.setdiff1d(np.arange(n), multipliers)

@@ -6,11 +6,12 @@ from scipy.linalg import eigh, null_space
 
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import matrix
-from sebody.analysis.thresholds import BALANCE, CUT, DRIFT, EXCITED, PERIOD
+from sebody.analysis.thresholds import CUT, EXCITED, PERIOD
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import ADAPTIVE, CUTS, STEPS
 from sebody.kernels.layout import ENERGIES, RECORD_T
 from sebody.model.parts import Element
+from sebody.results.audit import BALANCE, DRIFT
 from sebody.results.energy_balance import energy_balance
 from sebody.results.recording import Recording, record_counts
 

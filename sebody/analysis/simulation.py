@@ -12,6 +12,7 @@ from sebody.analysis.allocation import allocate
 from sebody.analysis.first_run import prepare
 from sebody.analysis.initial_state import acceleration_rates, start
 from sebody.analysis.limits import Watch
+from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen
 from sebody.analysis.redundancy import contradiction
 from sebody.analysis.row_exchanges import RowExchanges
@@ -128,14 +129,15 @@ class Simulation:
         return float(self.state.clock[TIME])
 
     def run_to(self, t_end: float,
-               progress: Callable[[float], None] | None = None) -> "Simulation":
+               progress: Callable[[float], None] | bool | None = None) -> "Simulation":
         """Advance to the grid step nearest to `t_end`.
 
         Parameters
         ----------
-        progress : callable, optional
+        progress : callable or bool, optional
             Called several times a second with the part of the run that is done. What it raises
-            stops the run between two steps; a later call goes on from there.
+            stops the run between two steps; a later call goes on from there. True shows a bar on
+            a terminal or in a notebook once the run takes longer than a second.
 
         Raises
         ------
@@ -146,8 +148,6 @@ class Simulation:
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
         last = self._last_step(t_end)
-        if progress is not None:
-            inputs.function(progress, "progress", "give a function of the part that is done")
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
                            f"run ends at t = {last * self.h:.9g}")
@@ -158,7 +158,8 @@ class Simulation:
         self.state.control[RECORDED] = 0
         code = CHUNK
         try:
-            code = self._advance(record, last, t_end, progress)
+            with showing(progress, t_end) as show:
+                code = self._advance(record, last, t_end, show)
         except KeyboardInterrupt:
             pass                        # the rows come first
         finally:
@@ -288,7 +289,7 @@ class Simulation:
 
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
-             output_every: int = 1, progress: Callable[[float], None] | None = None,
+             output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
              tolerance: Tolerance | None = None) -> Result:
     """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
     return Simulation(model, h, scheme, output_every, tolerance).run_to(t_end, progress).result()

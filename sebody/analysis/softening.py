@@ -10,6 +10,7 @@ depends on the inertia option:
   the larger part: it twists a blade with soft torsion apart.
 * C: the moment of inertia of the deformed body, and with geometric stiffening the stress that the
   spin makes, by resultants and load modes.
+* D: the rigid body that takes part in the deformation, whose own axes turn as the nodes' do in B.
 
 The body is held at the node: its displacement, and, as what the frame follows is no deformation,
 the rotation of the frame, or that of the node itself. A node can only hold the undeformed body in
@@ -25,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
+from sebody.assembly.carried import carried_constants
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.parts import Superelement
 from sebody.reduction import ReducedBody
@@ -51,10 +53,12 @@ class Held(NamedTuple):
 
 def softening(part: Superelement, axis: NDArray, held: Held) -> NDArray:
     """D, (n, n), for a spin about an axis, (3,): a quadratic form of it."""
-    if INERTIA_OPTIONS[part.inertia].field:
-        return _of_field(part.body, axis, held)
-    material = INERTIA_OPTIONS[part.inertia].material
-    return _of_carriers(_of_nodes(part.body, material, held), axis, held.turn)
+    traits = INERTIA_OPTIONS[part.inertia]
+    if traits.field:
+        return _of_field(part, axis, held)
+    carriers = (_rigid_part(part.body, held) if traits.rates else
+                _of_nodes(part.body, traits.material, held))
+    return _of_carriers(carriers, axis, held.turn)
 
 
 def divergence(part: Superelement, axis: NDArray | None) -> float:
@@ -124,12 +128,12 @@ def cautious_limit(part: Superelement) -> float:
     """
     body = part.body
     turned = rows_of(body)[1]
-    d = body.coordinates.shape[1]
-    material = INERTIA_OPTIONS[part.inertia].material and not INERTIA_OPTIONS[part.inertia].field
+    d, traits = body.coordinates.shape[1], INERTIA_OPTIONS[part.inertia]
+    own_axes = traits.material and not (traits.rates or traits.field or body.planar)
 
     def softest(k: int) -> NDArray:
         soft = 4.0 * body.mass
-        if material and not body.planar:
+        if own_axes:
             point = body.coordinates[body.position_nodes[k]]
             momenta = turned @ (body.mass @ body.rigid_modes_about(point)[:, d:])
             for psi, p in zip(turned, momenta, strict=True):
@@ -151,12 +155,6 @@ def _lowest(part: Superelement, inertia: Callable[[int], NDArray]) -> float:
             largest = max(largest, eigh(free.T @ inertia(k) @ free, free.T @ body.stiffness @ free,
                                         eigvals_only=True)[-1])
     return float(1.0 / np.sqrt(largest)) if largest > 0.0 else np.inf
-
-
-def stiffens(part: Superelement) -> bool:
-    """Whether the body has geometric stiffening."""
-    return (INERTIA_OPTIONS[part.inertia].field and part.body.invariants is not None
-            and part.body.invariants.resultants > 0)
 
 
 def reach(part: Superelement, axis: NDArray) -> float:
@@ -210,6 +208,19 @@ def _of_nodes(body: ReducedBody, material: bool, held: Held) -> Carriers:
                     rows @ body.mass @ rows.T)
 
 
+def _rigid_part(body: ReducedBody, held: Held) -> Carriers:
+    """The centre of mass and the mean rotation of option D."""
+    rows = carried_constants(body)["rigid_rows"]
+    d, n = body.coordinates.shape[1], len(body.mass)
+    axes = slice(2, 3) if body.planar else slice(0, 3)
+    moved, turned, mass = np.zeros((1, 3, n)), np.zeros((1, 3, n)), np.zeros((6, 6))
+    moved[0, :d], turned[0, axes] = rows[:d] / body.total_mass, rows[d:]
+    rigid = body.rigid_modes_about(body.centre_of_mass)[:, d:]
+    mass[:3, :3] = body.total_mass * np.eye(3)
+    mass[3:, 3:][axes, axes] = rigid.T @ body.mass @ rigid
+    return Carriers(_in_space(body.centre_of_mass[None]) - held.pivot, moved, turned, mass)
+
+
 def _of_carriers(carriers: Carriers, axis: NDArray, turn: NDArray) -> NDArray:
     """Second derivative of half the product of velocities with the mass, for a unit spin.
 
@@ -234,10 +245,10 @@ def _of_carriers(carriers: Carriers, axis: NDArray, turn: NDArray) -> NDArray:
     return D
 
 
-def _of_field(body: ReducedBody, axis: NDArray, held: Held) -> NDArray:
+def _of_field(part: Superelement, axis: NDArray, held: Held) -> NDArray:
     """Option C: of the moment of inertia ``n' . J(z) n'``, and of the stress by the spin."""
-    d = body.coordinates.shape[1]
-    i, n = body.invariants.about(held.pivot[:d]), len(body.mass)
+    body, d = part.body, part.body.coordinates.shape[1]
+    i, n = part.invariants.about(held.pivot[:d]), len(body.mass)
     own = axis[2:] if body.planar else axis
     h = np.einsum("k,l,kln->n", own, own, i.h)
     D = np.einsum("k,l,klmn->mn", own, own, i.J2[..., :n, :n], optimize=True)

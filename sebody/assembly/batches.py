@@ -86,7 +86,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
     for frame, body in enumerate(model.bodies.values()):
         kernel = load(body.kernel)
         check_superelement(body, kernel)
-        key = id(body.body), body.kernel, tuple(body.alpha), tuple(body.alpha_r)
+        key = id(body.body), body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r)
         if key not in known:
             row = constants_row(body.name, kernel, counts_of(body), superelement_constants(body))
             known[key] = constants.add(row), _full(body, kernel)
@@ -159,7 +159,7 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     if not option.field:
         return values | carried_constants(reduced)
     conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts_of(body), values)
-    return values | floating_constants(reduced.invariants.about(origin), reduced.stiffness,
+    return values | floating_constants(body.invariants.about(origin), reduced.stiffness,
                                        conditions, reduced.damping)
 
 

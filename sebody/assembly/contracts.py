@@ -73,8 +73,8 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
     if kernel.DAMPED not in (None, reduced.damping is not None):
         wrong.append(f"it has {'no' if kernel.DAMPED else 'a'} damping matrix and the kernel reads "
                      f"{'one' if kernel.DAMPED else 'none'}")
-    if INERTIA_OPTIONS[kernel.INERTIA].field and reduced.invariants.slaved > MOST_SLAVED:
-        wrong.append(f"it has {reduced.invariants.slaved} slaved coordinates and the kernel memory "
+    if INERTIA_OPTIONS[kernel.INERTIA].field and body.invariants.slaved > MOST_SLAVED:
+        wrong.append(f"it has {body.invariants.slaved} slaved coordinates and the kernel memory "
                      f"for {MOST_SLAVED}")
     if wrong:
         raise _misfit(body.name, kernel, wrong)
@@ -131,8 +131,8 @@ def counts_of(body: Superelement) -> Counts:
                                  reduced.planar, _width(body))
     option, damped = INERTIA_OPTIONS[body.inertia], reduced.damping is not None
     if option.field:
-        return counts | floating_counts(reduced.planar, _width(body), reduced.invariants.slaved,
-                                        reduced.invariants.resultants, damped)
+        return counts | floating_counts(reduced.planar, _width(body), body.invariants.slaved,
+                                        body.invariants.resultants, damped)
     return counts | carried_counts(reduced.planar, _width(body), damped) if option.rates else counts
 
 

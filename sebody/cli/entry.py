@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Sequence
 
 from sebody.cli import (
+    animate,
     atlas,
     bench,
     chart,
@@ -17,13 +18,16 @@ from sebody.cli import (
     interrupts,
     listing,
     plot,
+    report,
     run,
+    sweep,
     warm,
 )
 from sebody.errors import InputError, SebodyError
 
 # in the order of the help
-COMMANDS = (run, listing, plot, importing, inspect, check, bench, chart, atlas, warm)
+COMMANDS = (run, sweep, listing, plot, animate, report, importing, inspect, check, bench, chart,
+            atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -50,7 +50,7 @@ def build_scene(name: str, changes: Sequence[str]) -> "Scene":
         An unknown scene or parameter, a value that cannot be read, or an error in a file.
     """
     build, _, file = source(name)
-    arguments = _arguments(name, build, changes)
+    arguments = given_arguments(name, build, changes)
     if not file:
         return build(**arguments)
     return _checked(scene_files.call(file, lambda: build(**arguments)), name)
@@ -125,8 +125,14 @@ def _first_line(module: ModuleType) -> str:
     return (getdoc(module) or "").partition("\n")[0]
 
 
-def _arguments(scene: str, build: Callable, changes: Sequence[str]) -> dict[str, Any]:
-    """Keyword arguments of a scene, of the type of their defaults."""
+def given_arguments(scene: str, build: Callable, changes: Sequence[str]) -> dict[str, Any]:
+    """Keyword arguments of a scene given as ``NAME=VALUE``, of the type of their defaults.
+
+    Raises
+    ------
+    InputError
+        An unknown parameter, one that is missing, or a value that cannot be read.
+    """
     known = parameters(build)
     existing = ", ".join(map(described, known.values())) or "none"
     values = {}

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from sebody.cli import interrupts
 from sebody.cli.inputs import build_scene, check_distinct, check_picture
-from sebody.cli.progress import Progress
 from sebody.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
 from sebody.files import check_target
 
@@ -24,7 +23,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser = commands.add_parser("run", help="run a scene")
     parser.add_argument("scene", metavar="SCENE",
                         help="name of a scene, see 'sebody list', or a file of your own, FILE.py")
-    parser.add_argument("--output", type=Path, metavar="FILE.npz", help="save the histories")
+    parser.add_argument("--output", type=Path, metavar="FILE.npz",
+                        help="save the result: FILE.npz, or FILE.h5 with h5py")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the standard picture")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
@@ -76,10 +76,12 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
     They are written before anything is printed: whoever reads may stop reading.
     """
+    from sebody.analysis.progress import Progress
+
     warnings.simplefilter("ignore", LimitWarning)   # they are printed after the summary
     t_end = _t_end(scene, options)
     simulation = None if options.accuracy is not None else _simulation(scene, options)
-    bar, errors = Progress(), []
+    bar, errors = Progress(t_end), []
 
     def progress(fraction: float) -> None:
         bar(fraction)
@@ -159,11 +161,12 @@ def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulatio
 def _check(options: argparse.Namespace, scene: "Scene") -> None:
     """Refuse before the run what cannot be written, and options that contradict others."""
     from sebody.analysis.restart import TARGET
-    from sebody.results.result import OUTPUT
+    from sebody.results.result import check_output
 
-    for path, kind in ((options.output, OUTPUT), (options.save, TARGET)):
-        if path:
-            check_target(path, *kind)
+    if options.output:
+        check_output(options.output)
+    if options.save:
+        check_target(options.save, *TARGET)
     check_distinct({"--output": options.output, "--save": options.save})
     check_distinct({"--output": options.output, "--resume": options.resume})
     check_picture(options.plot)

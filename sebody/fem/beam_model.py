@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.fem import beam_element
+from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SPATIAL
 from sebody.fem.mass_field import MassField
 from sebody.fem.model import FEModel, assemble
@@ -42,7 +43,7 @@ def beam_model(nodes: NDArray, pairs: NDArray, lengths: NDArray, axes: NDArray,
     return FEModel(*matrices, nodes, node_dofs,
                    mass_field=_mass_field(elements, nodes, pairs, size),
                    geometric_stiffness=BeamPrestress(elements, size), cells=[("line", pairs)],
-                   outlines=_outlines(sections, axes))
+                   stress=_stresses(elements, pairs, sections), outlines=_outlines(sections, axes))
 
 
 def _outlines(sections: Sequence[StiffnessSection], axes: NDArray) -> NDArray:
@@ -107,6 +108,22 @@ def _elements(pairs: NDArray, lengths: NDArray, axes: NDArray,
     width = len(kept) // 2
     dofs = (width * pairs[:, :, None] + np.arange(width)).reshape(len(pairs), -1)
     return _Elements(dofs, turns[:, :, kept], lengths, *arrays)
+
+
+def _stresses(elements: _Elements, pairs: NDArray, sections: Sequence[StiffnessSection]
+              ) -> tuple[BeamStress, ...]:
+    """One operator for the elements with equally many fibres."""
+    forces = (elements.stiffness @ elements.turns).reshape(len(pairs), 2, 6, -1)
+    forces[:, 0] *= -1      # of the part that lies before the first end on the element
+    counts, found = np.array([len(one.fibres) for one in sections]), []
+    for count in np.unique(counts):
+        own = np.flatnonzero(counts == count)
+        fibres = [[fibre.stress for fibre in sections[k].fibres] for k in own]
+        offsets = [[(fibre.y, fibre.z) for fibre in sections[k].fibres] for k in own]
+        found.append(BeamStress(pairs[own], forces[own],
+                                np.array(fibres, dtype=float).reshape(len(own), count, 3, 6),
+                                np.array(offsets, dtype=float).reshape(len(own), count, 2)))
+    return tuple(found)
 
 
 def _mass_field(elements: _Elements, nodes: NDArray, pairs: NDArray, size: int) -> MassField:

@@ -9,6 +9,7 @@ from scipy import sparse
 from sebody import inputs
 from sebody.fem.layout import SOLID
 from sebody.fem.model import FEModel, assemble
+from sebody.fem.stress import SolidStress, elasticity
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
 _MESHIO = [0, 1, 3, 2, 4, 5, 7, 6]  # the same corners in the order of meshio
@@ -62,14 +63,18 @@ def hexahedral_block(
     step = ((_CORNERS + 1) / 2).astype(int) @ np.array([1, nx, nx * ny])
     connectivity = np.flatnonzero(inside)[:, None] + step
     dofs = (3 * connectivity[:, :, None] + np.arange(3)).reshape(len(connectivity), 24)
-    *matrices, stresses, slopes = _brick(size / counts, youngs_modulus, poisson_ratio, density)
+    *matrices, strains, slopes = _brick(size / counts, youngs_modulus, poisson_ratio, density)
     stiffness, mass = (
         assemble(dofs, np.broadcast_to(matrix, (len(dofs), 24, 24)), 3 * len(nodes))
         for matrix in matrices
     )
-    return FEModel(stiffness, mass, nodes, SOLID,
-                   geometric_stiffness=BrickPrestress(dofs, stresses, slopes, 3 * len(nodes)),
-                   cells=[("hexahedron", connectivity[:, _MESHIO])])
+    law, volume = elasticity(youngs_modulus, poisson_ratio), np.prod(size / counts) / 8
+    cells = connectivity[:, _MESHIO]
+    columns = (3 * np.array(_MESHIO)[:, None] + np.arange(3)).ravel()
+    own = SolidStress("hexahedron", cells, nodes, law, strains[_MESHIO][:, :, columns])
+    return FEModel(stiffness, mass, nodes, SOLID, cells=[("hexahedron", cells)], stress=(own,),
+                   geometric_stiffness=BrickPrestress(dofs, volume * law @ strains, slopes,
+                                                      3 * len(nodes)))
 
 
 class BrickPrestress:
@@ -116,8 +121,8 @@ def _brick(
     Returns
     -------
     stiffness, mass : (24, 24)
-    stresses : (8, 6, 24)
-        At the Gauss points, times their volume.
+    strains : (8, 6, 24)
+        At the Gauss points.
     slopes : (8, 8, 3)
         Gradients of the shape functions of the nodes there.
     """
@@ -142,18 +147,8 @@ def _brick(
     condensed = np.linalg.solve(full[extra, extra], full[extra, own])
     stiffness = full[own, own] - full[own, extra] @ condensed
     whole = np.vstack([np.eye(24), -condensed])     # incompatible modes follow the nodes
-    stresses = weight * law @ np.array(strains) @ whole
-    return ((stiffness + stiffness.T) / 2, np.kron(mass, np.eye(3)), stresses,
+    return ((stiffness + stiffness.T) / 2, np.kron(mass, np.eye(3)), np.array(strains) @ whole,
             np.array(gradients)[:, :8])
-
-
-def elasticity(youngs_modulus: float, poisson_ratio: float) -> NDArray:
-    """Isotropic stress of the strains (xx, yy, zz, 2 yz, 2 zx, 2 xy), shape (6, 6)."""
-    shear = youngs_modulus / (2 * (1 + poisson_ratio))
-    lame = 2 * shear * poisson_ratio / (1 - 2 * poisson_ratio)
-    law = np.diag([2 * shear] * 3 + [shear] * 3)
-    law[:3, :3] += lame
-    return law
 
 
 def _strain(slopes: NDArray) -> NDArray:

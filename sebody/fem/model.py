@@ -10,8 +10,10 @@ from scipy import sparse
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem import mesh
+from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SOLID, SPATIAL, equal_rows, mapped_rows
 from sebody.fem.mass_field import MassField, nodal_field
+from sebody.fem.stress import SolidStress
 
 SYMMETRY_LIMIT = 1e-8   # difference of entries across the diagonal, relative to its own entries
 
@@ -50,6 +52,8 @@ class FEModel:
         Where the model comes from and its units, in words.
     outlines : (n_lines, corners, 3), optional
         Edges of the sections of the cells of kind line, about their axes, for pictures [length].
+    stress : sequence of SolidStress or BeamStress
+        What stresses the displacements cause, one for each kind of element; see `solid_stress`.
 
     Raises
     ------
@@ -71,6 +75,7 @@ class FEModel:
     source: str = ""
     units: str = ""
     outlines: NDArray | None = None
+    stress: Sequence[SolidStress | BeamStress] = ()
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
 
     def __post_init__(self) -> None:
@@ -98,6 +103,10 @@ class FEModel:
             object.__setattr__(self, "outlines", inputs.array(
                 self.outlines, "outlines", (lines, None, 3),
                 remedy=f"give corners (x, y, z) for each of the {lines} cells of kind line"))
+        remedy = "give SolidStress, as solid_stress makes them"
+        object.__setattr__(self, "stress", tuple(
+            inputs.instance(one, "stress", SolidStress | BeamStress, remedy)
+            for one in inputs.items(self.stress, "stress", remedy)))
 
     def _check_nodes(self) -> None:
         """Coordinates, and the rows of every node."""

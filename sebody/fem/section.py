@@ -2,11 +2,29 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
+from typing import NamedTuple
 
 from sebody import inputs
 from sebody.errors import InputError
 
 Outline = tuple[tuple[float, float], ...]
+Row = tuple[float, ...]
+
+
+class Fibre(NamedTuple):
+    """A place in a cross-section where stresses are wanted.
+
+    Parameters
+    ----------
+    y, z : float
+        In principal axes from the centroid [length].
+    stress : ((6,), (6,), (6,))
+        Stresses xx, xy and zx there of unit section forces (N, Qy, Qz, Mx, My, Mz).
+    """
+
+    y: float
+    z: float
+    stress: tuple[Row, Row, Row]
 
 
 @dataclass(frozen=True)
@@ -32,6 +50,8 @@ class StiffnessSection:
     outline : tuple of (float, float), optional
         Corners (y, z) of its edge one after the other, for pictures [length]; None: a rectangle
         with its radii of gyration.
+    fibres : tuple of Fibre
+        Where stresses are computed.
 
     Raises
     ------
@@ -51,12 +71,14 @@ class StiffnessSection:
     shear_y: float | None = None
     shear_z: float | None = None
     outline: Outline | None = field(default=None, repr=False)
+    fibres: tuple[Fibre, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         _check_outline(self)
+        _check_fibres(self)
         for one in fields(self):
             value = getattr(self, one.name)
-            if one.name != "outline" and value is not None:
+            if one.name not in ("outline", "fibres") and value is not None:
                 _check_number(self, one.name, value, one.name.startswith("inertia"))
 
     @property
@@ -105,11 +127,13 @@ class Section:
     density: float
     shear_factor: float | tuple[float, float] | None = None
     outline: Outline | None = field(default=None, repr=False)
+    fibres: tuple[Fibre, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         _check_outline(self)
+        _check_fibres(self)
         for one in fields(self):
-            if one.name not in ("poisson_ratio", "shear_factor", "outline"):
+            if one.name not in ("poisson_ratio", "shear_factor", "outline", "fibres"):
                 _check_number(self, one.name, getattr(self, one.name))
         if isinstance(self.shear_factor, (tuple, list)) and len(self.shear_factor) != 2:
             raise InputError(
@@ -143,7 +167,27 @@ class Section:
             shear_y=shear[0],
             shear_z=shear[1],
             outline=self.outline,
+            fibres=self.fibres,
         )
+
+    def fibre(self, y: float, z: float, xy: Row = (0.0, 0.0, 0.0),
+              zx: Row = (0.0, 0.0, 0.0)) -> Fibre:
+        """A fibre of this section: ``xx = N / A + z My / I_y - y Mz / I_z``.
+
+        Parameters
+        ----------
+        y, z : float
+            In principal axes from the centroid [length].
+        xy, zx : (3,)
+            Shear stresses there of unit shear forces Qy, Qz and of a unit torque.
+
+        Returns
+        -------
+        Fibre
+            For ``dataclasses.replace(section, fibres=(...))``.
+        """
+        normal = (1 / self.area, 0.0, 0.0, 0.0, z / self.inertia_y, -y / self.inertia_z)
+        return Fibre(y, z, (normal, *((0.0, *shear, 0.0, 0.0) for shear in (xy, zx))))
 
     def _shear_factors(self) -> tuple:
         if isinstance(self.shear_factor, (tuple, list)):
@@ -176,6 +220,17 @@ def part_of(section: AnySection, first: float, last: float) -> AnySection:
     if not callable(section):
         return section
     return lambda place: section(first + place * (last - first))
+
+
+def _check_fibres(section: Section | StiffnessSection) -> None:
+    remedy = "give Fibre, as Section.fibre makes them"
+    what = f"{type(section).__name__}.fibres"
+    found = tuple(inputs.instance(fibre, what, Fibre, remedy)
+                  for fibre in inputs.items(section.fibres, what, remedy))
+    for fibre in found:
+        inputs.vector((fibre.y, fibre.z), what, 2)
+        inputs.array(fibre.stress, what, (3, 6))
+    object.__setattr__(section, "fibres", found)
 
 
 def _check_number(section: object, name: str, value: float, may_be_zero: bool = False) -> None:

@@ -2,14 +2,16 @@
 
 Shear correction factors are those of G.R. Cowper (The shear coefficient in Timoshenko's beam
 theory, J. Appl. Mech. 33, 1966), torsion constants those of S.P. Timoshenko and J.N. Goodier
-(Theory of Elasticity, 3rd ed., 1970, chapter 10). `dataclasses.replace(section,
-shear_factor=None)` takes out the shear deformation.
+(Theory of Elasticity, 3rd ed., 1970, chapter 10); stresses are computed in the places that
+`sebody.fem.fibres` lists. `dataclasses.replace(section, shear_factor=None)` takes out the shear
+deformation.
 """
 
 import numpy as np
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem import fibres
 from sebody.fem.section import Outline, Section
 
 ROUND = 16              # corners of a circle in pictures
@@ -39,9 +41,10 @@ def rectangle(height: float, width: float, youngs_modulus: float, poisson_ratio:
     n = np.arange(1, 1000, 2)       # what is left out is 1e-13 of the sum
     series = np.sum(np.tanh(n * np.pi * long / (2 * short)) / n**5.0)
     torsion = long * short**3 / 3 * (1 - 192 / np.pi**5 * short / long * series)
-    return Section(height * width, height * width**3 / 12, width * height**3 / 12, torsion,
-                   youngs_modulus, poisson_ratio, density, _rectangle_factor(poisson_ratio),
-                   _box(height, width))
+    section = Section(height * width, height * width**3 / 12, width * height**3 / 12, torsion,
+                      youngs_modulus, poisson_ratio, density, _rectangle_factor(poisson_ratio),
+                      _box(height, width))
+    return fibres.of_rectangle(section, height, width)
 
 
 def circle(radius: float, youngs_modulus: float, poisson_ratio: float, density: float) -> Section:
@@ -94,8 +97,9 @@ def tube(radius: float, thickness: float, youngs_modulus: float, poisson_ratio: 
     factor = 6 * (1 + nu) * both / ((7 + 6 * nu) * both + (20 + 12 * nu) * ratio)
     around = 2 * np.pi * np.arange(ROUND) / ROUND
     outline = tuple(zip(radius * np.cos(around), radius * np.sin(around), strict=True))
-    return Section(np.pi * (radius**2 - inner**2), second, second, 2 * second, youngs_modulus,
-                   nu, density, factor, outline)
+    section = Section(np.pi * (radius**2 - inner**2), second, second, 2 * second, youngs_modulus,
+                      nu, density, factor, outline)
+    return fibres.of_tube(section, radius, inner)
 
 
 def i_profile(height: float, width: float, web: float, flange: float, youngs_modulus: float,
@@ -136,10 +140,11 @@ def i_profile(height: float, width: float, web: float, flange: float, youngs_mod
         12 + 72 * m + 150 * m**2 + 90 * m**3 + nu * (11 + 66 * m + 135 * m**2 + 90 * m**3)
         + 30 * n2 * (m + m**2) + 5 * nu * n2 * (8 * m + 9 * m**2))
     along_flanges = _rectangle_factor(nu) * 2 * width * flange / area
-    return Section(area, (2 * flange * width**3 + clear * web**3) / 12,
-                   (width * height**3 - (width - web) * clear**3) / 12,
-                   (2 * width * flange**3 + middle * web**3) / 3, youngs_modulus, nu, density,
-                   (along_web, along_flanges), _i_outline(height, width, web, clear))
+    section = Section(area, (2 * flange * width**3 + clear * web**3) / 12,
+                      (width * height**3 - (width - web) * clear**3) / 12,
+                      (2 * width * flange**3 + middle * web**3) / 3, youngs_modulus, nu, density,
+                      (along_web, along_flanges), _i_outline(height, width, web, clear))
+    return fibres.of_i_profile(section, height, width, web, flange)
 
 
 def _box(height: float, width: float) -> Outline:

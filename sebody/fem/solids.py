@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.errors import InputError
-from sebody.fem.hexahedron import elasticity
 from sebody.fem.model import assemble
+from sebody.fem.stress import elasticity
 
 _CORNERS = np.array([(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1),
                      (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)], dtype=float)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.io.deck import Deck, deck_cells, deck_sets, read_deck
-from sebody.io.prestress import deck_prestress
+from sebody.io.prestress import deck_prestress, deck_stress
 from sebody.io.reading import Reading
 from sebody.io.reduced import NAMES, reduced_parts
 from sebody.io.text import fault, read_text
@@ -160,7 +160,8 @@ def read_generated(path: Path) -> Reading:
     geometric, note = deck_prestress(deck, index, points, by_nodes, stiffness)
     model = FEModel(stiffness, mass, points, dof_map=dof_map, labels=np.array(list(deck.nodes)),
                     node_sets=deck_sets(deck, index), cells=deck_cells(deck, index),
-                    geometric_stiffness=geometric, source=f"Abaqus {job}")
+                    geometric_stiffness=geometric, source=f"Abaqus {job}",
+                    stress=deck_stress(deck, index, points, by_nodes))
     return Reading(model, notes={"geometric stiffness": note})
 
 

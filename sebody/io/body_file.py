@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.beam_stress import BeamStress
+from sebody.fem.stress import SolidStress, StressModes
 from sebody.files import check_target, replacing
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
@@ -25,6 +27,7 @@ from sebody.reduction.recovery import Recovery
 
 FORMAT, VERSION = "sebody body", 1
 TARGET = "body file", (".npz",)     # see `files.check_target`
+STRESSES = SolidStress, BeamStress, StressModes     # of a Recovery
 PARTS = {"invariants": InertiaInvariants, "recovery": Recovery}     # of a ReducedBody
 _REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
 
@@ -193,29 +196,26 @@ def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -
         elif isinstance(value, np.ndarray):
             arrays[prefix + name] = value
         elif value is not None:
-            texts[prefix + name] = _encoded(value, prefix + name, arrays)
+            texts[prefix + name] = _named(value, prefix + name, arrays)
 
 
-def _encoded(value: Any, name: str, arrays: dict) -> Any:
-    """A value as JSON holds it; arrays within it become members, and are referred to."""
+def _named(value: Any, name: str, arrays: dict) -> Any:
+    """A value for JSON: arrays in lists by their names, stress operators by class and fields."""
+    if isinstance(value, list | tuple):
+        return [_named(one, f"{name}/{k}", arrays) for k, one in enumerate(value)]
     if isinstance(value, np.ndarray):
         arrays[name] = value
         return {"array": name}
-    if isinstance(value, tuple | list):
-        return [_encoded(one, f"{name}.{k}", arrays) for k, one in enumerate(value)]
+    if is_dataclass(value):
+        return {"part": type(value).__name__,
+                "fields": {one.name: _named(getattr(value, one.name), f"{name}/{one.name}", arrays)
+                           for one in fields(value)}}
     return value
 
 
-def _decoded(value: Any, arrays: dict) -> Any:
-    """The same the other way; what is listed are tuples."""
-    if isinstance(value, dict):
-        return arrays.pop(value["array"])
-    return tuple(_decoded(one, arrays) for one in value) if isinstance(value, list) else value
-
-
 def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
-    values = {name: _decoded(value, arrays) for name, value in notes["body"].items()}
-    values |= arrays
+    values = {name: _restored(value, arrays) for name, value in notes["body"].items()}
+    values |= {name: array for name, array in arrays.items() if "/" not in name}
     parts = {name: value for name, value in values.items() if "." not in name}
     for part, kind in PARTS.items():
         found = {name.removeprefix(f"{part}."): value for name, value in values.items()
@@ -226,3 +226,15 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
     if missing:
         raise KeyError(missing)
     return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"])
+
+
+def _restored(value: Any, arrays: dict[str, NDArray]) -> Any:
+    """What `_named` was given; lists as tuples, however deep."""
+    if isinstance(value, list):
+        return tuple(_restored(one, arrays) for one in value)
+    if isinstance(value, dict) and "array" in value:
+        return arrays[value["array"]]
+    if isinstance(value, dict) and "part" in value:
+        kind = {one.__name__: one for one in STRESSES}[value["part"]]
+        return kind(**{name: _restored(one, arrays) for name, one in value["fields"].items()})
+    return value

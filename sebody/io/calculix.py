@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.io.deck import Deck, deck_cells, deck_sets, read_deck
-from sebody.io.prestress import deck_prestress
+from sebody.io.prestress import deck_prestress, deck_stress
 from sebody.io.reading import Reading
 from sebody.io.text import fault, first_repeated, read_text
 from sebody.io.tied import tied_mass_field
@@ -66,6 +66,7 @@ def read(path: Path) -> Reading:
     model = FEModel(stiffness, mass, points, dof_map=tuple(dof_map), labels=tuple(order),
                     node_sets=deck_sets(deck, index), cells=deck_cells(deck, index),
                     mass_field=field, geometric_stiffness=geometric,
+                    stress=deck_stress(deck, index, points, rows),
                     source=f"CalculiX {path.with_suffix('.inp').name}")
     return Reading(model, rotation_nodes=partners, notes=notes)
 

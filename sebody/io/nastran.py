@@ -8,6 +8,7 @@ Output coordinate systems of nodes (CD) are turned to the basic system.
 import warnings
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -29,9 +30,7 @@ def read_op4(path: Path) -> Reading:
     InputError
         A damaged file, no pair of stiffness and mass, or nodes that do not fit their rows.
     """
-    from pyyeti.nastran import op4
-
-    found = _called(lambda: op4.read(str(path), into="dct", justmatrix=True), path)
+    found = _called(lambda: _nastran().op4.read(str(path), into="dct", justmatrix=True), path)
     found = {name.lower(): matrix for name, matrix in found.items()}
     stiffness, mass = _pair(found, path)
     cards = _beside(path)
@@ -50,9 +49,7 @@ def read_dmig(path: Path) -> Reading:
     InputError
         As for `read_op4`.
     """
-    from pyyeti import nastran
-
-    found = _called(lambda: nastran.rddmig(str(path), square=True), path)
+    found = _called(lambda: _nastran().rddmig(str(path), square=True), path)
     frames = {name.lower(): frame for name, frame in found.items()}
     stiffness, mass = _pair({name: frame.values for name, frame in frames.items()}, path)
     indices = [list(frame.index) for frame in frames.values() if frame.shape == stiffness.shape]
@@ -83,10 +80,8 @@ def _reading(stiffness: NDArray, mass: NDArray, index: list, table: Any, path: P
 
 def _nodes(table: Any, path: Path) -> tuple[dict[int, NDArray], dict[int, NDArray]]:
     """Places, and components in the output systems of the basic axes, (3, 3), by node."""
-    from pyyeti.nastran import rbgeom_uset
-
     whole = table[table.index.get_level_values("dof") > 0]
-    motion = _called(lambda: rbgeom_uset(whole), path)
+    motion = _called(lambda: _nastran().rbgeom_uset(whole), path)
     points, turns = {}, {}
     for i, (node, dof) in enumerate(whole.index):
         if dof == 1:
@@ -97,20 +92,24 @@ def _nodes(table: Any, path: Path) -> tuple[dict[int, NDArray], dict[int, NDArra
 
 def _uset(cards: Path) -> Any:
     """Rows of the matrices of a superelement, in the order of its SECONCT card."""
-    from pyyeti import nastran
-
     if cards.suffix != ".asm":
         return _grids(cards)
     punch = cards.with_suffix(".pch")       # its EXTRN card says which DOFs nodes keep
     fewer = punch.exists() and "EXTRN" in punch.read_text(encoding="latin-1")
-    return _called(lambda: nastran.asm2uset(str(cards), try_rdextrn=fewer), cards)[0]
+    return _called(lambda: _nastran().asm2uset(str(cards), try_rdextrn=fewer), cards)[0]
 
 
 def _grids(cards: Path) -> Any:
     """All nodes of GRID cards."""
-    from pyyeti import nastran
+    return _called(lambda: _nastran().bulk2uset(str(cards)), cards)[0]
 
-    return _called(lambda: nastran.bulk2uset(str(cards)), cards)[0]
+
+def _nastran() -> ModuleType:
+    """pyyeti's Nastran, which at import changes how NumPy prints: that is put back."""
+    with np.printoptions():
+        from pyyeti import nastran
+        from pyyeti.nastran import op4  # noqa: F401
+    return nastran
 
 
 def _beside(path: Path) -> Path:

@@ -10,6 +10,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.fem.solids import TETRAHEDRON_EDGES, SolidPrestress, knows
+from sebody.fem.stress import solid_stress
 from sebody.io.tied import motion_of
 
 _REMEDY = "give VectorH1(mesh, order=1) or order=2, whole (no dirichlet), on straight cells"
@@ -31,7 +32,7 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
     stiffness, mass : ngsolve.BilinearForm
         Assembled; whole matrices, not symmetric storage.
     youngs_modulus, poisson_ratio : float, optional
-        Isotropic material, for the geometric stiffness; none without them.
+        Isotropic material, for stresses and geometric stiffness; none without them.
     units : str
         In words.
 
@@ -53,7 +54,7 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
         for row, name in zip(own, _NAMES, strict=False):
             dof_map[row] = (node, name)
     cells = _cells(mesh, points, len(corners), ends)
-    geometric = None
+    geometric, stress = None, ()
     if youngs_modulus is not None and poisson_ratio is not None:
         law = (inputs.number(youngs_modulus, "youngs_modulus", above=0),
                inputs.number(poisson_ratio, "poisson_ratio", above=-1, below=0.5))
@@ -61,11 +62,12 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
             raise InputError("no geometric stiffness of these cells: use tetrahedra, or leave out "
                              "the material")
         whole = np.hstack([rows, np.full(rows.shape, -1)])
+        stress = solid_stress(points, cells, *law)
         geometric = SolidPrestress(points, [(*cells[0], *law)],
                                    motion_of(whole, np.zeros_like(points), space.ndof))
     return FEModel(*matrices, points, dof_map=dof_map, cells=cells,
                    node_sets=_boundaries(mesh, ends),
-                   geometric_stiffness=geometric,
+                   geometric_stiffness=geometric, stress=stress,
                    source=f"NGSolve, VectorH1 of order {2 if len(ends) else 1}", units=units)
 
 

@@ -1,10 +1,12 @@
-"""Geometric stiffness of imported solids: from the mesh and material of their deck."""
+"""Stresses and geometric stiffness of imported solids: from the mesh and material of their deck."""
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.fem.isoparametric import SOLID_KINDS
 from sebody.fem.solids import SolidPrestress, knows
+from sebody.fem.stress import SolidStress, solid_stress
 from sebody.io.deck import CELLS, Deck, material_of
 from sebody.io.tied import motion_of
 
@@ -52,6 +54,26 @@ def deck_prestress(deck: Deck, index: dict[int, int], points: NDArray, rows: NDA
     motion = motion_of(followed, arms, stiffness.shape[0])
     found = SolidPrestress(points, groups, motion, tied)
     return _compared(found, motion, points, stiffness)
+
+
+def deck_stress(deck: Deck, index: dict[int, int], points: NDArray, rows: NDArray
+                ) -> tuple[SolidStress, ...]:
+    """Stress operators of the solids whose material is known and whose nodes all have DOFs.
+
+    Nodes that are tied to a rigid body have none of their own, so the elements at them are left
+    out.
+    """
+    found = []
+    for elements in deck.elements:
+        material = material_of(deck, elements)
+        kind = CELLS.get(elements.kind)
+        if kind not in SOLID_KINDS or material is None or not np.isfinite(material[:2]).all():
+            continue
+        cells = np.array([[index[label] for label in nodes] for nodes in elements.nodes.values()])
+        cells = cells[(rows[cells][:, :, :3] >= 0).all(axis=(1, 2))]
+        if len(cells):
+            found += solid_stress(points, [(kind, cells)], *material[:2])
+    return tuple(found)
 
 
 def _compared(found: SolidPrestress, motion: sparse.csr_array, points: NDArray,

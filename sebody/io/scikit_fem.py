@@ -10,6 +10,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel, fe_matrix
 from sebody.fem.solids import SolidPrestress, knows, reference_nodes
+from sebody.fem.stress import solid_stress
 
 _REMEDY = ("give a Basis of an ElementVector of Lagrange elements of order one or two, such as "
            "ElementVector(ElementHex1()) or ElementVector(ElementTetP2())")
@@ -31,7 +32,7 @@ def from_skfem(basis: Any, stiffness: sparse.spmatrix, mass: sparse.spmatrix,
     stiffness, mass : (n_dofs, n_dofs), sparse
         Assembled with the basis, without conditions.
     youngs_modulus, poisson_ratio : float, optional
-        Isotropic material, for the geometric stiffness; none without them.
+        Isotropic material, for stresses and geometric stiffness; none without them.
     units : str
         In words.
 
@@ -54,7 +55,7 @@ def from_skfem(basis: Any, stiffness: sparse.spmatrix, mass: sparse.spmatrix,
     cells = _cells(basis, owner, points)
     if (youngs_modulus is None) != (poisson_ratio is None):
         raise InputError("give both youngs_modulus and poisson_ratio, or none of them")
-    geometric = None
+    geometric, stress = None, ()
     if youngs_modulus is not None:
         law = (inputs.number(youngs_modulus, "youngs_modulus", above=0),
                inputs.number(poisson_ratio, "poisson_ratio", above=-1, below=0.5))
@@ -63,10 +64,11 @@ def from_skfem(basis: Any, stiffness: sparse.spmatrix, mass: sparse.spmatrix,
                              f"{', '.join(KINDS)}, or leave out the material")
         by_nodes = sparse.csr_array((np.ones(basis.N), (3 * owner + axis, np.arange(basis.N))),
                                     shape=(basis.N, basis.N))
+        stress = solid_stress(points, cells, *law)
         geometric = SolidPrestress(points, [(*cells[0], *law)], by_nodes)
     return FEModel(stiffness, mass, points, dof_map=dof_map, cells=cells,
                    node_sets=_boundaries(basis, owner), geometric_stiffness=geometric,
-                   source=f"scikit-fem, {_name(basis)}", units=units)
+                   stress=stress, source=f"scikit-fem, {_name(basis)}", units=units)
 
 
 def _nodes(basis: Any) -> NDArray:

@@ -19,7 +19,8 @@ from sebody.reduction import ReducedBody, craig_bampton
 
 def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
          section: AnySection, elements: int, bodies: int | None = None, modes: int = 0,
-         up: ArrayLike | None = None, damping: float = 0.0, **placing) -> list[Node]:
+         up: ArrayLike | None = None, damping: float = 0.0,
+         stiffening: bool | None = None, **placing) -> list[Node]:
     """A straight beam of equal superelements; with one element each, a nonlinear beam.
 
     A superelement of one finite element, with the mean of its two rotations as frame, has the
@@ -28,7 +29,8 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     and each node is rotated by half of ``log(R_a^T R_b)`` against R_m. The exact linear stiffness
     does not lock; with no shear factor in the section it is that of Euler and Bernoulli. So beams
     without modes and with as many bodies as elements are the nonlinear reference for
-    superelements.
+    superelements. They do not stiffen by default: what is of second order within an element
+    would change its strain energy.
 
     Parameters
     ----------
@@ -47,6 +49,8 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     damping : float
         Part of critical damping of every vibration mode of each superelement while free, see
         `ReducedBody.damped`.
+    stiffening : bool, optional
+        As of `superelement`; by default not with one finite element in each.
     **placing
         Arguments of `superelement`, such as ``frame``.
 
@@ -78,6 +82,8 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     if elements % bodies:
         raise InputError(undivided)
     step, each = (last.point - first.point) / bodies, elements // bodies
+    if each == 1 and stiffening is None:
+        stiffening = False
     nodes = [first, *(node(model, f"{name} {k}", first.point + k * step)
                       for k in range(1, bodies)), last]
     body = None
@@ -85,7 +91,8 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
         if body is None or callable(section):
             part = part_of(section, k / bodies, (k + 1) / bodies)
             body = _part(model, pair, part, each, modes, up, damping)
-        superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, pair, **placing)
+        superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, pair,
+                     stiffening=stiffening, **placing)
     return nodes
 
 

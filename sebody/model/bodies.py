@@ -12,14 +12,8 @@ from sebody.errors import InputError
 from sebody.io.body_file import load_body
 from sebody.kernels.layout import layout_name
 from sebody.kernels.loader import superelement_kernel_name
-from sebody.model.frames import (
-    FRAMES,
-    check_frame,
-    check_invariants,
-    check_options,
-    frame_weights,
-    needs_damped_kernel,
-)
+from sebody.model.frames import check_frame, frame_weights, known_frame
+from sebody.model.inertias import chosen_inertia, needs_damped_kernel
 from sebody.model.inputs import known, refuse_taken, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
@@ -27,8 +21,9 @@ from sebody.reduction import ReducedBody
 
 
 def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
-                 nodes: Iterable[Node | str], frame: str = "converged_mean", inertia: str = "b",
-                 rotation: ArrayLike | None = None, frame_node: int = 0) -> Superelement:
+                 nodes: Iterable[Node | str], frame: str = "converged_mean",
+                 inertia: str | None = None, rotation: ArrayLike | None = None,
+                 frame_node: int = 0, stiffening: bool | None = None) -> Superelement:
     """Place a reduced body on nodes.
 
     Parameters
@@ -38,17 +33,27 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     nodes : iterable of Node or str
         One node for each boundary node of the body, in its order.
     frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
-    inertia : {'a', 'b', 'c', 'd'}
+    inertia : {'a', 'b', 'c', 'd'}, optional
+        By default c, the velocities of the whole displacement field, of bodies that know it:
+        `craig_bampton` returns such bodies where the FE model knows the points of its mass. Of
+        reduced matrices alone d, in which the rigid part of the motion is exact. With the paper's
+        frames 'mean' and 'mean_small' b, the paper's interpolation of velocities from the boundary
+        nodes.
     rotation : (3, 3), planar (2, 2), optional
         Rotates vectors from FE axes to global axes; identity by default.
     frame_node : int
         For ``frame='node'``: which boundary node carries the frame.
+    stiffening : bool, optional
+        Whether the body stiffens or softens with the stresses in it, with inertia c; by default
+        where the FE model has a geometric stiffness. Without it bodies that spin fast or carry
+        high loads must be divided.
 
     Raises
     ------
     InputError
-        A body file that cannot be used, nodes that do not fit the body, unknown options, or no
-        kernel for the layout (the message says how to make it).
+        A body file that cannot be used, nodes that do not fit the body, unknown options,
+        stiffening asked of a body without geometric stiffness, or no kernel for the layout (the
+        message says how to make it).
     """
     _check_name(model, name, "superelement")
     nodes = tuple(known(model, n) for n in inputs.items(
@@ -62,17 +67,17 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         raise InputError(f"superelement {name!r} is {'planar' if body.planar else 'spatial'} "
                          f"and the model is {'planar' if model.planar else 'spatial'}: use one "
                          "kind in a model")
-    check_options(frame, inertia)
+    own = known_frame(frame)
     placed = body if rotation is None else body.rotated(rotation)
     _check_place(name, placed, nodes)
     check_frame(name, placed, frame)
-    check_invariants(name, placed, inertia)
+    inertia, stiffening = chosen_inertia(name, placed, frame, inertia, stiffening)
     alpha, alpha_r = frame_weights(name, placed, frame, frame_node)
     layout = layout_name(placed.keeps, placed.planar)
-    kernel = superelement_kernel_name(layout, FRAMES[frame].kernel, inertia, placed.modes,
+    kernel = superelement_kernel_name(layout, own.kernel, inertia, placed.modes,
                                       needs_damped_kernel(placed, inertia))
-    model.bodies[name] = Superelement(name, placed, nodes, frame, inertia, layout, alpha, alpha_r,
-                                      kernel, np.zeros(placed.modes))
+    model.bodies[name] = Superelement(name, placed, nodes, frame, inertia, stiffening, layout,
+                                      alpha, alpha_r, kernel, np.zeros(placed.modes))
     model.own_names.add(name)
     return model.bodies[name]
 

@@ -1,4 +1,4 @@
-"""Frames and inertia options a superelement may have, and the weights of its nodes in the frame."""
+"""Frames a superelement may have, and the weights of its nodes in the frame."""
 
 from typing import NamedTuple
 
@@ -20,40 +20,21 @@ class Frame(NamedTuple):
     on_one_node: bool = False   # one node has all the weight
 
 
-INERTIAS = tuple(options.INERTIA_OPTIONS)
 FRAMES = {name: Frame(name, traits) for name, traits in options.FRAMES.items()}
 FRAMES["node"] = FRAMES["converged_mean"]._replace(on_one_node=True)    # the mean of one rotation
 
 
-def check_options(frame: str, inertia: str) -> None:
-    """Refuse options that do not exist."""
-    if not isinstance(frame, str) or frame not in FRAMES:
-        raise InputError(f"frame {frame!r} is unknown: use one of {', '.join(sorted(FRAMES))}")
-    if not isinstance(inertia, str) or inertia not in INERTIAS:
-        raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
-    if options.INERTIA_OPTIONS[inertia].rates and FRAMES[frame].traits.incremental:
-        others = ", ".join(sorted(n for n, f in FRAMES.items() if not f.traits.incremental))
-        raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "
-                         f"the state alone, which {frame!r} does not: use one of {others}")
-
-
-def check_invariants(name: str, body: ReducedBody, inertia: str) -> None:
-    """Refuse an option that needs more of a body than its reduced matrices, where it has no more.
+def known_frame(frame: str) -> Frame:
+    """A frame by its name.
 
     Raises
     ------
     InputError
-        With the remedy.
+        There is none of this name.
     """
-    if options.INERTIA_OPTIONS[inertia].field and body.invariants is None:
-        raise InputError(f"superelement {name!r}: inertia {inertia!r} needs the mass and modes of "
-                         "the FE model, and the body has reduced matrices alone: reduce it from a "
-                         "model, use inertia='d', or use inertia='b' as the paper does")
-
-
-def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
-    """Whether the body is damped and the kernels of its option are not for both kinds."""
-    return body.damping is not None and not options.INERTIA_OPTIONS[inertia].rates
+    if not isinstance(frame, str) or frame not in FRAMES:
+        raise InputError(f"frame {frame!r} is unknown: use one of {', '.join(sorted(FRAMES))}")
+    return FRAMES[frame]
 
 
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:

@@ -5,9 +5,12 @@ share a position triplet have a spherical joint between them without a multiplie
 triplet has no unknowns.
 """
 
+from html import escape
+
 from sebody.model import beams, bodies, drives, joints, loads, nodes, springs
 from sebody.model.atomic import atomic
 from sebody.model.mechanism import Mechanism
+from sebody.model.tables import model_tables, summary
 
 
 class Model(Mechanism):
@@ -20,6 +23,12 @@ class Model(Mechanism):
     planar : bool
         Motion in the x-y plane: positions (x, y) and one angle a node.
     """
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return f"<p>{escape(summary(self))}</p>" + "".join(
+            f"<details><summary>{escape(title)}</summary>{rows}</details>"
+            for title, rows in model_tables(self))
 
     node = atomic(nodes.node)
     attach = atomic(nodes.attach)

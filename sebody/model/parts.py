@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.model.histories import History
 from sebody.reduction import ReducedBody
+from sebody.reduction.invariants import InertiaInvariants
 
 
 class Motion(NamedTuple):
@@ -84,11 +85,18 @@ class Superelement:
     nodes: tuple[Node, ...]
     frame: str
     inertia: str
+    stiffening: bool
     layout: str
     alpha: NDArray          # frame weights of the positions
     alpha_r: NDArray        # and of the rotations
     kernel: str             # name of the generated module
     mode_rates: NDArray     # initial velocities of the internal modes
+
+    @property
+    def invariants(self) -> InertiaInvariants | None:
+        """The constants of its exact inertia, without those of stiffening where it has none."""
+        found = self.body.invariants
+        return found if found is None or self.stiffening else found.unstiffened
 
     @property
     def positions(self) -> list[Triplet]:

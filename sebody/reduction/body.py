@@ -1,5 +1,6 @@
 """The superelement in the form the multibody code takes: reduced matrices and their layout."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -185,6 +186,29 @@ class ReducedBody:
         if self.invariants is None:
             return y
         return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
+
+    def recovering(self, nodes: Iterable[int]) -> "ReducedBody":
+        """The same body with the shapes of some FE nodes alone.
+
+        Parameters
+        ----------
+        nodes : iterable of int
+            Their numbers in the FE model.
+
+        Raises
+        ------
+        InputError
+            No shapes, no node, or one that is unknown.
+        """
+        if self.recovery is None:
+            raise InputError("recover: the body has no shapes of an FE model to keep a part of")
+        count = len(self.recovery.coordinates)
+        remedy = f"give nodes of the FE model, from 0 to {count - 1}"
+        found = [inputs.integer(node, "recover: a node", least=0, most=count - 1, remedy=remedy)
+                 for node in inputs.items(nodes, "recover", remedy)]
+        if not found:
+            raise InputError(f"recover names no node: {remedy}")
+        return replace(self, recovery=self.recovery.restricted(np.array(found)))
 
     def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> "ReducedBody":

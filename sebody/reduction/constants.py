@@ -16,6 +16,7 @@ from sebody.reduction.integrals import MassIntegrals
 from sebody.reduction.invariant_checks import CONTRADICTION_LIMIT
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.static_correction import static_correction
 from sebody.reduction.stiffening import GeometricStiffness, Stiffening
 
 _ASYMMETRY = 1e-8  # of a geometric stiffness, relative to its largest entry
@@ -36,7 +37,11 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
         invariants, load_modes = _invariants(body, fe_model, boundary, component, interior)
         shapes = np.hstack([shapes, load_modes])
     notes = (*body.notes, _inertia_note(fe_model), _stiffening_note(invariants))
-    return replace(body, invariants=invariants, recovery=_recovery(fe_model, shapes), notes=notes)
+    recovery = _recovery(fe_model, shapes)
+    if fe_model.stress:
+        static = static_correction(fe_model, boundary, component, interior, body)
+        recovery = replace(recovery, static=fe_model.by_nodes(boundary.ties.spread(static)))
+    return replace(body, invariants=invariants, recovery=recovery, notes=notes)
 
 
 def with_shapes(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
@@ -47,7 +52,8 @@ def with_shapes(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
 
 def _recovery(fe_model: FEModel, shapes: NDArray) -> Recovery:
     return Recovery(fe_model.by_nodes(shapes), fe_model.coordinates, fe_model.node_dofs,
-                    cells=fe_model.cells, labels=fe_model.labels, outlines=fe_model.outlines)
+                    cells=fe_model.cells, labels=fe_model.labels, stress=fe_model.stress,
+                    outlines=fe_model.outlines)
 
 
 def _inertia_note(fe_model: FEModel) -> str:

@@ -25,6 +25,7 @@ def craig_bampton(
     boundary: Items,
     modes: int | Accuracy,
     select: Sequence[int] | None = None,
+    recover: Sequence[int] | None = None,
 ) -> ReducedBody:
     """Superelement of an FE model; no modes gives Guyan's reduction.
 
@@ -46,6 +47,9 @@ def craig_bampton(
     select : sequence of int, optional
         Which of these modes to keep, counted from 0; default all. Modes that the motion cannot
         excite (out of plane, torsion) can be left out.
+    recover : sequence of int, optional
+        FE nodes whose motion and stress shall be known afterwards, of a large model; all by
+        default. Stresses need all nodes of the elements around.
 
     Raises
     ------
@@ -53,7 +57,7 @@ def craig_bampton(
         Unknown or repeated boundary node, a triplet the nodes do not have, more modes than there
         are, or boundary nodes that leave a mechanism inside.
     """
-    return reduce(fe_model, boundary, modes, "craig-bampton", select)
+    return reduce(fe_model, boundary, modes, "craig-bampton", select, recover)
 
 
 def component_modes(

@@ -8,6 +8,7 @@ strain energy of second order.
 """
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -93,6 +94,20 @@ class InertiaInvariants:
     def resultants(self) -> int:
         """Number of stress resultants of second order."""
         return len(self.lam)
+
+    @property
+    def stiffens(self) -> bool:
+        """Whether there is anything of second order: stresses of the body change its stiffness."""
+        return self.slaved + self.resultants > 0
+
+    @cached_property
+    def unstiffened(self) -> "InertiaInvariants":
+        """The same body without slaved coordinates and resultants of second order."""
+        n = self.Q.shape[1]
+        return replace(
+            self, S1=self.S1[:, :n], g=self.g[:, :n], h=self.h[..., :n], K=self.K[:, :n, :n],
+            J2=self.J2[..., :n, :n], Mbar=self.Mbar[:n, :n], Q=self.Q[:0], lam=self.lam[:0],
+            E=self.E[:, :0], Ghat=self.Ghat[:0])
 
     def about(self, point: ArrayLike) -> "InertiaInvariants":
         """The same integrals about `point`, (D,) in the FE axes.

@@ -45,7 +45,8 @@ _MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to
 
 
 def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
-           method: str = "craig-bampton", select: Sequence[int] | None = None) -> ReducedBody:
+           method: str = "craig-bampton", select: Sequence[int] | None = None,
+           recover: Sequence[int] | None = None) -> ReducedBody:
     """Superelement of an FE model by one of four methods; see `sebody.reduction.methods`.
 
     Parameters
@@ -62,6 +63,9 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     method : 'craig-bampton', 'guyan', 'macneal' or 'rubin'
     select : sequence of int, optional
         For 'craig-bampton': which of the modes to keep, counted from 0; default all.
+    recover : sequence of int, optional
+        FE nodes whose motion and stress shall be known afterwards, of a large model; all by
+        default. Stresses need all nodes of the elements around.
 
     Returns
     -------
@@ -100,8 +104,10 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     body = ReducedBody(*reduced, edge.coordinates, edge.keeps, len(component.omega_squared),
                        notes=tuple(notes))
     if method == "macneal":
-        return with_shapes(body, fe_model, edge, component)
-    return with_constants(body, fe_model, edge, component, interior)
+        body = with_shapes(body, fe_model, edge, component)
+    else:
+        body = with_constants(body, fe_model, edge, component, interior)
+    return body if recover is None else body.recovering(recover)
 
 
 def clamped(fe_model: FEModel, edge: Boundary

@@ -7,6 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from sebody.fem.beam_stress import BeamStress
+from sebody.fem.stress import SolidStress, StressModes
+
 
 @dataclass(frozen=True, eq=False)
 class Recovery:
@@ -29,6 +32,14 @@ class Recovery:
         The same of the reduced coordinates.
     cells, labels, outlines
         As in `FEModel`.
+    stress : tuple of SolidStress, BeamStress or StressModes
+        What stresses the displacements cause, of those of the first n shapes.
+    static : (n_nodes k, n_b + pairs), optional
+        Static displacements, in addition to the shapes, under the loads of unit inertia: of unit
+        accelerations of the n_b boundary coordinates, then of unit products of angular velocities
+        ``w_k w_l``, k <= l; see `sebody.reduction.static_correction`.
+    nodes : (n_nodes,) of int, optional
+        Their numbers in the FE model, of which these are a part; ascending.
     """
 
     shapes: NDArray
@@ -39,6 +50,9 @@ class Recovery:
     cells: tuple[tuple[str, NDArray], ...] = ()
     labels: NDArray | None = None
     outlines: NDArray | None = None
+    stress: tuple[SolidStress | BeamStress | StressModes, ...] = ()
+    static: NDArray | None = None
+    nodes: NDArray | None = None
 
     @property
     def dimension(self) -> int:
@@ -49,6 +63,17 @@ class Recovery:
     def points(self) -> NDArray:
         """FE nodes in the axes of the body, (n_nodes, D)."""
         return self.coordinates if self.axes is None else self.coordinates @ self.axes.T
+
+    def has(self, number: int) -> bool:
+        """Whether the node of this number in the FE model is among those that are kept."""
+        if self.nodes is None:
+            return 0 <= number < len(self.coordinates)
+        place = int(np.searchsorted(self.nodes, number))
+        return place < len(self.nodes) and self.nodes[place] == number
+
+    def number(self, place: int) -> int:
+        """Number in the FE model of a node, by its place among those that are kept."""
+        return int(place) if self.nodes is None else int(self.nodes[place])
 
     def displacement(self, z: NDArray, nodes: NDArray | None = None) -> NDArray:
         """Displacements of nodes, all by default, in the axes of the body.
@@ -78,6 +103,25 @@ class Recovery:
             return z
         n = len(self.by)
         return np.hstack([z[:, :n] @ self.by, z[:, n:]])
+
+    def restricted(self, nodes: NDArray) -> "Recovery":
+        """Of some nodes alone, with the elements all of whose nodes are among them."""
+        nodes = np.unique(nodes)
+        place = np.full(len(self.coordinates), -1)
+        place[nodes] = np.arange(len(nodes))
+        rows = (len(self.node_dofs) * nodes[:, None] + np.arange(len(self.node_dofs))).ravel()
+        cells = tuple((kind, place[own[np.all(place[own] >= 0, axis=1)]])
+                      for kind, own in self.cells)
+        lines = [np.all(place[own] >= 0, axis=1) for kind, own in self.cells if kind == "line"]
+        outlines = self.outlines if self.outlines is None else self.outlines[np.concatenate(lines)]
+        stress = tuple(found for one in self.stress
+                       if len((found := one.restricted(place, self.coordinates[nodes])).nodes))
+        return replace(
+            self, shapes=self.shapes[rows], coordinates=self.coordinates[nodes],
+            cells=tuple(cell for cell in cells if len(cell[1])), stress=stress,
+            labels=None if self.labels is None else self.labels[nodes], outlines=outlines,
+            static=None if self.static is None else self.static[rows],
+            nodes=nodes if self.nodes is None else self.nodes[nodes])
 
     def rotated(self, rotation: NDArray, by: NDArray) -> "Recovery":
         """The body rotated about the FE origin by (D, D), in the old axes; y becomes ``by @ y``."""

@@ -97,7 +97,7 @@ def values(result: Result, word: str) -> Values:
                                   for name in GROUPS[word]),
                       np.column_stack([result[name] for name in GROUPS[word]]))
     name, _, component = word.rpartition(".")
-    if name and (component in (*AXES, NORM) or component.isdecimal()):
+    if ("." in name or name in GROUPS) and (component in (*AXES, NORM) or component.isdecimal()):
         return _component(values(result, name), component)
     history = result[word]
     if history.ndim == 3:

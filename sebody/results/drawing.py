@@ -146,7 +146,8 @@ def _draw_panel(axes: "Axes", panel: Panel, named: bool) -> None:
                   ha="right", va="bottom", color=PALE)
     elif named and panel.curves[0].label and panel.kind != "phase":
         axes.legend(loc="lower right", bbox_to_anchor=(1.02, 0.97), ncols=len(panel.curves),
-                    handlelength=1.2, columnspacing=1.0, borderpad=0.2)
+                    handlelength=1.2, columnspacing=0.9, borderpad=0.2, handletextpad=0.5,
+                    fontsize=8 if len(panel.curves) > 3 else None)
 
 
 def _keep_shape(axes: "Axes", panel: Panel) -> None:

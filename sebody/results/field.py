@@ -1,27 +1,28 @@
 """Fields inside a superelement: what its FE nodes do in the recorded states."""
 
-from functools import cached_property
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.results.motion import BodyMotion, body_motion
-from sebody.results.recording import Recording
+from sebody.fem.stress import principal, von_mises
+from sebody.results.envelopes import Envelope, envelope
+from sebody.results.field_point import FieldPoint
+from sebody.results.field_states import FieldStates
 
-AXES = "global", "body"
 
-
-class Field:
-    """Displacements, velocities and accelerations of the FE nodes of a superelement.
+class Field(FieldStates):
+    """Displacements, velocities, accelerations and stresses of the FE nodes of a superelement.
 
     A field is computed for the state asked for, a history for the node asked for: see `at`.
     States are chosen by their number among the recorded ones (negative: from the end) or by `t`,
     which takes the nearest recorded state; the last one by default.
 
     Vectors are those in space, by components along the global axes or, with ``axes="body"``,
-    along the axes of the body's floating frame.
+    along the axes of the body's floating frame. Stresses are (xx, yy, zz, yz, zx, xy), those of
+    solids along the axes of the FE model, those of beams along the axes of the section, of its
+    most stressed fibre. They contain the static answer of the modes left out to the inertia of the
+    body; without it, ``static=False``, stresses near the boundary converge slowly with the modes.
 
     Parameters
     ----------
@@ -35,51 +36,6 @@ class Field:
     InputError
         No such superelement, or one without the shapes of an FE model.
     """
-
-    def __init__(self, recording: Recording, name: str):
-        bodies = recording.model.bodies
-        name = inputs.choice(name, "superelement", bodies) if bodies else _no_bodies(name)
-        if bodies[name].body.recovery is None:
-            raise InputError(f"body {name!r} is made of reduced matrices alone, so it knows "
-                             "nothing of what is inside: reduce its FE model with craig_bampton, "
-                             "or give its ReducedBody recovery=, the shapes of the FE nodes")
-        if not len(recording.rows):
-            raise InputError("the result has no recorded state: run the model first")
-        self.name = name
-        self._recording = recording
-        self._body = bodies[name]
-        self._recovery = self._body.body.recovery
-
-    @property
-    def t(self) -> NDArray:
-        """Times of the recorded states [time]."""
-        return self._recording.recorded("t")[:, 0]
-
-    @property
-    def count(self) -> int:
-        """Number of FE nodes."""
-        return len(self._recovery.coordinates)
-
-    @cached_property
-    def motion(self) -> BodyMotion:
-        """The floating frame, and the reduced coordinates in it, in all recorded states."""
-        return body_motion(self._recording, self._body, slice(None))
-
-    @cached_property
-    def points(self) -> NDArray:
-        """FE nodes of the undeformed body in its floating frame, (nodes, D)."""
-        reduced = self._body.body
-        held = reduced.coordinates[list(reduced.position_nodes)]
-        return self._recovery.points - self._body.alpha @ held
-
-    @cached_property
-    def amplitudes(self) -> NDArray:
-        """Amplitudes of the `shapes` in all recorded states, (n, N)."""
-        return self._body.body.with_followers(self.motion.y)
-
-    def shapes(self) -> NDArray:
-        """Displacements of all FE nodes of unit amplitudes, in body axes, (N, nodes, D)."""
-        return self._recovery.displacement(np.eye(self.amplitudes.shape[1]))
 
     def position(self, step: int | None = None, t: float | None = None,
                  axes: str = "global") -> NDArray:
@@ -101,57 +57,76 @@ class Field:
         """Accelerations of all FE nodes, (nodes, D)."""
         return self.accelerations(self._state(step, t), None, axes)[0]
 
-    def at(self, node: int, axes: str = "global") -> "FieldPoint":
-        """Histories of one FE node.
+    def at(self, node: int, axes: str = "global", static: bool = True) -> FieldPoint:
+        """Histories of one FE node, by its number in the FE model; see `label`.
 
         Raises
         ------
         InputError
             No such node.
         """
-        return FieldPoint(self, self.node(node), axes)
+        return FieldPoint(self, self.node(node), axes, static)
 
-    # of several states and nodes: (states, nodes, D)
+    def stress(self, step: int | None = None, t: float | None = None, at: str = "nodes",
+               static: bool = True) -> NDArray:
+        """Stresses (nodes, 6): means of the elements around; NaN where no element is known.
 
-    def places(self, states: ArrayLike, nodes: ArrayLike | None = None,
-               axes: str = "global") -> NDArray:
-        """Places of some nodes in some states, given by their numbers."""
-        states = np.asarray(states)
-        local = self._from_origin(states, nodes)
-        if inputs.choice(axes, "axes", AXES) == "body":
-            return local
-        return self.motion.origin[states][:, None] + self._global(states, local)
+        With ``at="points"`` those at the points of integration, of beams in all fibres of the
+        sections at their ends, in the order of `stress_points`.
 
-    def displacements(self, states: ArrayLike, nodes: ArrayLike | None = None,
-                      axes: str = "global") -> NDArray:
-        """Displacements from the undeformed body, which moves with the frame."""
-        states = np.asarray(states)
-        return self._in(axes, states, self._recovery.displacement(self.amplitudes[states], nodes))
+        Raises
+        ------
+        InputError
+            A body whose FE model has no stress operator.
+        """
+        return self._stressed(step, t, at, static, "stress")
 
-    def rotations(self, states: ArrayLike, nodes: ArrayLike | None = None) -> NDArray:
-        """Rotation vectors of nodes in the frame, (states, nodes, 3), in a plane (.., 1)."""
-        return self._recovery.rotation(self.amplitudes[np.asarray(states)], nodes)
+    def strain(self, step: int | None = None, t: float | None = None, at: str = "nodes",
+               static: bool = True) -> NDArray:
+        """Strains of solids likewise; shears are those of engineering, twice the tensor's."""
+        return self._stressed(step, t, at, static, "strain")
 
-    def velocities(self, states: ArrayLike, nodes: ArrayLike | None = None,
-                   axes: str = "global") -> NDArray:
-        """``v_0 + Omega_0 x r + r'`` in axes of the frame, r from its origin."""
-        states = np.asarray(states)
-        spin = self.motion.spin[states]
-        local = (self.motion.velocity[states][:, None]
-                 + _cross(spin, self._from_origin(states, nodes))
-                 + self._recovery.displacement(self._rates[states], nodes))
-        return self._in(axes, states, local)
+    def von_mises(self, step: int | None = None, t: float | None = None, at: str = "nodes",
+                  static: bool = True) -> NDArray:
+        """Von Mises's stresses (nodes,)."""
+        return von_mises(self._stressed(step, t, at, static, "stress"))
 
-    def accelerations(self, states: ArrayLike, nodes: ArrayLike | None = None,
-                      axes: str = "global") -> NDArray:
-        """``a_0 + Omega_0' x r + Omega_0 x (Omega_0 x r) + 2 Omega_0 x r' + r''`` likewise."""
-        states, motion = np.asarray(states), self.motion
-        spin, r = motion.spin[states], self._from_origin(states, nodes)
-        rate = self._recovery.displacement(self._rates[states], nodes)
-        local = (motion.acceleration[states][:, None] + _cross(motion.spin_rate[states], r)
-                 + _cross(spin, _cross(spin, r) + 2 * rate)
-                 + self._recovery.displacement(self._seconds[states], nodes))
-        return self._in(axes, states, local)
+    def principal(self, step: int | None = None, t: float | None = None, at: str = "nodes",
+                  static: bool = True) -> NDArray:
+        """Principal stresses, ascending, (nodes, 3)."""
+        return principal(self._stressed(step, t, at, static, "stress"))
+
+    def section_forces(self, step: int | None = None, t: float | None = None,
+                       static: bool = True) -> NDArray:
+        """Section forces of beams at both ends of the elements, (elements, 2, 6).
+
+        (N, Qy, Qz, Mx, My, Mz) in axes of the section, on the part whose outward normal is the
+        beam's axis x: tension is positive.
+        """
+        return self.stresses(static).section_forces(self._state(step, t))[0]
+
+    def envelope(self, quantity: str = "von_mises", static: bool = True) -> Envelope:
+        """Largest values over time at every node, with their states.
+
+        Parameters
+        ----------
+        quantity : str
+            von_mises, largest_principal or smallest_principal; displacement, velocity or
+            acceleration, of which it is the length.
+
+        Raises
+        ------
+        InputError
+            Another quantity, or a body whose FE model has no stress operator.
+        """
+        return envelope(self, quantity, static)
+
+    @property
+    def stress_points(self) -> NDArray:
+        """Where stresses are computed, in the undeformed body, axes of the frame, (points, D)."""
+        places, axes = self.stresses().places(), self._recovery.axes
+        places = places if axes is None else places @ axes.T
+        return places + (self.points[0] - self._recovery.points[0])
 
     def state(self, step: int | None = None, t: float | None = None) -> int:
         """Number of a recorded state, from 0.
@@ -174,90 +149,50 @@ class Field:
         return step % (last + 1)
 
     def node(self, node: int) -> int:
-        """Number of an FE node, from 0.
+        """Place of an FE node in fields, by its number in the FE model, from 0.
 
         Raises
         ------
         InputError
-            No such node.
+            No such node, or one that is not among those whose data was kept.
         """
-        return inputs.integer(node, f"node of body {self.name!r}", least=0, most=self.count - 1,
-                              remedy=f"its FE model has nodes 0 to {self.count - 1}")
+        kept = self._recovery.nodes
+        if kept is None:
+            return inputs.integer(node, f"node of body {self.name!r}", least=0,
+                                  most=self.count - 1,
+                                  remedy=f"its FE model has nodes 0 to {self.count - 1}")
+        node = inputs.integer(node, f"node of body {self.name!r}", least=0)
+        place = int(np.searchsorted(kept, node))
+        if place == len(kept) or kept[place] != node:
+            raise InputError(f"node {node} of body {self.name!r} is not among the {len(kept)} "
+                             "nodes whose recovery data was kept: reduce the FE model with "
+                             "recover= that names it")
+        return place
+
+    def label(self, label: int) -> int:
+        """Number in the FE model of the node with a label of the FE program.
+
+        Raises
+        ------
+        InputError
+            No labels, or no such label.
+        """
+        labels = self._recovery.labels
+        if labels is None:
+            raise InputError(f"the nodes of body {self.name!r} have no labels: give their numbers")
+        label = inputs.integer(label, "label of a node")
+        found = np.flatnonzero(labels == label)
+        if not len(found):
+            raise InputError(f"body {self.name!r} has no node with the label {label}: there are "
+                             f"{labels.min()} to {labels.max()}")
+        return self.number(int(found[0]))
 
     def _state(self, step: int | None, t: float | None) -> NDArray:
         return np.array([self.state(step, t)])
 
-    @cached_property
-    def _rates(self) -> NDArray:
-        y, rate = self.motion.y, self.motion.y_rate
-        return np.hstack([rate, self._products(y, rate)])
-
-    @cached_property
-    def _seconds(self) -> NDArray:
-        y, rate, second = self.motion.y, self.motion.y_rate, self.motion.y_second
-        return np.hstack([second, self._products(rate, rate) + self._products(y, second)])
-
-    def _products(self, left: NDArray, right: NDArray) -> NDArray:
-        """``left . Q_b right`` of the coordinates that follow in second order, (n, b)."""
-        invariants = self._body.body.invariants
-        if invariants is None:
-            return np.zeros((len(left), 0))
-        return np.einsum("ni,bij,nj->nb", left, invariants.Q, right, optimize=True)
-
-    def _from_origin(self, states: NDArray, nodes: ArrayLike | None) -> NDArray:
-        points = self.points if nodes is None else self.points[np.asarray(nodes)]
-        return points + self._recovery.displacement(self.amplitudes[states], nodes)
-
-    def _in(self, axes: str, states: NDArray, local: NDArray) -> NDArray:
-        if inputs.choice(axes, "axes", AXES) == "body":
-            return local
-        return self._global(states, local)
-
-    def _global(self, states: NDArray, local: NDArray) -> NDArray:
-        return local @ self.motion.rotation[states].transpose(0, 2, 1)
-
-
-class FieldPoint:
-    """Histories of one FE node of a superelement, (n, D): a row of the field for each state."""
-
-    def __init__(self, field: Field, node: int, axes: str):
-        self._field, self._nodes = field, np.array([node])
-        self._axes = inputs.choice(axes, "axes", AXES)
-        self._states = np.arange(len(field.t))
-
-    @property
-    def position(self) -> NDArray:
-        """Place; in body axes from the origin of the frame."""
-        return self._field.places(self._states, self._nodes, self._axes)[:, 0]
-
-    @property
-    def displacement(self) -> NDArray:
-        """Displacement from the undeformed body, which moves with the frame."""
-        return self._field.displacements(self._states, self._nodes, self._axes)[:, 0]
-
-    @property
-    def rotation(self) -> NDArray:
-        """Rotation vector in the frame, (n, 3), in a plane (n, 1); (n, 0) if nodes have none."""
-        return self._field.rotations(self._states, self._nodes)[:, 0]
-
-    @property
-    def velocity(self) -> NDArray:
-        """Velocity."""
-        return self._field.velocities(self._states, self._nodes, self._axes)[:, 0]
-
-    @property
-    def acceleration(self) -> NDArray:
-        """Acceleration."""
-        return self._field.accelerations(self._states, self._nodes, self._axes)[:, 0]
-
-
-def _cross(spin: NDArray, vectors: NDArray) -> NDArray:
-    """``spin x r`` of spins (n, 3), in a plane (n, 1), and vectors (n, k, D)."""
-    if vectors.shape[2] == 2:
-        return spin[:, None] * np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
-    return np.cross(spin[:, None], vectors)
-
-
-def _no_bodies(name: str) -> str:
-    raise InputError(f"the model has no superelement, so there is no field of {name!r}: rigid "
-                     "bodies have histories of their nodes alone")
+    def _stressed(self, step: int | None, t: float | None, at: str, static: bool,
+                  what: str) -> NDArray:
+        stresses, state = self.stresses(static), self._state(step, t)
+        if inputs.choice(at, "at", ("nodes", "points")) == "points":
+            return stresses.at_points(state, what)[0]
+        return stresses.at_nodes(state, what)[0]

@@ -15,9 +15,11 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
+from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording, record_counts
 
+FE_NODE = "node inside a body"
 ALIKE = 0.75            # ratio of `difflib` from which a name is near another
 
 
@@ -54,21 +56,30 @@ def look_up(recording: Recording, name: str) -> NDArray:
         if quantity in one.quantities and owner in one.names(recording):
             return one.quantities[quantity](recording, owner)
     found = [one for one in OWNERS if owner in one.names(recording)]
-    near = get_close_matches(name, names(recording), cutoff=ALIKE)
+    inside = fields.QUANTITIES if owner in fields.FENodes(recording) else ()
+    near = get_close_matches(name, [*names(recording), *(f"{owner}.{q}" for q in inside)],
+                             cutoff=ALIKE)
     meant = f"did you mean {' or '.join(map(repr, near))}? " if near else ""
     if found:
         raise InputError(f"{quantity!r} is unknown: {meant}" + "; ".join(
             f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
-    offers = [one.offer.format(names=", ".join(one.names(recording)) or f"any {one.kind}",
-                               quantities=_enumerated(one.quantities)) for one in OWNERS]
+    *offers, of_fe_nodes = [one.offer.format(names=_listed(one, recording),
+                                             quantities=_enumerated(one.quantities))
+                            for one in OWNERS]
     raise InputError(f"{name!r} is unknown: {meant}{'; '.join(offers)}; of the model "
-                     f"{', '.join(OF_MODEL)}")
+                     f"{', '.join(OF_MODEL)}{of_fe_nodes}")
+
+
+def _listed(one: Owner, recording: Recording) -> str:
+    """Names of a kind, where its offer lists them."""
+    return ", ".join(one.names(recording) if "{names}" in one.offer else ()) or f"any {one.kind}"
 
 
 def names(recording: Recording) -> list[str]:
-    """Names of all quantities that there are: those of the model, then by owner."""
+    """Names of all quantities there are, but those of FE nodes: of the model, then by owner."""
     return list(OF_MODEL) + list(dict.fromkeys(
-        f"{owner}.{quantity}" for one in OWNERS for owner in one.names(recording)
+        f"{owner}.{quantity}" for one in OWNERS if one.kind != FE_NODE
+        for owner in one.names(recording)
         for quantity in one.quantities if _has(recording, one.kind, owner, quantity)))
 
 
@@ -200,6 +211,9 @@ OWNERS = (
     Owner("source of work", "of {names} {quantities}",
           lambda recording: recording.numbering.port_names,
           {"work": forces.work, "power": forces.power}),
+    # the last one: its names are too many to be searched for names like another
+    Owner(FE_NODE, "; of FE nodes, <body>.node<k>, {quantities}", fields.FENodes,
+          {name: partial(fields.of_fe_node, name) for name in fields.QUANTITIES}),
 )
 
 

@@ -1,8 +1,8 @@
 """The data of a run, from which all results are read."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
@@ -43,6 +43,7 @@ class Recording:
     warnings: tuple[str, ...] = ()  # of the run, see sebody.analysis.limits
     error: float | None = None      # estimate over allowed error: see sebody.analysis.accuracy
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
+    fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far
 
     def recorded(self, name: str) -> NDArray:
         """History of one of the parts of `layout.RECORD`, (n, size)."""

@@ -1,21 +1,29 @@
 """Results of a run by name: histories of nodes and bodies, energies, the output file."""
 
+from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
 from sebody.files import check_target, replacing
+from sebody.model.tables import table
+from sebody.results import hdf5, tables
 from sebody.results.advice import kernels_that_pay
 from sebody.results.energy_balance import energy_balance
 from sebody.results.field import Field
+from sebody.results.field_quantities import field_of
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
+from sebody.results.units import unit
+from sebody.results.vtk_series import save_vtk
 
-OUTPUT = "output file", (".npz",)        # what is saved, see `files.check_target`
+OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
+LABELS = 21             # columns of the labels of a summary
 
 
 class Result(Recording):
@@ -51,6 +59,9 @@ class Result(Recording):
     ``<body>.forces``             (n, coordinates) the same of all its places: positions, then
                                   rotations, then modes
     ``<body>.modes``              (n, m) of a superelement
+    ``<body>.node<k>.velocity``   (n, 3) of an FE node inside a superelement: position, velocity,
+                                  acceleration, displacement, stress (n, 6), von_mises (n,), of
+                                  beams section_forces (n, ends of elements, 6); see `field`
     ============================  ==================================================================
     """
 
@@ -96,7 +107,8 @@ class Result(Recording):
         InputError
             No such superelement, or one without the shapes of an FE model.
         """
-        return Field(self, name)
+        inputs.name(name, "name of a superelement")
+        return field_of(self, name)
 
     def energy_balance(self) -> float:
         """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
@@ -116,20 +128,68 @@ class Result(Recording):
         return {name: self[name] for name in saved(self)}
 
     def save(self, path: str | Path) -> Path:
-        """Write an npz file: all named histories, and all that `load` needs.
+        """Write a file .npz or .h5: all named histories, and all that `load` needs.
+
+        The second (extra ``hdf5``) has units in words, too.
 
         Raises
         ------
         InputError
-            A target that cannot be written, see `check_target`.
+            A target that cannot be written, see `check_target`, or h5py is missing.
         WriteError
             Writing fails; an older file is unchanged.
         """
-        path = check_target(path, *OUTPUT)
-        arrays = self.arrays() | packed(self)
+        path = check_output(path)
+        members = self.arrays() | packed(self)
         with replacing(path, OUTPUT[0]) as file:
-            np.savez(file, **arrays)
+            if path.suffix == hdf5.SUFFIX:
+                hdf5.write(file.name, members, {name: unit(name) for name in self.arrays()},
+                           {"title": "results of a run", "superelements": ", ".join(
+                               self.model.bodies), "nodes": ", ".join(self.model.nodes)})
+            else:
+                np.savez_compressed(file, **members)
         return path
+
+    def save_vtk(self, path: str | Path, every: int = 1) -> Path:
+        """Write a series .pvd of VTK files, which ParaView opens (extra ``vtk``).
+
+        Places, displacements of deformation, velocities and von Mises's stress of all FE nodes,
+        and the nodes of the model; see `sebody.results.vtk_series.save_vtk`.
+
+        Parameters
+        ----------
+        path : str or Path
+            ``NAME.pvd``; the files of the states go to a folder NAME beside it.
+        every : int
+            Write every so many recorded states.
+
+        Raises
+        ------
+        InputError
+            A target that cannot be written, or meshio is missing.
+        WriteError
+            Writing fails; the states that are written remain, with a series of them.
+        """
+        return save_vtk(self, path, every)
+
+    def to_pandas(self, names: Iterable[str] | None = None) -> "tables.DataFrame":
+        """Histories as columns, ``tip.position.x``, indexed by time (extra ``tables``).
+
+        Parameters
+        ----------
+        names : iterable of str, optional
+            Of quantities; those an output file holds by default.
+
+        Raises
+        ------
+        InputError
+            pandas is missing, or a name that nothing has.
+        """
+        return tables.to_pandas(self, names)
+
+    def to_xarray(self, names: Iterable[str] | None = None) -> "tables.Dataset":
+        """Histories as variables with their units in words (extra ``tables``); see `to_pandas`."""
+        return tables.to_xarray(self, names)
 
     @classmethod
     def load(cls, path: str | Path) -> "Result":
@@ -143,6 +203,12 @@ class Result(Recording):
             No such file, or one of another kind or version.
         """
         return unpacked(cls, path)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show: the summary as a table."""
+        lines = (line.partition("  ") if len(line) < LABELS else (line[:LABELS], "", line[LABELS:])
+                 for line in self.summary().splitlines())
+        return table(("run", ""), [(name.strip(), value.strip()) for name, _, value in lines])
 
     def summary(self) -> str:
         """A few lines: steps, iterations, time, balances, works, changes of the initial state."""
@@ -177,6 +243,20 @@ class Result(Recording):
                   for command, bodies in self.advice.items()]
         lines += [f"WARNING              {message}" for message in self.warnings]
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
+
+
+def check_output(path: str | Path) -> Path:
+    """The path of a file of results, refused before anything is computed for it.
+
+    Raises
+    ------
+    InputError
+        See `check_target`; h5py is missing.
+    """
+    path = check_target(path, *OUTPUT)
+    if path.suffix == hdf5.SUFFIX:
+        hdf5.check_installed()
+    return path
 
 
 def _vector(values: NDArray) -> str:

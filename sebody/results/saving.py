@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.results import hdf5
 from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces
 from sebody.results.recording import EVALUATED, Recording, Start
@@ -48,13 +49,11 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
     """
     path = inputs.path(path, "results file")
     try:
-        with np.load(path, allow_pickle=False) as file:
-            found = {name.removeprefix(OWN): file[name] for name in file.files
-                     if name.startswith(OWN)}
+        found = _members(path)
         notes = json.loads(str(found["notes"]))
         if notes["version"] != VERSION:
             raise InputError(f"results file {path} is of version {notes['version']}, this program "
-                             f"reads {VERSION}: numpy.load reads its named histories")
+                             f"reads {VERSION}: numpy.load or h5py reads its named histories")
         return _made(make, notes, found)
     except FileNotFoundError as error:
         raise InputError(f"results file {path} does not exist: give one that was saved") from error
@@ -67,6 +66,17 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
     except OSError as error:
         raise InputError(f"results file {path} cannot be read ({error.strerror}): give another "
                          "one") from error
+
+
+def _members(path: Path) -> dict[str, NDArray]:
+    """The own members of a file of either kind, whatever its name is."""
+    with path.open("rb") as file:
+        if file.read(len(hdf5.SIGNATURE)) == hdf5.SIGNATURE:
+            hdf5.check_installed()
+            return hdf5.read(path, OWN.strip("/"))
+    with np.load(path, allow_pickle=False) as file:
+        return {name.removeprefix(OWN): file[name] for name in file.files
+                if name.startswith(OWN)}
 
 
 def _made(make: Callable[..., Any], notes: dict, found: dict[str, NDArray]) -> Any:

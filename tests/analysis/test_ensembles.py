@@ -208,7 +208,7 @@ REFUSED = {
     "negative damping": ({"spring.damping": [-1.0]}, {}, "it must be at least 0"),
     "shape": ({"gravity": [1.0, 2.0]}, {}, r"give an array \(runs, 3\)"),
     "nan": ({"beam.mass": [np.nan]}, {}, "beam.mass"),
-    "no parameters": ({}, {}, "give a dict of names and arrays"),
+    "no parameters": (3, {}, "give a dict of names and arrays"),
     "bodies": ({"beam.body": [3]}, {}, "give ReducedBody objects"),
     "quantity": ({"beam.mass": [1.0]}, {"outputs": {"x": "tip.place"}}, "'place' is unknown"),
     "outputs": ({"beam.mass": [1.0]}, {"outputs": []}, "give a dict of names and quantities"),

@@ -33,7 +33,7 @@ def test_the_worst_pivot_counts(masses, axis):
     model = Model(planar=True)
     ends = model.node("left", (0.0, 0.0)), model.node("right", (LENGTH, 0.0))
     body = model.superelement("bar", ReducedBody(bar.stiffness, mass, bar.coordinates, bar.keeps),
-                              ends, frame="node")
+                              ends, frame="node", inertia="b")
     stiffness = 3 * SLENDER.youngs_modulus * SLENDER.inertia_z / LENGTH**3
     assert stiffness < SLENDER.youngs_modulus * SLENDER.area / LENGTH
     assert spin_limit(body, axis) == pytest.approx(np.sqrt(stiffness / max(masses)), rel=1e-9)
@@ -85,7 +85,8 @@ def test_torsion_of_option_b(units, frame, square, torsion):
 GROWS = [("converged_mean", "b", 0.1, True, "root"), ("converged_mean", "b", 1e3, True, "tip"),
          ("converged_mean", "a", 0.1, True, "tip"), ("converged_mean", "c", 0.1, False, "root"),
          ("node", "b", 0.1, True, "root"), ("node", "b", 1e3, True, "tip"),
-         ("node", "c", 0.1, False, "tip")]
+         ("node", "c", 0.1, False, "tip"), ("converged_mean", "d", 0.01, True, "root"),
+         ("node", "d", 0.01, True, "tip")]
 
 
 @pytest.mark.parametrize(("frame", "inertia", "torsion", "stiffened", "held"), GROWS)
@@ -116,7 +117,7 @@ def test_the_cautious_limit_is_below_all():
     """It decides whether a spin is looked at: of options, frames, soft and stiff torsion."""
     axes = np.vstack([np.eye(3), np.random.default_rng(4).normal(size=(3, 3))])
     for frame in ("converged_mean", "node"):
-        for inertia, torsion in itertools.product("abc", (1e-3, 0.1, 1e3)):
+        for inertia, torsion in itertools.product("abcd", (1e-3, 0.1, 1e3)):
             if (frame, inertia) == ("node", "a"):
                 continue
             model = blade(frame, inertia, torsion, stiffened=False)

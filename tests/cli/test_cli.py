@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from sebody import errors
-from sebody.analysis import first_run
-from sebody.cli import inputs, progress, run, warm
+from sebody.analysis import first_run, progress
+from sebody.cli import inputs, run, warm
 from sebody.cli.entry import main
 from sebody.scenes import hinged_beam
 from sebody.studies import check
@@ -62,7 +62,7 @@ def test_run_stops_and_goes_on(tmp_path, capsys):
 @pytest.mark.parametrize("arguments, message", [
     (["triple-beam"], "scene 'triple-beam' is unknown: there are "),
     (["hinged-beam", "--set", "length=3"], "scene 'hinged-beam' has no parameter 'length': there "
-     "are frame=converged_mean, inertia=b, modes=4, elements=20"),
+     "are frame=converged_mean, inertia=None, modes=4, elements=20"),
     (["hinged-beam", "--set", "modes"], "cannot read --set modes: write --set NAME=VALUE"),
     (["hinged-beam", "--set", "modes=two"], "parameter modes is 'two': give a value of type int"),
     (["hinged-beam", "--set", "frame=best"], "frame 'best' is unknown: use one of"),
@@ -176,12 +176,14 @@ class Terminal(io.StringIO):
 
 
 @pytest.mark.parametrize("patience, stream, expected", [
-    (0.0, Terminal(), "\r[" + "#" * 10 + "." * 30 + "]  25 %\r[" + "#" * 40 + "] 100 %\n"),
+    (0.0, Terminal(), "\r[" + "#" * 10 + "." * 30 + "]  25 %  t = 2 of 8\r[" + "#" * 40
+     + "] 100 %  t = 8 of 8, 3 a second, 0 s left\n"),
     (0.0, io.StringIO(), ""), (1e3, Terminal(), "")])
 def test_progress_is_for_long_runs_on_a_terminal(patience, stream, expected, monkeypatch):
     monkeypatch.setattr(progress, "PATIENCE", patience)
+    monkeypatch.setattr(progress.time, "perf_counter", iter((0.0, 5.0, 7.0)).__next__)
     with redirect_stderr(stream):
-        bar = progress.Progress()
+        bar = progress.Progress(8.0)
         bar(0.25)
         bar(1.0)
         bar.close()

@@ -15,7 +15,7 @@ from sebody.scenes import hinged_beam, slider_crank, spherical_beam_strong, spin
 from sebody.scenes.hinged_beam import SECTION, TORQUE
 from sebody.studies import references
 
-TIMOSHENKO = replace(SECTION, shear_factor=5 / 6)
+BERNOULLI = replace(SECTION, shear_factor=None)
 END = np.array([100.0, 100.0, 0.0])
 
 
@@ -25,7 +25,7 @@ def spun(elements, turned=None, planar=False):
     turned = np.eye(3) if turned is None else turned
     model = Model(planar=planar)
     ends = model.node("base", np.zeros(d)), model.node("tip", (turned @ END)[:d])
-    model.beam("beam", ends, TIMOSHENKO, elements,
+    model.beam("beam", ends, SECTION, elements,
                up=None if planar else turned @ [-1.0, 1.0, 0.0])
     axis = turned @ [0.0, 0.0, 1.0]
     model.revolute("base", axis)
@@ -39,7 +39,7 @@ def tip_error(result, reference, every):
     return np.linalg.norm(tip - exact) / np.linalg.norm(exact)
 
 
-@pytest.mark.parametrize("section", [SECTION, TIMOSHENKO], ids=["bernoulli", "timoshenko"])
+@pytest.mark.parametrize("section", [BERNOULLI, SECTION], ids=["bernoulli", "timoshenko"])
 def test_strain_energy_is_that_of_simo_and_reissner(section):
     """Two nodes anywhere: half EA, GA, GJ, EI of the strains at the rotation half way."""
     model = Model()
@@ -103,7 +103,7 @@ def test_strong_impulse_against_the_reference():
     scene = spherical_beam_strong.build()
     model = Model()
     ends = [model.node(n, scene.model.nodes[n].point) for n in ("base", "tip")]
-    model.beam("beam", ends, TIMOSHENKO, 32)
+    model.beam("beam", ends, SECTION, 32)
     model.fix("base", "position")
     for load in scene.model.loads:
         node = "base" if "rotation" in load.name else "tip"
@@ -164,7 +164,7 @@ def test_slider_crank_against_quadratic_elements():
 
 
 def tapered(place):
-    return replace(TIMOSHENKO, inertia_z=6.75 * (2 - place), inertia_y=6.75 * (1 + place))
+    return replace(SECTION, inertia_z=6.75 * (2 - place), inertia_y=6.75 * (1 + place))
 
 
 def test_a_tapered_beam_of_two_bodies_has_the_flexibility_of_one():
@@ -187,7 +187,7 @@ def test_a_tapered_beam_of_two_bodies_has_the_flexibility_of_one():
 def test_a_damped_beam():
     """A fiftieth of critical damping of every free mode of each body, as `damped` gives it."""
     model = Model(planar=True)
-    model.beam("beam", (model.node("a", (0, 0)), model.node("b", (30, 40))), TIMOSHENKO, 4, 2, 1,
+    model.beam("beam", (model.node("a", (0, 0)), model.node("b", (30, 40))), SECTION, 4, 2, 1,
                damping=0.02)
     for part in model.bodies.values():
         squares, shapes = eigh(part.body.stiffness, part.body.mass)
@@ -195,7 +195,7 @@ def test_a_damped_beam():
         ratios = np.diag(damping)[3:] / (2 * np.sqrt(squares[3:]))
         assert ratios == pytest.approx(0.02, rel=1e-9)      # of eigenvalues that differ by 1e5
     with pytest.raises(InputError, match="beam .*: damping is -0.1: give a finite number"):
-        model.beam("c", (model.node("c", (0, 9)), model.node("d", (9, 9))), TIMOSHENKO, 1,
+        model.beam("c", (model.node("c", (0, 9)), model.node("d", (9, 9))), SECTION, 1,
                    damping=-0.1)
 
 

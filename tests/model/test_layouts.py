@@ -51,12 +51,12 @@ def test_box_keeps_its_invariants():
     assert np.abs(H - H[0]).max() / np.linalg.norm(H[0]) < 1e-5
 
 
-def planar_hinged_beam(modes=4):
+def planar_hinged_beam(modes=4, inertia=None):
     body = craig_bampton(planar_beam((0, 0), END[:2], SECTION, 20), [(0, "full"), (20, "full")],
                          modes)
     model = Model(planar=True)
     base, tip = model.node("base", (0.0, 0.0)), model.node("tip", END[:2])
-    model.superelement("beam", body, [base, tip])
+    model.superelement("beam", body, [base, tip], inertia=inertia)
     model.revolute(base)
     model.torque(base, 1.0, TORQUE)
     return model
@@ -116,19 +116,19 @@ def test_sparse_solver_gives_the_motion_of_the_dense_one(monkeypatch):
 
 
 @pytest.mark.parametrize("pinned, modes, make", [
-    ("f2m4", 4, lambda modes: build(modes=modes).model),
-    ("f2m8", 8, lambda modes: build(modes=modes).model),
+    ("f2m4", 4, lambda **given: build(**given).model),
+    ("f2m8", 8, lambda **given: build(**given).model),
     ("planar_f2m2", 2, planar_hinged_beam), ("planar_f2m4", 4, planar_hinged_beam)])
 def test_pinned_number_of_modes_changes_speed_alone(monkeypatch, pinned, modes, make):
     """Same text with a constant in place of a number read at run time."""
-    own = make(modes)
+    own = make(modes=modes, inertia="b")
     body, = own.bodies.values()
     assert body.kernel == f"superelement_{pinned}_converged_mean_b"
     fast = simulate(own, 0.01, 1.0)
     monkeypatch.setattr(model_bodies, "superelement_kernel_name",
                         lambda layout, frame, inertia, *_: superelement_kernel_name(
                             layout, frame, inertia, -1))
-    free = make(modes)
+    free = make(modes=modes, inertia="b")
     body, = free.bodies.values()
     assert load(body.kernel).N_MODES is None
     assert np.abs(fast["tip.position"] - simulate(free, 0.01, 1.0)["tip.position"]).max() < 1e-9

@@ -7,10 +7,10 @@ from numpy.testing import assert_allclose
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.special import jv
-from spinning_body import CLAMPED, SLENDER, Spinning, cantilever, strip
+from spinning_body import CLAMPED, SLENDER, Spinning, cantilever, strip, with_torsion
 
-from sebody.fem import planar_beam, straight_beam
-from sebody.reduction import component_modes, craig_bampton
+from sebody.fem import planar_beam
+from sebody.reduction import craig_bampton
 
 
 def critical(body, low, high, held=CLAMPED, load=None, gravity=None):
@@ -42,17 +42,6 @@ def test_a_column_in_a_plane():
     load = np.zeros(10)
     load[2] = -1.0
     assert_allclose(critical(flat, 2.0, 3.0, [0, 1, 4], load), np.pi**2 / 4, rtol=1e-4)
-
-
-def with_torsion(section, elements, bending, torsion):
-    """Two-node body with lateral bending and torsion modes."""
-    model = straight_beam([0, 0, 0], [1, 0, 0], section, elements)
-    rows = np.r_[0:3, 6 * elements:6 * elements + 3, 3:6, 6 * elements + 3:6 * elements + 6]
-    modes = component_modes(model.stiffness, model.mass, rows, 3 * elements).fixed_interface
-    size = np.abs(modes.reshape(elements + 1, 6, -1)).max(axis=0)
-    kinds = np.array([size[1], size[2], 1e-3 * size[3]]).argmax(axis=0)
-    chosen = [*np.flatnonzero(kinds == 0)[:bending], *np.flatnonzero(kinds == 2)[:torsion]]
-    return craig_bampton(model, [(0, "full"), (elements, "full")], 3 * elements, sorted(chosen))
 
 
 def test_lateral_buckling():

@@ -150,6 +150,7 @@ def test_what_is_refused():
         with pytest.raises(InputError, match=message):
             call()
     result.rows = result.rows[:0]
+    result.fields.clear()
     with pytest.raises(InputError, match="no recorded state: run the model first"):
         result.field("body")
 
@@ -166,3 +167,21 @@ def test_bodies_without_recovery():
     rigid.point_mass("p", rigid.node("n", (0, 0, 0), keeps="translation"), 1.0)
     with pytest.raises(InputError, match="the model has no superelement, so there is no field"):
         states(rigid).field("p")
+
+
+def test_histories_by_name():
+    result = states(CASES["mean"]()[0])
+    field = result.field("body")
+    assert result.field("body") is field
+    for quantity in ("position", "velocity", "acceleration", "displacement"):
+        assert np.array_equal(result[f"body.node3.{quantity}"], getattr(field.at(3), quantity))
+    for name, message in (
+            ("body.node3.speed", "'speed' is unknown: .* a node inside a body has position, velo"),
+            ("body.node3.velocty", "did you mean 'body.node3.velocity'"),
+            ("n0.postion", "'postion' is unknown: did you mean 'n0.position'"),
+            ("body.node7.velocity", "'body.node7.velocity' is unknown: nodes are .*of FE nodes, "
+                                    "<body>.node<k>, position, velocity"),
+            ("body.node03.velocity", "is unknown: nodes are"),
+            ("energy.kinetc", "did you mean 'energy.kinetic'")):
+        with pytest.raises(InputError, match=message):
+            result[name]

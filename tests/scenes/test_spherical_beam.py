@@ -7,17 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sebody import simulate
+from sebody import generalized_alpha, simulate
 from sebody.scenes import spherical_beam, spherical_beam_strong
 from sebody.studies import references
 
-FORMS = [("converged_mean", "b"), ("mean", "b"), ("mean_small", "b"), ("node", "b")]
+FORMS = [("converged_mean", None), ("converged_mean", "b"), ("mean", "b"), ("mean_small", "b"),
+         ("node", None), ("node", "b")]
 
 
 @cache
-def paper(frame="converged_mean", inertia="b", h=0.02):
+def paper(frame="converged_mean", inertia=None, h=0.02, tolerance=1e-8):
     scene = spherical_beam.build(frame, inertia)
-    return simulate(scene.model, h, scene.t_end)
+    return simulate(scene.model, h, scene.t_end, generalized_alpha(tolerance=tolerance))
 
 
 @cache
@@ -47,22 +48,26 @@ def test_tip_and_energy_under_the_paper_loads(frame, inertia):
         assert total_energy(result)[round(t / 0.02)] == pytest.approx(exact, rel=5e-3)
 
 
-def test_angular_momentum():
-    """H_z = 2000: exact before the impulse, to second order in h after it."""
+@pytest.mark.parametrize("inertia, most", [(None, 1e-5), ("b", 3e-4)])
+def test_angular_momentum(inertia, most):
+    """H_z = 2000: exact before the impulse, to second order in h after it.
+
+    Newton's default tolerance leaves more of it than exact inertia does.
+    """
     late = {}
     for h in (0.02, 0.01):
-        result = paper(h=h)
+        result = paper(inertia=inertia, h=h, tolerance=1e-10)
         H = result["angular_momentum"][:, 2] / 2000.0 - 1.0
         before = (result.t > 10.3) & (result.t <= 15.0)
         assert np.abs(H[before]).max() <= 1e-6
         late[h] = np.abs(H[result.t > 15.5]).max()
-    assert late[0.02] <= 3e-4
+    assert late[0.02] <= most
     assert late[0.02] / late[0.01] > 2.5
 
 
 def test_spin_about_z_is_the_papers_figures_10_and_11():
     """Option B stays within -0.02..0.06, option A shows the large spurious oscillation."""
-    spin = paper()["base.angular_velocity"][:, 2]
+    spin = paper(inertia="b")["base.angular_velocity"][:, 2]
     assert -0.02 < spin.min() and spin.max() < 0.06
     spurious = paper(inertia="a")["base.angular_velocity"][:, 2]
     assert -0.25 < spurious.min() < -0.17 and 0.33 < spurious.max() < 0.45
@@ -77,6 +82,26 @@ def test_strong_scene_tells_the_options_apart(frame, inertia, energy, peak):
     at = round(15.2 / 0.0025)
     assert total_energy(result)[at] == pytest.approx(energy, rel=0.01)
     assert result["energy.strain"].max() == pytest.approx(peak, rel=0.1)
+
+
+@pytest.mark.parametrize("F0, until, error, energy", [(700.0, 30.0, 4.8e-4, 1e-4),
+                                                      (2800.0, 20.0, 6.2e-3, 1.5e-3)])
+def test_one_body_that_stiffens_under_strong_loads(F0, until, error, energy):
+    """Eight modes: twice the errors of an independent code with these constants.
+
+    Option B is off by 1.4e-2 and 2.7e-2 in the tip, by 0.5 and 5 % in the energy.
+    """
+    exact = {name.removesuffix(f"_{F0:g}"): value for name, value in references.reference(
+        "spherical_beam_strong").items()}
+    scene = spherical_beam_strong.build(F0, modes=8)
+    result = simulate(scene.model, scene.h, until)
+    rows = exact["t"] <= until + 1e-9
+    tip = result["tip.position"][::20] - exact["tip_position"][rows]
+    assert np.linalg.norm(tip) < error * np.linalg.norm(exact["tip_position"][rows])
+    after = np.interp(15.2, exact["t"], exact["kinetic"] + exact["strain"])
+    assert total_energy(result)[round(15.2 / scene.h)] == pytest.approx(after, rel=energy)
+    assert result["energy.strain"].max() == pytest.approx(exact["peak_strain"], rel=0.02)
+    assert result.cuts == 0
 
 
 @pytest.mark.parametrize("frame, kernel, inertia", [("mean", "converged_mean", "a"),

@@ -184,7 +184,8 @@ def whole_body(model: Model, body: Superelement, name: str) -> Handle:
         model.own_names.discard(body.name)
         try:
             made = superelement(model, body.name, value, body.nodes, frame=body.frame,
-                                inertia=body.inertia, frame_node=int(np.argmax(body.alpha)))
+                                inertia=body.inertia, stiffening=body.stiffening,
+                                frame_node=int(np.argmax(body.alpha)))
         finally:
             model.own_names.add(body.name)
             put(body)

@@ -2,12 +2,15 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from threading import Lock
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sebody import inputs
+from sebody.analysis.ensembles.changes import Handle
 from sebody.analysis.ensembles.handles import given, handles
+from sebody.analysis.ensembles.images import Image
 from sebody.analysis.ensembles.member import kinematic_quantities
 from sebody.analysis.ensembles.outcome import Outcome
 from sebody.analysis.ensembles.outputs import Output, outputs_of
@@ -54,6 +57,8 @@ class Ensemble:
         self.model, self.scheme = model, scheme
         self._template = Simulation(model, h, scheme, output_every)
         self.h, self.every = self._template.h, self._template.every
+        self._lock = Lock()         # the model is changed for moments
+        self._images: dict[tuple[str, ...], Image] = {}
 
     @property
     def parameters(self) -> list[str]:
@@ -71,7 +76,8 @@ class Ensemble:
         Parameters
         ----------
         parameters : mapping
-            Values by name: the first axis of each array counts the runs.
+            Values by name: the first axis of each array counts the runs. Without any the model is
+            run once, as it is.
         t_end : float
             End of all runs [time].
         outputs : mapping
@@ -88,18 +94,37 @@ class Ensemble:
             Before the first run: unknown names, arrays of different lengths, values that a body
             cannot have, an unknown quantity, a time that is no multiple of the step.
         """
-        found, runs = given(self.model, parameters)
-        last = self._last_step(t_end)
-        kept = outputs_of(outputs, last * self.h)
-        kinematic, shapes = kinematic_quantities(self._template, kept)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
+        found, runs, last, kept = self._checked(parameters, t_end, outputs)
+        kinematic, shapes = kinematic_quantities(self._template, kept)
         values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
         outcome = self._empty(kept, shapes, runs, last)
         began = time.perf_counter()
-        work = Work(self._template, found, values, kept, kinematic, last, outcome)
+        work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
+                    self._lock)
         work.go(min(threads, max(runs, 1)), progress)
         outcome.seconds = time.perf_counter() - began
         return outcome
+
+    def check(self, parameters: Mapping[str, Values], t_end: float,
+              outputs: Mapping[str, Output | str]) -> None:
+        """Refuse what `run` would refuse, without running anything.
+
+        Raises
+        ------
+        InputError
+            See `run`.
+        """
+        *_, kept = self._checked(parameters, t_end, outputs)
+        kinematic_quantities(self._template, kept)
+
+    def _checked(self, parameters: Mapping[str, Values], t_end: float,
+                 outputs: Mapping[str, Output | str]
+                 ) -> tuple[dict[str, Handle], int, int, dict[str, Output]]:
+        """Handles, number of runs, last step, outputs."""
+        found, runs = given(self.model, parameters) if parameters != {} else ({}, 1)
+        last = self._last_step(t_end)
+        return found, runs, last, outputs_of(outputs, last * self.h)
 
     def _last_step(self, t_end: float) -> int:
         t_end = inputs.number(t_end, "t_end", above=0)
@@ -108,6 +133,14 @@ class Ensemble:
             raise InputError(f"t_end is {t_end:g}, which is no multiple of the step {self.h:g}: "
                              "give one")
         return last
+
+    def _image(self, found: dict[str, Handle]) -> Image:
+        """What runs begin with that these parameters vary in."""
+        with self._lock:
+            key = tuple(found)
+            if key not in self._images:
+                self._images[key] = Image(self._template, found)
+            return self._images[key]
 
     def _empty(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
                runs: int, last: int) -> Outcome:

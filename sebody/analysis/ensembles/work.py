@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.analysis.ensembles.changes import Handle
 from sebody.analysis.ensembles.images import Image
 from sebody.analysis.ensembles.member import Copies, Course
 from sebody.analysis.ensembles.outcome import Outcome
@@ -30,8 +29,10 @@ class Work:
     ----------
     template : Simulation
         Of the model as built.
-    handles, values : mapping
-        Parameters, and their values for all runs.
+    image : Image
+        What runs begin with, and the parameters that vary.
+    values : mapping
+        Of the parameters, for all runs.
     outputs : mapping
         What is kept.
     kinematic : set of str
@@ -40,15 +41,16 @@ class Work:
         Last step of the grid.
     outcome : Outcome
         Is filled.
+    lock : Lock
+        Held while the model is changed.
     """
 
-    def __init__(self, template: Simulation, handles: Mapping[str, Handle],
-                 values: Mapping[str, Any], outputs: Mapping[str, Output], kinematic: set[str],
-                 last: int, outcome: Outcome):
-        self.template, self.handles, self.values = template, handles, values
+    def __init__(self, template: Simulation, image: Image, values: Mapping[str, Any],
+                 outputs: Mapping[str, Output], kinematic: set[str], last: int, outcome: Outcome,
+                 lock: Lock):
+        self.template, self.image, self.values = template, image, values
         self.outputs, self.kinematic, self.last, self.outcome = outputs, kinematic, last, outcome
-        self.image = Image(template, handles)
-        self._next, self._stop, self._lock = count(), Event(), Lock()
+        self._next, self._stop, self._lock = count(), Event(), lock
         self._done, self._error = 0, None
         self._changes = self._differences() if self.image.linear else None
 
@@ -113,19 +115,20 @@ class Work:
         one = self.template
         with self._lock:        # the model is changed for a moment
             try:
-                for name, handle in self.handles.items():
+                for name, handle in self.image.handles.items():
                     handle.set(self.values[name][run])
                 made = Simulation(one.model, one.h, one.scheme, one.every)
                 made.model = copy(one.model)
             finally:
-                for handle in reversed(self.handles.values()):
+                for handle in reversed(self.image.handles.values()):
                     handle.reset()
         return made
 
     def _differences(self) -> NDArray:
         """Values less those of the model as built, (runs, components)."""
-        return np.hstack([(self.values[name] - handle.base).reshape(self.outcome.runs, -1)
-                          for name, handle in self.handles.items()])
+        return np.hstack([np.zeros((self.outcome.runs, 0)), *(
+            (self.values[name] - handle.base).reshape(self.outcome.runs, -1)
+            for name, handle in self.image.handles.items())])
 
 
 def processors() -> int:

@@ -16,6 +16,7 @@ from sebody.studies.atlas.finding import Finding, Row
 
 CASES: dict[str, Callable[[], Finding]] = {
     "divergence": spin.spurious_divergence,
+    "one-body": spin.frequencies,
     "spin-up": spin.spin_up_outcomes,
     "euler": spin.buckling,
     "beck": spin.flutter,
@@ -35,7 +36,9 @@ KERNELS = tuple(
         ("f2", "converged_mean", "a"), ("f2", "converged_mean", "b"), ("f2", "mean", "b"),
         ("f2", "mean_small", "b"), ("f2m4", "converged_mean", "b"), ("f2t1", "positions", "b"),
         ("planar-f2", "converged_mean", "b"), ("planar-f2m2", "converged_mean", "b"),
-        ("planar-f2m4", "converged_mean", "b"))) + tuple(
+        ("planar-f2m4", "converged_mean", "b"), ("f2", "converged_mean", "c"),
+        ("planar-f2", "converged_mean", "c"), ("any", "converged_mean", "c"),
+        ("any", "positions", "c"))) + tuple(
     element_name(kind) for kind in (
         "force", "torque", "planar_force", "planar_follower_force", "planar_on_line",
         "planar_point_mass", "planar_torque"))

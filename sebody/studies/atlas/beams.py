@@ -17,25 +17,26 @@ FRAMES = {"node": "node", "mean": "converged_mean"}     # of the theory, of the 
 UNSTABLE = 1e-2         # rate of growth that is no rounding error
 
 
-def arm(bodies: int, frame: str, internal: int = 0) -> Model:
-    """The cantilever in a plane, along x."""
+def arm(bodies: int, frame: str, internal: int = 0, inertia: str | None = "b",
+        stiffening: bool | None = None) -> Model:
+    """The cantilever in a plane, along x; with option B it does not stiffen."""
     model = Model(planar=True)
     ends = model.node("root", (0.0, 0.0)), model.node("tip", (1.0, 0.0))
     section = Section(area=1.0, inertia_y=1 / AXIAL, inertia_z=1 / AXIAL, torsion=2 / AXIAL,
                       youngs_modulus=AXIAL, poisson_ratio=0.0, density=1.0)
-    model.beam("arm", ends, section, ELEMENTS, bodies, internal, frame=FRAMES[frame])
+    model.beam("arm", ends, section, ELEMENTS, bodies, internal, frame=FRAMES[frame],
+               inertia=inertia, stiffening=stiffening)
     model.fix("root")
     return model
 
 
-def spinning(bodies: int, frame: str, spin: float) -> Result:
+def spinning(model: Model, spin: float) -> Result:
     """It turns about its root, in equilibrium."""
-    return equilibrium(arm(bodies, frame), 2, spin=spin)
+    return equilibrium(model, 2, spin=spin)
 
 
-def pressed(bodies: int, frame: str, load: float, follower: bool, internal: int) -> Result:
+def pressed(model: Model, load: float, follower: bool) -> Result:
     """A load presses its tip along the axis, or along the tip."""
-    model = arm(bodies, frame, internal)
     model.force("tip", (-load, 0.0), follower=follower)
     return equilibrium(model, 2)
 

@@ -4,36 +4,49 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sebody.analysis.linearization import modes
 from sebody.analysis.simulation import simulate
 from sebody.errors import SimulationError
+from sebody.model.model import Model
 from sebody.scenes import spin_up
-from sebody.studies.atlas.beams import FRAMES, grows, onset, pressed, spinning
-from sebody.studies.atlas.finding import Finding, Row
+from sebody.studies.atlas.beams import FRAMES, arm, grows, onset, pressed, spinning
+from sebody.studies.atlas.finding import REFERENCE, Finding, Row
 from sebody.studies.atlas.theory import (
     beck_load,
     cantilever,
     deflection_of_spin_up,
     divergence,
     euler_load,
+    lag,
 )
 
 COUNTS = (1, 2, 4, 8)
+MODES = 4               # of one body that stiffens
 T_END = 20.0            # of the spin-up
+DEEPEST = {"kane": -0.53366, "simo": -0.57392}  # 12 quadratic geometrically exact elements
+SPINS = (0.0, 1.5, 3.0, 4.5, 6.0, 7.5, 9.0, 10.5, 12.0)
+LAG = {3.0: 3.7435, 6.0: 4.2632, 12.0: 5.4270}  # tables of rotating beams, a power series
+WITHIN = (1e-3, 1e-3, 5e-3)                     # four modes in the plane; eight: 3e-4 at 6
 
 
 def spurious_divergence() -> Finding:
     """Spin at which a cantilever in its plane diverges; a beam never does."""
     finding = Finding(
-        "divergence at high spin",
+        "divergence at high spin, option B",
         "A beam stiffens as it turns and never diverges in its plane. A linear body does not: it "
         "diverges where W^2 times its inertia exceeds its stiffness. The limit grows with the "
-        "number of bodies.",
-        "Warns once when the spin of a body exceeds its own limit, and says to divide it.",
+        "number of bodies; one body that stiffens has none.",
+        "Stiffens by default; warns once when a body that does not spins beyond its own limit.",
         "bodies", "spin of divergence, W sqrt(rho A L^4 / EI)", logarithmic="xy")
     _by_bodies(finding, lambda n, frame: divergence(cantilever(n, frame), option_b=True),
                lambda n, frame, theory: onset(lambda eta: grows(
-                   lambda: spinning(n, frame, eta), eta), 0.7 * theory, 1.3 * theory, 7), 2e-3)
+                   lambda: spinning(arm(n, frame), eta), eta), 0.7 * theory, 1.3 * theory, 7),
+               2e-3)
     for frame in ("node", "mean"):
+        found = onset(lambda eta, own=frame: grows(
+            lambda: spinning(arm(1, own, MODES, None), eta), eta), 2.0, 20.0, 7)
+        finding.rows.append(Row(f"{frame} frame, one body that stiffens, up to 20", np.inf, found,
+                                0.0))
         finding.curves[f"{frame} frame, exact inertia"] = COUNTS, [
             divergence(cantilever(n, frame)) for n in COUNTS]
     finding.curves["chord frame, exact inertia"] = COUNTS, [
@@ -41,14 +54,49 @@ def spurious_divergence() -> Finding:
     return finding
 
 
+def frequencies() -> Finding:
+    """The first frequency in the plane of a cantilever that turns, of one body."""
+    finding = Finding(
+        "one body that turns",
+        "A beam's first frequency in the plane of the spin grows, from 3.516 to 5.427 at 12. One "
+        "body that stiffens follows it; exact inertia without stiffening and option B fall to zero "
+        "before 7.",
+        "Stiffens by default.", "spin, W sqrt(rho A L^4 / EI)", "frequency / sqrt(EI / rho A L^4)")
+    for eta, exact in LAG.items():
+        finding.rows.append(Row(f"theory, spin {eta:g}", exact, lag(eta), 1e-4, REFERENCE))
+    kinds = {"one body that stiffens": {"inertia": None},
+             "exact inertia alone": {"inertia": None, "stiffening": False},
+             "option B": {"inertia": "b"}}
+    for name, kind in kinds.items():
+        found = [_lowest(arm(1, "mean", MODES, **kind), eta) for eta in SPINS]
+        finding.curves[name] = SPINS, found
+        end = dict(zip(SPINS, found, strict=True))
+        if kind == {"inertia": None}:
+            finding.rows += [Row(f"{name}, spin {eta:g}", exact, end[eta], within)
+                             for (eta, exact), within in zip(LAG.items(), WITHIN, strict=True)]
+        else:
+            finding.rows.append(Row(f"{name}, spin 12: unstable", 0.0, end[12.0], 0.0))
+    finding.curves["beam"] = SPINS, [lag(eta) for eta in SPINS]
+    return finding
+
+
+def _lowest(model: Model, spin: float) -> float:
+    """Zero where it is unstable."""
+    if grows(lambda: spinning(model, spin), spin):
+        return 0.0
+    return float(modes(spinning(model, spin), spin).omega[0])
+
+
 def spin_up_outcomes() -> Finding:
     """The spin-up of two flexible arms: bounded or not, and how deep the tip bends."""
     finding = Finding(
-        "spin-up of a flexible arm",
+        "spin-up of a flexible arm, option B",
         "One body with its frame at the root diverges when the speed passes its first frequency. "
         "Kane's arm at 4 rad/s survives with two, Simo's at 6 rad/s does not; with four and eight "
-        "the deflection tends to that of the beam, -0.534 and -0.574.",
-        "Runs on with a warning; a node that turns by more than 168 degrees stops the run.",
+        "the deflection tends to that of the beam, -0.534 and -0.574. One body that stiffens and "
+        "has two modes has it.",
+        "Stiffens by default; runs on with a warning where a body does not; a node that turns by "
+        "more than 168 degrees stops the run.",
         "time [s]", "tip deflection of Kane's arm")
     for case in spin_up.CASES:
         length = spin_up.CASES[case][0]
@@ -66,6 +114,11 @@ def spin_up_outcomes() -> Finding:
                                     float(expected), float(lost), 0.0))
             if case == "kane":
                 finding.curves[f"node frame, bodies: {n}"] = t, np.clip(v, -2.0, 2.0)
+        t, v = _deflection(case, 1, "mean", inertia=None, modes=2)
+        finding.rows.append(Row(f"{case}, one body that stiffens: deepest", DEEPEST[case], v.min(),
+                                2e-3, REFERENCE))
+        if case == "kane":
+            finding.curves["one body that stiffens"] = t, v
     return finding
 
 
@@ -79,8 +132,8 @@ def _predicted(case: str, bodies: int, frame: str) -> np.ndarray:
         lambda t: unit**2 * second(unit * t), T_END / unit)
 
 
-def _deflection(case: str, bodies: int, frame: str):
-    scene = spin_up.build(case, bodies, frame=FRAMES[frame])
+def _deflection(case: str, bodies: int, frame: str, inertia: str | None = "b", modes: int = 0):
+    scene = spin_up.build(case, bodies, modes, frame=FRAMES[frame], inertia=inertia)
     try:
         result = simulate(scene.model, 0.01, T_END)
     except SimulationError as error:
@@ -93,14 +146,16 @@ def _deflection(case: str, bodies: int, frame: str):
 def buckling() -> Finding:
     """Dead load along a cantilever."""
     finding = Finding(
-        "Euler's load",
+        "Euler's load, option B",
         "Bodies that are linear in their frames buckle where the frames turn: not at all with one "
-        "body and the frame at its root, at 3 EI/L^2 with a chord, and at pi^2/4 in the limit.",
+        "body and the frame at its root, at 3 EI/L^2 with a chord, and at pi^2/4 in the limit. One "
+        "body that stiffens buckles at pi^2/4.",
         "Finds no stable equilibrium beyond the load and says so.",
         "bodies", "load / (EI/L^2)", logarithmic="x")
     _by_bodies(finding, lambda n, frame: euler_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
-                   lambda: pressed(n, frame, p, False, 0)), 1.5, 6.0, 19), 2e-3)
+                   lambda: pressed(arm(n, frame), p, False)), 1.5, 6.0, 19), 2e-3)
+    _of_one_body(finding, np.pi**2 / 4, False, 1e-3)
     finding.curves["beam"] = COUNTS, [np.pi**2 / 4] * len(COUNTS)
     return finding
 
@@ -108,16 +163,26 @@ def buckling() -> Finding:
 def flutter() -> Finding:
     """A load that follows the tip of a cantilever."""
     finding = Finding(
-        "Beck's load",
+        "Beck's load, option B",
         "A beam flutters at 20.05 EI/L^2. One linear body does not flutter below 80, two at 24 "
-        "(chord) to 39 (node); the load converges from above with the square of their number.",
+        "(chord) to 39 (node); the load converges from above with the square of their number. One "
+        "body that stiffens flutters at 20.05.",
         "Eigenvalues of the linearisation show it; a simulation flutters, without a warning.",
         "bodies", "load / (EI/L^2)", logarithmic="x")
     _by_bodies(finding, lambda n, frame: beck_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
-                   lambda: pressed(n, frame, p, True, 6 // n + 1)), 15.0, 80.0, 27), 0.01)
+                   lambda: pressed(arm(n, frame, 6 // n + 1), p, True)), 15.0, 80.0, 27), 0.01)
+    _of_one_body(finding, 20.0509536, True, 1e-3)
     finding.curves["beam"] = COUNTS, [20.0509536] * len(COUNTS)
     return finding
+
+
+def _of_one_body(finding: Finding, exact: float, follower: bool, within: float) -> None:
+    """Rows of one body that stiffens, in both frames."""
+    for frame in ("node", "mean"):
+        found = onset(lambda p, own=frame: grows(lambda: pressed(
+            arm(1, own, MODES, None), p, follower)), 0.9 * exact, 1.1 * exact, 3)
+        finding.rows.append(Row(f"{frame} frame, one body that stiffens", exact, found, within))
 
 
 def _by_bodies(finding: Finding, theory: Callable[[int, str], float],

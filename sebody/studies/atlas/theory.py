@@ -110,6 +110,19 @@ def flap(beam: Beam, eta: float, option_b: bool = False) -> float:
                                   eigvals_only=True)[0], 0.0)))
 
 
+def lag(eta: float) -> float:
+    """Lowest frequency of a beam in the plane of the spin, whose tension stiffens it."""
+    h = 1 / CELLS
+    K, M = _hermite_matrices(CELLS, h)
+    G, x = np.zeros_like(K), POINTS
+    slopes = np.array([6 * (x * x - x) / h, 1 - 4 * x + 3 * x * x, 6 * (x - x * x) / h,
+                       3 * x * x - 2 * x])
+    for c in range(CELLS):
+        part, tension = slice(2 * c, 2 * c + 4), (1 - ((c + x) * h)**2) / 2
+        G[part, part] += h * (slopes * WEIGHTS * tension) @ slopes.T
+    return float(np.sqrt(eigh((K + eta**2 * (G - M))[2:, 2:], M[2:, 2:], eigvals_only=True)[0]))
+
+
 def divergence(beam: Beam, option_b: bool = False) -> float:
     """Spin at which the lowest motion in the plane diverges, infinite where none does."""
     inertia = -beam.plane_b if option_b else beam.mass - beam.spin

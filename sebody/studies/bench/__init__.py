@@ -28,7 +28,7 @@ def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
         if name not in SCENES + EXTRA:
             raise InputError(f"there is no benchmark of scene {name!r}: use "
                              f"{', '.join(SCENES + EXTRA)}")
-    prepare(case.build().model for name in chosen for case in own.cases(name)[:2])
+    prepare(case.build().model for name in chosen for case in own.cases(name)[:4])
     found = []
     for name in chosen:
         found += [own.measure(case) for case in own.cases(name)]
@@ -57,7 +57,7 @@ def ratios(measurements: list[Measurement]) -> list[str]:
     for m in measurements:
         rivals = [p for p in measurements if p.scene == m.scene and _is_peer(p)
                   and p.h == m.h and (m.scene not in ("chain", "four-bar", "modes")
-                                       or p.variant.endswith(m.variant))]
+                                       or p.variant.endswith(m.variant.removesuffix(own.OPTION_B)))]
         if not _is_peer(m) and rivals:
             best = min(rivals, key=lambda p: p.us_per_step)
             lines.append(f"{m.scene}, {m.variant}: {best.variant} takes "

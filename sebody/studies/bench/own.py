@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 CHAINS = (1, 4, 16, 64, 256, 1024)
 LOOPS = (2, 20)
 MODES = (4, 16, 32, 64)
+OPTION_B = ", inertia b"    # of a variant with the paper's option, beside one with the default
 
 
 class Case(NamedTuple):
@@ -39,22 +40,26 @@ class Case(NamedTuple):
 def cases(scene: str) -> list[Case]:
     """Cases of a scene: chains of several lengths, one of every other scene.
 
-    Of "modes" the hinged beam with several numbers of them. The first two have the kernels of all.
+    Of "modes" the hinged beam with several numbers of them. Flexible bodies have the default
+    inertia, then option B. The first four cases have the kernels of all.
     """
-    if scene == "modes":
-        return [Case(scene, f"12 + {n} coordinates", {"modes": n}, 0.0, "hinged_beam", 5)
-                for n in MODES]
-    if scene == "chain":
-        return [Case(scene, f"{n} links", {"links": n}, 1.0, "", 9 if n < 256 else 3)
-                for n in CHAINS]
+    if scene == "heavy-top":
+        return [Case(scene, "rigid body", {}, 0.0, "", 9)]
     if scene == "four-bar":
         return [Case(scene, f"{n} loops", {"loops": n}, 0.0, "", 3) for n in LOOPS]
-    if scene == "slider-crank":
-        return [Case(scene, "4 superelements", {"bodies": 4, "modes": 0}, 0.0, "", 5)]
-    references = {"hinged-beam": "hinged_beam", "planar-hinged-beam": "hinged_beam",
-                  "spherical-beam": "spherical_beam"}
-    variant = "rigid body" if scene == "heavy-top" else "superelement"
-    return [Case(scene, variant, {}, 0.0, references.get(scene, ""), 9)]
+    if scene == "modes":
+        found = [Case(scene, f"12 + {n} coordinates", {"modes": n}, 0.0, "hinged_beam", 5)
+                 for n in MODES]
+    elif scene == "chain":
+        found = [Case(scene, f"{n} links", {"links": n}, 1.0, "", 9 if n < 256 else 3)
+                 for n in CHAINS]
+    elif scene == "slider-crank":
+        found = [Case(scene, "4 superelements", {"bodies": 4, "modes": 0}, 0.0, "", 5)]
+    else:
+        name = "spherical_beam" if scene == "spherical-beam" else "hinged_beam"
+        found = [Case(scene, "superelement", {}, 0.0, name, 9)]
+    return [one for case in found for one in (case, case._replace(
+        variant=case.variant + OPTION_B, parameters=case.parameters | {"inertia": "b"}))]
 
 
 def measure(case: Case) -> Measurement:

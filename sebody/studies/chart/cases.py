@@ -66,13 +66,15 @@ def _frames(planar: bool) -> list[Variant]:
     frames = ["node", "converged_mean"] + ([] if planar else ["mean", "mean_small"])
     titles = {"node": "frame at a node", "converged_mean": "mean frame", "mean": "mean, one step",
               "mean_small": "mean, small increments (20)"}
-    found = [Variant("frames", f"{titles[f]}, B", {"frame": f}) for f in frames]
-    return [*found, Variant("frames", "mean frame, A", {"inertia": "a"})]
+    found = [(f"{titles[f]}, B", {"frame": f, "inertia": "b"}) for f in frames]
+    found += [("mean frame, A", {"inertia": "a"}), ("frame at a node, C", {"frame": "node"}),
+              ("mean frame, C", {}), ("mean frame, C, no stiffening", {"stiffening": False})]
+    return [Variant("frames and inertia", *one) for one in found]
 
 
 def _divisions() -> list[Variant]:
-    found = [Variant("modes", f"1 body, {m} modes", {"modes": m, "bodies": 1})
-             for m in (0, 1, 2, 4, 8)]
+    found = [Variant("modes" + of, f"1 body, {m} modes{of}", {"modes": m, "bodies": 1} | given)
+             for of, given in (("", {}), (", B", {"inertia": "b"})) for m in (0, 1, 2, 4, 8)]
     found += [Variant("bodies", f"{n} bodies, {m} modes", {"bodies": n, "modes": m,
                                                            "elements": 24})
               for n in (2, 4, 8) for m in (0, 2)]

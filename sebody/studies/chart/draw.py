@@ -7,8 +7,9 @@ import numpy as np
 from sebody.results.plots import write_picture
 from sebody.studies.chart.cases import Point
 
-COLORS = {"frames": "#c8452d", "modes": "#2a7f62", "bodies": "#3c6fb6", "steps": "#b58a1b",
-          "nonlinear beams": "#1f2a44", "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
+COLORS = {"frames and inertia": "#c8452d", "modes": "#2a7f62", "modes, B": "#7fc8a9",
+          "bodies": "#3c6fb6", "steps": "#b58a1b", "nonlinear beams": "#1f2a44",
+          "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
 MOST_NAMES = 7      # of the front that are written beside their points
 EDGE = 6.0          # dots between the axis and a name
 

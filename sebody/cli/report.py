@@ -1,0 +1,31 @@
+"""``sebody report``: a saved result on one page."""
+
+import argparse
+from pathlib import Path
+
+from sebody.cli.inputs import check_distinct
+
+
+def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
+    """The parser of the command."""
+    parser = commands.add_parser(
+        "report", help="put a saved result on one page, with an audit and an animation")
+    parser.add_argument("result", metavar="RESULT.npz",
+                        help="file written by 'sebody run SCENE --output FILE.npz'")
+    parser.add_argument("quantities", nargs="*", metavar="QUANTITY",
+                        help="what is plotted, as for 'sebody plot'")
+    parser.add_argument("--output", type=Path, metavar="FILE.html", required=True,
+                        help="a page that needs nothing else")
+    return parser
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read the result and write the report."""
+    from sebody.results.report import check_report, report
+    from sebody.results.result import Result
+
+    check_report(options.output)
+    check_distinct({"--output": options.output, "RESULT": Path(options.result)})
+    report(Result.load(options.result), options.output, *options.quantities)
+    print(f"report: {options.output}")
+    return 0

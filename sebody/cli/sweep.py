@@ -1,0 +1,161 @@
+"""``sebody sweep``: many runs of a scene over lists and distributions of its parameters."""
+
+import argparse
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sebody.cli import interrupts
+from sebody.cli.inputs import check_picture, given_arguments, source
+from sebody.errors import InputError
+
+if TYPE_CHECKING:
+    from sebody.analysis.ensembles import Output
+    from sebody.studies.sweep import Table
+
+KEEP = re.compile(r"^(\w+)\((norm )?([^,]+)(?:,(.+))?\)$")
+
+
+def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
+    """The parser of the command."""
+    parser = commands.add_parser(
+        "sweep", help="many runs over lists and distributions of parameters")
+    parser.add_argument("scene", metavar="SCENE", help="name of a scene or a file, FILE.py")
+    parser.add_argument("--vary", action="append", default=[], metavar="NAME=VALUES",
+                        help="1,2,5 or 0:8 or 0:1:0.25, ends included; all combinations are run")
+    parser.add_argument("--sample", action="append", default=[], metavar="NAME=DISTRIBUTION",
+                        help="normal(mean,deviation), uniform(low,high), loguniform(low,high), "
+                             "triangular(low,mode,high)")
+    parser.add_argument("--runs", type=int, metavar="N", help="number of sampled sets")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the samples")
+    parser.add_argument("--sampler", choices=("lhs", "sobol", "random"), default="lhs",
+                        help="Latin hypercube (default), Sobol's sequence or independent numbers")
+    parser.add_argument("--sobol", type=int, metavar="N",
+                        help="run the design of Sobol's indices, N (parameters + 2) runs, and "
+                             "report them")
+    parser.add_argument("--keep", action="append", default=[], metavar="KIND(QUANTITY)",
+                        help="maximum(tip.position), minimum, rms, integral, final, "
+                             "at_time(QUANTITY,T); of the length of vectors maximum(norm ...)")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
+                        dest="changes", help="a parameter of the scene that does not vary")
+    parser.add_argument("--output", type=Path, metavar="SWEEP",
+                        help="write SWEEP.npz, with pandas SWEEP.csv or .parquet, with matplotlib "
+                             "SWEEP.png; a sweep that was interrupted goes on from SWEEP.npz")
+    parser.add_argument("--threads", type=int, metavar="N", help="one a processor by default")
+    parser.add_argument("--workers", type=int, metavar="N", help="processes in place of threads")
+    parser.add_argument("--cluster", metavar="ADDRESS", help="workers of a scheduler of Dask")
+    return parser
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the sweep; 1 if all of its runs fail."""
+    from sebody.analysis.progress import Progress
+    from sebody.studies.sweep import sobol, sweep
+    from sebody.studies.sweep.axes import distribution_of, values_of
+
+    build, _, _ = source(options.scene)
+    listed = dict(values_of(text) for text in options.vary)
+    sampled = dict(distribution_of(text) for text in options.sample)
+    stem = options.output and (options.output.with_suffix("") if options.output.suffix == ".npz"
+                               else options.output)
+    if stem:
+        check_picture(_beside(stem, ".png"))
+    bar = Progress()
+
+    def progress(part: float) -> None:
+        bar(part)
+        interrupts.look()
+
+    with interrupts.held():
+        try:
+            table = sweep(build, _outputs(options.keep, build, options), listed, sampled,
+                          options.runs, options.seed, options.sampler, options.sobol,
+                          given_arguments(options.scene, build, options.changes),
+                          stem and _beside(stem, ".npz"), options.threads, options.cluster,
+                          options.workers, progress)
+        except KeyboardInterrupt:
+            if stem:
+                print(f"{_beside(stem, '.npz')} has the runs that are done: the same command goes "
+                      "on", file=sys.stderr)
+            raise
+        finally:
+            bar.close()
+        written = _written(table, stem) if stem else []
+    print(table.summary())
+    if options.sobol:
+        print(sobol.report(sobol.indices(table, sampled, options.sobol), list(sampled)))
+    for line in written:
+        print(line)
+    return int(not table.good.any())
+
+
+def _beside(stem: Path, suffix: str) -> Path:
+    return stem.with_name(stem.name + suffix)
+
+
+def _outputs(texts: Sequence[str], build, options: argparse.Namespace) -> "dict[str, Output]":
+    """Outputs from texts; of none the final position of the scene's tip."""
+    from sebody.analysis import ensembles
+
+    if not texts:
+        scene = build(**given_arguments(options.scene, build, options.changes))
+        quantity = f"{scene.tip}.position"
+        return {f"final({quantity})": ensembles.final(quantity)}
+    makers = {name: getattr(ensembles, name) for name in
+              ("maximum", "minimum", "rms", "integral", "final", "at_time")}
+    found = {}
+    for text in texts:
+        match = KEEP.match(text.strip())
+        if not match or match[1] not in makers:
+            raise InputError(f"cannot read --keep {text}: write KIND(QUANTITY), such as "
+                             f"maximum(tip.position), of the kinds {', '.join(makers)}")
+        kind, norm, quantity, time = match.groups()
+        if (time is None) == (kind == "at_time"):
+            raise InputError(f"--keep {text}: at_time takes a time, such as "
+                             "at_time(tip.position,2.5), and the others take none")
+        arguments = [quantity.strip()] + ([_time(text, time)] if time else [])
+        found[text.strip()] = makers[kind](*arguments, norm=bool(norm))
+    return found
+
+
+def _time(text: str, time: str) -> float:
+    try:
+        return float(time)
+    except ValueError as error:
+        raise InputError(f"--keep {text}: {time.strip()!r} is no time") from error
+
+
+def _written(table: "Table", stem: Path) -> list[str]:
+    """Write what the installed extras can; lines that name the files."""
+    lines = [f"table: {_beside(stem, '.npz')}"]
+    try:
+        frame = table.to_pandas()
+    except InputError:
+        print("no CSV or Parquet table: pip install \"sebody[tables]\"", file=sys.stderr)
+    else:
+        lines.append(f"table: {_frame(frame, stem)}")
+    try:
+        from sebody.studies.sweep.picture import draw
+
+        draw(table, _beside(stem, ".png"))
+        lines.append(f"picture: {_beside(stem, '.png')}")
+    except ImportError:
+        print("no picture: pip install \"sebody[plot]\"", file=sys.stderr)
+    return lines
+
+
+def _frame(frame, stem: Path) -> Path:
+    """A Parquet file where pandas can write one, else CSV."""
+    from sebody.files import replacing
+
+    try:
+        path = _beside(stem, ".parquet")
+        with replacing(path, "table") as file:
+            frame.to_parquet(file)
+    except ImportError:
+        path = _beside(stem, ".csv")
+        with replacing(path, "table") as file:
+            file.write(frame.to_csv(index=False).encode())
+    return path

@@ -1,0 +1,62 @@
+"""Section forces of beam elements, and the stresses they cause in fibres of the sections."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class BeamStress:
+    """Forces on the sections at both ends of beam elements, and stresses there.
+
+    A force and a moment (N, Qy, Qz, Mx, My, Mz) act on the section whose normal is the beam's axis
+    x; tension is positive. They are in balance with the nodal forces: inside an element that bears
+    loads of its own the moment differs by a term of second order in its length.
+
+    Parameters
+    ----------
+    nodes : (n, 2) of int
+        Nodes at the ends of the elements.
+    forces : (n, 2, 6, 2 k)
+        Section forces at the ends of unit displacements of the k DOFs of both nodes.
+    fibres : (n, p, 3, 6)
+        Stresses (xx, xy, zx) in p fibres of each section of unit section forces.
+    offsets : (n, p, 2)
+        Place y, z of the fibres in the section [length].
+    """
+
+    nodes: NDArray
+    forces: NDArray
+    fibres: NDArray
+    offsets: NDArray
+
+    def section_forces(self, moved: NDArray, elements: NDArray | slice = slice(None)) -> NDArray:
+        """Section forces of some elements.
+
+        Parameters
+        ----------
+        moved : (n_nodes, k, s)
+            DOFs of all nodes in s states.
+
+        Returns
+        -------
+        (elements, 2, 6, s)
+        """
+        own = moved[self.nodes[elements]]
+        n, _, _, s = own.shape
+        return self.forces[elements] @ own.reshape(n, 1, -1, s)
+
+    def stress(self, moved: NDArray, elements: NDArray | slice = slice(None)) -> NDArray:
+        """Stresses in the fibres of both ends, in axes of the section, (elements, 2, p, 6, s)."""
+        forces = self.section_forces(moved, elements)
+        found = np.einsum("epcf,eafs->eapcs", self.fibres[elements], forces)
+        whole = np.zeros((*found.shape[:3], 6, found.shape[4]))
+        whole[:, :, :, [0, 5, 4]] = found
+        return whole
+
+    def restricted(self, place: NDArray, coordinates: NDArray) -> "BeamStress":
+        """Of the elements whose nodes are kept: `place` has their new numbers, -1 for others."""
+        kept = np.all(place[self.nodes] >= 0, axis=1)
+        return replace(self, nodes=place[self.nodes[kept]], forces=self.forces[kept],
+                       fibres=self.fibres[kept], offsets=self.offsets[kept])

@@ -1,0 +1,77 @@
+"""Which inertia option a superelement has, and whether it stiffens: chosen here alone."""
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.generated import options
+from sebody.model.frames import FRAMES
+from sebody.reduction import ReducedBody
+
+INERTIAS = tuple(options.INERTIA_OPTIONS)
+
+
+def chosen_inertia(name: str, body: ReducedBody, frame: str, inertia: str | None,
+                   stiffening: bool | None) -> tuple[str, bool]:
+    """The option and the stiffening of a body; what is None follows from what the body knows.
+
+    Raises
+    ------
+    InputError
+        Options that do not exist, or need more than the frame or the body gives; with the remedy.
+    """
+    if stiffening is not None:
+        stiffening = inputs.flag(stiffening, f"superelement {name!r}: stiffening")
+    option = best_inertia(body, frame) if inertia is None else inertia
+    _check_option(option, frame)
+    if stiffening:
+        _check_stiffening(name, body, option, frame)
+    if not options.INERTIA_OPTIONS[option].field:
+        return option, False
+    if body.invariants is None:
+        raise InputError(f"superelement {name!r}: inertia {option!r} needs the mass and modes of "
+                         "the FE model, and the body has reduced matrices alone: reduce it from a "
+                         "model, use inertia='d', or use inertia='b' as the paper does")
+    return option, body.invariants.stiffens if stiffening is None else stiffening
+
+
+def best_inertia(body: ReducedBody, frame: str) -> str:
+    """The most exact option that a body has the constants for, and the frame the rates."""
+    if FRAMES[frame].traits.incremental:    # the paper's own frames, with the paper's option
+        return "b"
+    return "d" if body.invariants is None else "c"
+
+
+def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
+    """Whether the body is damped and the kernels of its option are not for both kinds."""
+    return body.damping is not None and not options.INERTIA_OPTIONS[inertia].rates
+
+
+def _check_option(inertia: str, frame: str) -> None:
+    if not isinstance(inertia, str) or inertia not in INERTIAS:
+        raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
+    if options.INERTIA_OPTIONS[inertia].rates and FRAMES[frame].traits.incremental:
+        raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "
+                         f"the state alone, which {frame!r} does not: use one of "
+                         f"{_exact_frames()}")
+
+
+def _check_stiffening(name: str, body: ReducedBody, inertia: str, frame: str) -> None:
+    """Refuse stiffening of a body without geometric stiffness, or with another inertia."""
+    what = f"superelement {name!r}: stiffening"
+    if FRAMES[frame].traits.incremental:
+        raise InputError(f"{what} needs a frame that depends on the state alone, which {frame!r} "
+                         f"does not: use one of {_exact_frames()}")
+    if body.invariants is None:
+        raise InputError(f"{what} needs the mass, modes and geometric stiffness of the FE model, "
+                         "and the body has reduced matrices alone: reduce it from a model, or "
+                         "divide the body")
+    if not options.INERTIA_OPTIONS[inertia].field:
+        raise InputError(f"{what} is a part of inertia 'c', not of {inertia!r}: leave inertia "
+                         "out, or stiffening")
+    if not body.invariants.stiffens:
+        raise InputError(f"{what} needs a geometric stiffness, and the FE model of the body has "
+                         "none, or none that matters: give it as "
+                         "FEModel(geometric_stiffness=...), or divide the body")
+
+
+def _exact_frames() -> str:
+    return ", ".join(sorted(n for n, f in FRAMES.items() if not f.traits.incremental))

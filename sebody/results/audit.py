@@ -1,0 +1,183 @@
+"""How well a run keeps what mechanics keeps: energy, momenta, constraints, each judged."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.assembly.numbering import rotational
+from sebody.kernels.layout import ENERGIES
+from sebody.model.parts import Element, Node, Superelement
+from sebody.results import force_quantities as forces
+from sebody.results.energy_balance import energy_balance
+from sebody.results.recording import Recording, record_counts
+
+BALANCE = 0.05      # share of the energy exchanged: speeds are off by half of it
+DRIFT = 1e-5        # constraints, of the model's extent or rad: a thousand times a step's tolerance
+GOOD = 0.2          # of a limit, up to which a number is good
+IMPULSE = 0.05      # share of the impulse exchanged, as of energies
+RATES = 1e-3        # rates of constraints, of the largest speed: as errors of a step may be
+SAMPLED = 0.5       # of a difference: sampling that explains so much of it
+VERDICTS = "good", "acceptable", "bad", "not judged"
+
+
+class Finding(NamedTuple):
+    """One thing that was audited."""
+
+    what: str
+    value: str
+    verdict: str        # one of VERDICTS
+    reason: str         # what the value is compared with, and what to do if it is bad
+
+
+def audit(result: Recording) -> list[Finding]:
+    """Completion, energy, momenta and constraints of a run, each with a verdict."""
+    found = [_completion(result), _energy(result)]
+    found += [_momentum(result, name) for name in ("momentum", "angular momentum")]
+    if result.numbering.multipliers:
+        found += _constraints(result)
+    if result.error is not None:
+        found.append(Finding("error in time", f"{result.error:.2g} of the tolerance",
+                             "good" if result.error <= 1 else "bad",
+                             "estimated from the difference of two runs; allowed is 1"))
+    return found
+
+
+def momentum_defect(result: Recording, angular: bool) -> tuple[NDArray, NDArray]:
+    """What the momentum has beyond the impulse of all forces from outside, (n, c), and its doubt.
+
+    The impulse is that of everything that acts on the bodies: what they do to each other adds up
+    to zero. It is integrated over the recorded states by trapezoids; the doubt is the difference
+    to the integral over every other state, three times the error of the finer one where both are
+    fine.
+    """
+    t = result.recorded("t")[:, 0]
+    total, moment = _acting(result)
+    rate = moment if angular else total
+    momentum = _sums(result, "moment" if angular else "momentum")
+    impulse = _integral(t, rate)
+    coarse = np.column_stack([np.interp(t, t[::2], column)
+                              for column in _integral(t[::2], rate[::2]).T])
+    doubt = np.abs(impulse - coarse)[::2].max(axis=0)
+    return momentum - momentum[0] - impulse, doubt
+
+
+def _completion(result: Recording) -> Finding:
+    t = result.recorded("t")[:, 0]
+    if result.failure:
+        return Finding("completion", f"ended at t = {t[-1]:.6g}", "bad", result.failure)
+    return Finding("completion", f"t = {t[-1]:.6g} reached", "good", "the whole time was computed")
+
+
+def _energy(result: Recording) -> Finding:
+    kinetic, strain, potential = (_sums(result, name)[:, 0]
+                                  for name in ("kinetic", "strain", "potential"))
+    balance = energy_balance(kinetic, strain, potential, result.recorded("works").sum(axis=1))
+    return Finding("energy", f"{balance:.2e}", _verdict(balance / BALANCE),
+                   f"largest drift over the energy exchanged; limit {BALANCE:g}. Numerical damping "
+                   "and long steps take energy: a smaller step or a larger rho keeps it")
+
+
+def _momentum(result: Recording, what: str) -> Finding:
+    angular = what != "momentum"
+    defect, doubt = momentum_defect(result, angular)
+    total, moment = _acting(result)
+    t = result.recorded("t")[:, 0]
+    held = np.abs(_sums(result, "moment" if angular else "momentum")).max()
+    exchanged = max(_integral(t, np.abs(moment if angular else total)).max(), held, 1e-300)
+    value = np.abs(defect).max() / exchanged
+    sampled = doubt.max() / exchanged
+    reason = ("change less the impulse of all forces from outside, over the impulse exchanged; "
+              f"limit {IMPULSE:g}")
+    if value > GOOD * IMPULSE and sampled > SAMPLED * value:
+        return Finding(what, f"{value:.2e}", "not judged", f"{reason}. The recorded states are too "
+                       f"far apart to integrate the forces (by {sampled:.1e}): keep more of them")
+    return Finding(what, f"{value:.2e}", _verdict(value / IMPULSE),
+                   f"{reason}. Smaller steps improve it")
+
+
+def _constraints(result: Recording) -> list[Finding]:
+    size = max((np.abs(node.point).max() for node in result.model.nodes.values()),
+               default=0.0) or 1.0
+    residuals = result.constraint_residuals.max(axis=0)
+    off, rate = residuals[0] / size, residuals[1] / max(_fastest(result, size), 1e-300)
+    return [Finding("constraints", f"{off:.1e}", _verdict(off / DRIFT),
+                    f"largest residual over the model's extent; limit {DRIFT:g}. A smaller "
+                    "tolerance of the scheme improves it"),
+            Finding("rates of constraints", f"{rate:.1e}", _verdict(rate / RATES),
+                    f"largest residual over the largest speed; limit {RATES:g}. Index 2 keeps them "
+                    "at rounding")]
+
+
+def _fastest(result: Recording, size: float) -> float:
+    """Largest speed of a coordinate, of rotations at the model's extent."""
+    moving = np.abs(result.recorded("v")).max(axis=0)
+    turning = rotational(result.model, result.numbering)
+    multipliers = [first + k for constraint in result.model.constraints
+                   for first in (result.numbering.multipliers[id(constraint)],)
+                   for k in range(constraint.multipliers)]
+    moving[multipliers] = 0.0
+    return float((np.where(turning, size, 1.0) * moving).max(initial=0.0))
+
+
+def _verdict(share: float) -> str:
+    return "good" if share <= GOOD else "acceptable" if share <= 1.0 else "bad"
+
+
+def _acting(result: Recording) -> tuple[NDArray, NDArray]:
+    """Sum of the forces on all bodies and of their moments about the origin, (n, D) and (n, 3|1).
+    """
+    model, n = result.model, len(result.rows)
+    total = np.zeros((n, model.dimension))
+    moment = np.zeros((n, model.rotation_size))
+    mass, first = 0.0, np.zeros(model.dimension)
+    for body in forces.bodies(result).values():
+        own, arm = _mass(body)
+        mass, first = mass + own, first + arm
+        for place in body.places:
+            values = -result.balance.on(body, *place)
+            if place.kind == "rotation":
+                moment += values
+            else:
+                total += values
+                moment += _cross(result.balance.position(place.node), values)
+    weight = mass * model.gravity_field
+    # the first moment of mass moves on with the momentum
+    moved = first + _integral(result.recorded("t")[:, 0],
+                              _sums(result, "momentum")[:, :model.dimension])
+    moment += _cross(moved, np.broadcast_to(model.gravity_field, moved.shape))
+    if model.planar:
+        total = np.column_stack([total + weight, np.zeros(n)])
+        moment = np.column_stack([np.zeros((n, 2)), moment])
+        return total, moment
+    return total + weight, moment
+
+
+def _mass(body: Superelement | Element) -> tuple[float, NDArray]:
+    """Mass of a body and its first moment about the origin at the start."""
+    if isinstance(body, Superelement):
+        held: list[Node] = [body.nodes[i] for i in body.body.position_nodes]
+        shift = np.mean([node.point for node in held], axis=0) - body.body.coordinates[
+            list(body.body.position_nodes)].mean(axis=0)
+        return body.body.total_mass, body.body.total_mass * (body.body.centre_of_mass + shift)
+    mass, node = body.constants["mass"], body.places[0].node
+    return mass, mass * node.point + np.asarray(body.constants.get("mc", 0.0))
+
+
+def _sums(result: Recording, name: str) -> NDArray:
+    """One of the sums of `layout.ENERGIES`, (n, c)."""
+    return result.energies[:, ENERGIES.slices(record_counts(result.numbering))[name]]
+
+
+def _integral(t: NDArray, rates: NDArray) -> NDArray:
+    """Integral from the first state on by trapezoids, (n, c)."""
+    found = np.zeros_like(rates)
+    np.cumsum(np.diff(t)[:, None] * (rates[1:] + rates[:-1]) / 2, axis=0, out=found[1:])
+    return found
+
+
+def _cross(r: NDArray, force: NDArray) -> NDArray:
+    """``r x f``, (n, 3), in a plane (n, 1)."""
+    if r.shape[-1] == 3:
+        return np.cross(r, force)
+    return (r[:, 0] * force[:, 1] - r[:, 1] * force[:, 0])[:, None]

@@ -1,0 +1,71 @@
+"""Largest values over time at every FE node of a superelement."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.fem.stress import principal, von_mises
+from sebody.results.field_states import FieldStates
+
+AT_ONCE = 64        # states whose displacements are computed together
+
+
+class Envelope(NamedTuple):
+    """Largest values over time, and the largest of all."""
+
+    value: NDArray      # (nodes,)
+    t: NDArray          # (nodes,) when [time]
+    largest: float
+    node: int           # where, its number in the FE model
+    time: float         # and when
+
+
+def envelope(field: FieldStates, quantity: str, static: bool) -> Envelope:
+    """Envelope of one of `ENVELOPES`, computed by blocks of states.
+
+    Raises
+    ------
+    InputError
+        Another quantity, or a body whose FE model has no stress operator.
+    """
+    read = ENVELOPES[inputs.choice(quantity, "quantity of an envelope", ENVELOPES)]
+    value, step = np.full(field.count, -np.inf), np.zeros(field.count, dtype=int)
+    sign = -1.0 if quantity == "smallest_principal" else 1.0
+    at_once = field.stresses(static).states_at_once if read in _OF_STRESS else AT_ONCE
+    for first in range(0, len(field.t), at_once):
+        states = np.arange(first, min(first + at_once, len(field.t)))
+        found = sign * read(field, states, static)
+        best = np.nan_to_num(found, nan=-np.inf).argmax(axis=0)
+        highest = found[best, np.arange(field.count)]
+        larger = highest > value
+        value[larger], step[larger] = highest[larger], states[best[larger]]
+    known = np.isfinite(value)
+    node = int(np.argmax(np.where(known, value, -np.inf)))
+    return Envelope(np.where(known, sign * value, np.nan), field.t[step],
+                    float(sign * value[node]), field.number(node), float(field.t[step[node]]))
+
+
+def _lengths(name: str) -> Callable[[FieldStates, NDArray, bool], NDArray]:
+    return lambda field, states, static: np.linalg.norm(getattr(field, name)(states), axis=2)
+
+
+def _von_mises(field: FieldStates, states: NDArray, static: bool) -> NDArray:
+    return von_mises(field.stresses(static).at_nodes(states))
+
+
+def _largest(field: FieldStates, states: NDArray, static: bool) -> NDArray:
+    return principal(field.stresses(static).at_nodes(states))[..., 2]
+
+
+def _smallest(field: FieldStates, states: NDArray, static: bool) -> NDArray:
+    return principal(field.stresses(static).at_nodes(states))[..., 0]
+
+
+_OF_STRESS = _von_mises, _largest, _smallest
+# quantities that have envelopes: (states, nodes) of a field and states
+ENVELOPES = {"von_mises": _von_mises, "largest_principal": _largest,
+             "smallest_principal": _smallest, "displacement": _lengths("displacements"),
+             "velocity": _lengths("velocities"), "acceleration": _lengths("accelerations")}

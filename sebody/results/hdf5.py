@@ -1,0 +1,111 @@
+"""Results as HDF5 files (extra ``hdf5``): a dataset for each history, with its unit in words.
+
+Arrays are written by blocks of rows, packed. The group ``sebody`` holds what a `Result` needs.
+"""
+
+import os
+import re
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+
+SUFFIX = ".h5"
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+BLOCK = 2**16       # numbers of a block
+SMALL = 100         # numbers of an array that is not packed
+
+
+def check_installed() -> None:
+    """Refuse files that cannot be written or read.
+
+    Raises
+    ------
+    InputError
+        h5py is missing.
+    """
+    if find_spec("h5py") is None:
+        raise InputError('HDF5 files need h5py: pip install "sebody[hdf5]", or take a file .npz')
+
+
+def write(path: str, members: Mapping[str, NDArray], units: Mapping[str, str],
+          attributes: Mapping[str, str]) -> None:
+    """Write arrays and texts by name; of a name with a slash the part before it is a group.
+
+    Parameters
+    ----------
+    units : mapping of str
+        Units in words of some of the arrays.
+    attributes : mapping of str
+        Of the whole file.
+
+    Raises
+    ------
+    OSError
+        Writing fails.
+    """
+    import h5py
+
+    try:
+        with h5py.File(path, "w") as file:
+            file.attrs.update(attributes | {"program": f"sebody {_version()}"})
+            for name, values in members.items():
+                _write(file, name, np.asarray(values), units.get(name))
+    except (OSError, RuntimeError) as error:
+        raise _plain(error) from error
+
+
+def read(path: Path, group: str) -> dict[str, NDArray]:
+    """Arrays and texts of a group by name.
+
+    Raises
+    ------
+    ValueError, KeyError
+        A damaged file, or one without such a group.
+    """
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            return {name: np.array(found[()].decode()) if h5py.check_string_dtype(found.dtype)
+                    else found[()] for name, found in file[group].items()}
+    except (OSError, RuntimeError) as error:
+        raise ValueError(str(error)) from error
+
+
+def _write(file, name: str, values: NDArray, unit: str | None) -> None:
+    """One dataset."""
+    if values.dtype.kind == "U":
+        file[name] = str(values)
+        return
+    packed = {}
+    if values.ndim and values.size > SMALL:
+        rows = max(1, min(len(values), BLOCK // max(values[0].size, 1)))
+        packed = {"chunks": (rows, *values.shape[1:]), "compression": "gzip",
+                  "compression_opts": 1, "shuffle": True}
+    made = file.create_dataset(name, shape=values.shape, dtype=values.dtype, **packed)
+    if not packed:
+        made[...] = values
+    else:
+        for first in range(0, len(values), rows):
+            made[first:first + rows] = values[first:first + rows]
+    if unit is not None:
+        made.attrs["units"] = unit
+
+
+def _plain(error: Exception) -> OSError:
+    """What the system said, without the library's account of its own state."""
+    number = re.search(r"errno = (\d+)", str(error))
+    return OSError(int(number[1]), os.strerror(int(number[1]))) if number else OSError(str(error))
+
+
+def _version() -> str:
+    try:
+        return version("sebody")
+    except PackageNotFoundError:
+        return "of a checkout"

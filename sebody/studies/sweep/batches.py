@@ -1,0 +1,132 @@
+"""A few runs of a sweep at a time, here or on another machine: what is sent, and what comes back.
+
+What a process has built it keeps: batches of one model use one ensemble.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from threading import Lock
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.analysis.ensembles import Ensemble, Output
+from sebody.analysis.schemes import generalized_alpha
+from sebody.errors import SebodyError
+
+KEPT = 32               # ensembles that a process keeps
+OF_RUN = ("step", "t_end", "rho")       # parameters that are of the run, not of the scene
+
+_lock = Lock()
+
+
+class Plan(NamedTuple):
+    """What all runs of a sweep have in common."""
+
+    build: Callable[..., Any]       # returns a Scene
+    fixed: tuple[tuple[str, Any], ...]      # arguments of `build` that do not vary
+    outputs: tuple[tuple[str, Output], ...]
+
+
+class Batch(NamedTuple):
+    """Some runs of one structure."""
+
+    plan: Plan
+    structure: tuple[tuple[str, Any], ...]      # arguments of `build` and of the run that vary
+    parameters: dict[str, NDArray]              # of the ensemble, (runs,)
+    rows: NDArray                               # numbers of the runs in the sweep
+
+
+class Answer(NamedTuple):
+    """What the runs of a batch gave."""
+
+    rows: NDArray
+    values: dict[str, NDArray]
+    reached: NDArray
+    failures: dict[int, str]        # by number of the run in the sweep
+
+
+def run_task(batches: list[Batch]) -> list[Answer]:
+    """Run some batches, one after the other, in one thread."""
+    return [_run(batch) for batch in batches]
+
+
+def _run(batch: Batch) -> Answer:
+    """Run a batch; a model that cannot be built fails all of its runs."""
+    try:
+        ensemble, t_end = _ensemble(batch.plan, batch.structure)
+        outcome = ensemble.run(batch.parameters, t_end, dict(batch.plan.outputs), threads=1)
+    except SebodyError as error:
+        count = len(batch.rows)
+        return Answer(batch.rows, {}, np.full(count, np.nan),
+                      {int(row): str(error) for row in batch.rows})
+    return Answer(batch.rows, outcome.values, outcome.reached,
+                  {int(batch.rows[k]): reason for k, reason in outcome.failures.items()})
+
+
+def _ensemble(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble, float]:
+    with _lock:
+        return _built(plan, structure)
+
+
+@lru_cache(maxsize=KEPT)
+def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble, float]:
+    given = dict(structure)
+    of_run = {name: given.pop(name) for name in OF_RUN if name in given}
+    scene = plan.build(**dict(plan.fixed), **given)
+    scheme = generalized_alpha(of_run["rho"]) if "rho" in of_run else None
+    h, t_end = of_run.get("step", scene.h), of_run.get("t_end", scene.t_end)
+    steps = round(t_end / h)
+    return Ensemble(scene.model, h, scheme), steps * h
+
+
+def tasks_of(plan: Plan, columns: Mapping[str, NDArray], structural: set[str], rows: NDArray,
+             most: int) -> list[list[Batch]]:
+    """Some rows of a design as tasks: batches of one structure each.
+
+    Parameters
+    ----------
+    structural : set of str
+        Parameters with which the model is built anew.
+    rows : (k,)
+        Numbers of the runs.
+    most : int
+        Runs of a task.
+    """
+    groups: dict[tuple, list[int]] = {}
+    for row in rows:
+        key = tuple((name, _plain(columns[name][row])) for name in columns if name in structural)
+        groups.setdefault(key, []).append(int(row))
+    tasks, room = [[]], most
+    for key, members in groups.items():
+        while members:
+            own, members = np.array(members[:room]), members[room:]
+            tasks[-1].append(Batch(plan, key, {
+                name: np.asarray(values[own], dtype=float) for name, values in columns.items()
+                if name not in structural}, own))
+            room -= len(own)
+            if not room:
+                tasks.append([])
+                room = most
+    return [task for task in tasks if task]
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str]) -> None:
+    """Build the first run and check all values, so that nothing wrong is found half-way.
+
+    Raises
+    ------
+    InputError
+        A scene that cannot be built, a quantity or parameter it does not have, a value it cannot
+        have.
+    """
+    of_structure = {n: v for n, v in columns.items() if n in structural}
+    first = tasks_of(plan, of_structure, structural, np.arange(1), 1)[0][0]
+    ensemble, t_end = _ensemble(plan, first.structure)
+    ensemble.check({name: values for name, values in columns.items() if name not in structural},
+                   t_end, dict(plan.outputs))

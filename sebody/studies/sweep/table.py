@@ -1,0 +1,171 @@
+"""The table of a sweep: parameters and outputs of every run, in memory and in files."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+from zipfile import BadZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.files import replacing
+from sebody.studies.sweep.batches import Answer
+
+if TYPE_CHECKING:
+    import pandas
+
+VERSION = 1
+QUANTILES = (0.05, 0.5, 0.95)
+
+
+@dataclass
+class Table:
+    """Runs of a sweep.
+
+    Attributes
+    ----------
+    design : str
+        What was asked for: a sweep goes on from a file with the same text only.
+    parameters : dict
+        Values by name, (runs,).
+    outputs : dict
+        By name, (runs, ...); NaN of runs that are not done or failed.
+    done : (runs,)
+        Whether the run was done, perhaps in vain.
+    failures : (runs,) of str
+        Why a run failed; empty of others.
+    """
+
+    design: str
+    parameters: dict[str, NDArray]
+    outputs: dict[str, NDArray]
+    done: NDArray
+    failures: NDArray = field(default_factory=lambda: np.zeros(0, dtype=object))
+
+    @classmethod
+    def empty(cls, design: str, parameters: dict[str, NDArray], runs: int) -> "Table":
+        """A table of runs that are still to be done."""
+        failures = np.empty(runs, dtype=object)
+        failures[:] = ""
+        return cls(design, parameters, {}, np.zeros(runs, dtype=bool), failures)
+
+    @property
+    def runs(self) -> int:
+        """Number of runs."""
+        return len(self.done)
+
+    @property
+    def good(self) -> NDArray:
+        """Runs that reached the end, (runs,)."""
+        return self.done & (self.failures == "")
+
+    def __getitem__(self, name: str) -> NDArray:
+        """A parameter or output by name.
+
+        Raises
+        ------
+        InputError
+            There is none of this name.
+        """
+        for values in (self.outputs, self.parameters):
+            if name in values:
+                return values[name]
+        raise InputError(f"{name!r} is no column: there are "
+                         f"{', '.join([*self.parameters, *self.outputs])}")
+
+    def take(self, answer: Answer) -> None:
+        """Enter what a batch gave."""
+        for name, values in answer.values.items():
+            if name not in self.outputs:
+                self.outputs[name] = np.full((self.runs, *values.shape[1:]), np.nan)
+            self.outputs[name][answer.rows] = values
+        for row, reason in answer.failures.items():
+            self.failures[row] = reason
+        self.done[answer.rows] = True
+
+    def columns(self) -> dict[str, NDArray]:
+        """Everything by runs, (runs,) each: components of vectors have an index in their name."""
+        found = {"run": np.arange(self.runs), **self.parameters}
+        for name, values in self.outputs.items():
+            flat = values.reshape(self.runs, -1)
+            found |= ({name: flat[:, 0]} if values.ndim == 1 else
+                      {f"{name}[{k}]": flat[:, k] for k in range(flat.shape[1])})
+        return {**found, "done": self.done, "failure": self.failures}
+
+    def quantiles(self) -> dict[str, NDArray]:
+        """5 %, median and 95 % of every column of the outputs, over the good runs."""
+        outputs = [name for name in self.columns() if name.partition("[")[0] in self.outputs]
+        if not self.good.any():
+            return {}
+        return {name: np.nanquantile(self.columns()[name][self.good].astype(float), QUANTILES)
+                for name in outputs}
+
+    def summary(self) -> str:
+        """Numbers of runs, and quantiles of the outputs, as text."""
+        failed = self.done & ~self.good
+        lines = [f"{int(self.done.sum())} of {self.runs} runs done, {int(failed.sum())} failed"]
+        reasons = sorted(set(self.failures[failed]), key=list(self.failures[failed]).count)
+        lines += [f"  {list(self.failures).count(r)} x {r}" for r in reasons[-3:][::-1]]
+        found = self.quantiles()
+        if found:
+            width = max(map(len, found))
+            lines.append(f"{'output':{width}} {'5 %':>12} {'median':>12} {'95 %':>12}")
+            lines += [f"{name:{width}} " + " ".join(f"{q:12.6g}" for q in values)
+                      for name, values in found.items()]
+        return "\n".join(lines)
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """The columns as a data frame.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError as error:
+            raise InputError("tables as data frames need pandas: pip install \"sebody[tables]\""
+                             ) from error
+        return pandas.DataFrame({name: [str(v) for v in values] if values.dtype == object
+                                 and name not in self.parameters else values
+                                 for name, values in self.columns().items()})
+
+    def save(self, path: Path) -> None:
+        """Write an npz file, in the place of an older one at once."""
+        arrays = {f"parameter/{n}": _storable(v) for n, v in self.parameters.items()}
+        arrays |= {f"output/{n}": v for n, v in self.outputs.items()}
+        arrays |= {"design": np.array(self.design), "version": np.array(VERSION),
+                   "done": self.done, "failure": _storable(self.failures)}
+        with replacing(path, "table") as file:
+            np.savez_compressed(file, **arrays)
+
+    @classmethod
+    def load(cls, path: Path) -> "Table":
+        """A table from its npz file.
+
+        Raises
+        ------
+        InputError
+            A file of another kind or version.
+        """
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                if int(file["version"]) != VERSION:
+                    raise InputError(f"table {path} is of version {file['version']}, this program "
+                                     f"reads {VERSION}: give another --output")
+                parts = {kind: {name.partition("/")[2]: file[name] for name in file.files
+                                if name.startswith(kind + "/")} for kind in ("parameter", "output")}
+                return cls(str(file["design"]), parts["parameter"], parts["output"], file["done"],
+                           file["failure"].astype(object))
+        except (KeyError, ValueError, OSError, BadZipFile) as error:
+            raise InputError(f"{path} is no table of a sweep: give another --output") from error
+
+
+def _storable(values: NDArray) -> NDArray:
+    """An array of plain numbers or texts."""
+    if values.dtype != object:
+        return values
+    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for v in values)
+    return values.astype(float) if numbers else np.array([str(v) for v in values])
