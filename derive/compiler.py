@@ -4,11 +4,17 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from sebody.derive.formulas import elements
+from sebody.derive.kernels.body_load import BODY_LOADS, body_load_kernel
 from sebody.derive.kernels.catalogue import ELEMENTS
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.linearize import linearized
-from sebody.derive.kernels.resources import element_resources, resources
+from sebody.derive.kernels.resources import (
+    body_load_resources,
+    element_resources,
+    resources,
+)
 from sebody.derive.kernels.superelement import superelement
+from sebody.derive.printing.body_loads import body_load_text
 from sebody.derive.printing.elements import element_text
 from sebody.derive.printing.superelements import superelement_text
 from sebody.kernels.names import element_name, superelement_name
@@ -33,6 +39,7 @@ class Stages(NamedTuple):
 
 SUPERELEMENT = Stages(lambda v: superelement(Layout.parse(v.layout), v.frame, v.inertia),
                       linearized, resources, superelement_text)
+BODY_LOAD = Stages(body_load_kernel, lambda kernel: kernel, body_load_resources, body_load_text)
 ELEMENT = Stages(lambda name: ELEMENTS[name](), elements.linearized, element_resources,
                  element_text)
 
@@ -50,14 +57,16 @@ def compile_kernel(kernel: Variant | str) -> str:
     Parameters
     ----------
     kernel : Variant or str
-        A superelement, or the name of a joint, rigid body or load.
+        A superelement, or the name of a joint, rigid body or load. The matrix of a load on a body
+        is derived with its force.
 
     Raises
     ------
     LayoutError
         A layout that cannot be read, or that cannot carry the frame.
     """
-    stages = SUPERELEMENT if isinstance(kernel, Variant) else ELEMENT
+    stages = (SUPERELEMENT if isinstance(kernel, Variant) else
+              BODY_LOAD if kernel in BODY_LOADS else ELEMENT)
     derived = stages.derive(kernel)                     # 1
     description = stages.linearize(derived)             # 2
     uses = stages.collect(description)                  # 3

@@ -82,7 +82,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
 )
-ROOM = "50d277afec5b"     # hash of sebody/kernels, which this file was made for
+ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

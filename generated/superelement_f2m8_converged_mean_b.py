@@ -51,7 +51,7 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (300, 136, 249, 3),
               "column": (81, 172, 811, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "50d277afec5b"     # hash of sebody/kernels, which this file was made for
+ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -68,7 +68,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "50d277afec5b"     # hash of sebody/kernels, which this file was made for
+ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -72,3 +72,19 @@ def test_every_package_is_installed():
     found = {".".join([names[path.parts[0]], *path.parts[1:]]) for folder in FOLDERS
              for path in (p.parent.relative_to(ROOT) for p in (ROOT / folder).rglob("__init__.py"))}
     assert sorted(settings["packages"]) == sorted(found)
+
+
+def test_the_wheel_holds_files_that_are_no_modules(tmp_path):
+    """Templates, styles and scripts of pages."""
+    clone = tmp_path / "clone"
+    clone.mkdir()
+    for name in (*FOLDERS, *FILES):
+        (clone / name).symlink_to(ROOT / name)
+    build = ("import sys; sys.path.insert(0, '.build'); import backend; "
+             "print(backend.build_wheel(sys.argv[1]))")
+    done = subprocess.run([sys.executable, "-c", build, str(tmp_path)], cwd=clone, text=True,
+                          capture_output=True, check=True)
+    with zipfile.ZipFile(tmp_path / done.stdout.split()[-1]) as wheel:
+        held = set(wheel.namelist())
+    files = {str(path.relative_to(ROOT)) for path in (ROOT / "sebody/results/page").iterdir()}
+    assert len(files) >= 13 and files <= held

@@ -5,6 +5,7 @@ compiler sees all of its arithmetic. The formulas are derived once for each and 
 sources add, and files multiply no further than this table; any other combination is made on demand.
 """
 
+from sebody.derive.kernels.body_load import BODY_LOADS
 from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
 
 SUPERELEMENTS = (
@@ -41,4 +42,4 @@ SUPERELEMENTS = (
     ("planar-any", "converged_mean", "d"),
     ("planar-any", "positions", "d"),
 )
-ELEMENTS = tuple(CATALOGUE)
+ELEMENTS = (*CATALOGUE, *BODY_LOADS)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from sebody.derive.formulas.elements import Element
+from sebody.derive.kernels.body_load import BodyLoad
 from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.symbolic.steps import Step, Uses, united
 from sebody.kernels.layout import DAMPING_CONSTANTS, MOST_SLAVED, SUPERELEMENT_CONSTANTS
@@ -45,6 +46,16 @@ def resources(kernel: Superelement) -> Resources:
                      tuple(row for row in rows if row in GIVEN),
                      tuple(row for row in scratch if row in TALL),
                      tuple(row for row in scratch if row in SQUARES))
+
+
+def body_load_resources(kernel: BodyLoad) -> Resources:
+    """The same of a load on a body, whose forces know no accelerations."""
+    used = united(step.uses(kernel.space, kernel.names)
+                  for step in (*kernel.residual, *kernel.prepared, *kernel.tangent))
+    provided = GIVEN | {part.name for part in kernel.constants} | {"loads"}
+    rows = dict.fromkeys((*STATE[:2], *used.arrays, DIRECTIONS[0]))
+    return Resources(tuple(row for row in rows if row not in provided), used.calls,
+                     tuple(row for row in rows if row in GIVEN))
 
 
 def element_resources(element: Element) -> Resources:

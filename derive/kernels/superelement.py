@@ -85,7 +85,7 @@ class Superelement(NamedTuple):
     @property
     def names(self) -> Names:
         """Opaque functions and the symbols that hold their values."""
-        return _names(self.formulas.q)
+        return opaque_names(self.formulas.q)
 
     @property
     def declared(self) -> tuple[Part, ...]:
@@ -202,7 +202,8 @@ def _energy(q: Quantities, inertia: Inertia, weight: Gravity) -> tuple[Stage, ..
                   adds=((q.H, conjugate_to(of_rotations, e.symbols)),), continues=True))
 
 
-def _names(q: Quantities) -> dict[sp.Expr, sp.Symbol]:
+def opaque_names(q: Quantities) -> Names:
+    """Functions that SymPy keeps whole, and the symbols that hold their values."""
     names = {}
     for vector, values in ((q.psi, (q.e0, q.e1, q.e2)), (q.beta, (q.b0, q.b1))):
         s = vector.symbols.dot(vector.symbols)

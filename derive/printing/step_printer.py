@@ -14,6 +14,7 @@ from sebody.derive.symbolic.steps import (
     Call,
     Damping,
     Entry,
+    Invert,
     Names,
     Product,
     Repeat,
@@ -48,9 +49,9 @@ class StepPrinter:
     def lines(self, steps: Iterable[Step]) -> list[str]:
         """Text of some steps, one comment line a step."""
         printers = {Stage: self._stage, Product: self._product, Solve: self._solve,
-                    Search: self._search, Values: self._values, Shift: self._shift,
-                    Scaling: self._scaling, Damping: self._damping, Call: self._call,
-                    Repeat: self._repeat}
+                    Invert: self._invert, Search: self._search, Values: self._values,
+                    Shift: self._shift, Scaling: self._scaling, Damping: self._damping,
+                    Call: self._call, Repeat: self._repeat}
         out = []
         for step in steps:
             text = printers[type(step)](step)
@@ -143,6 +144,10 @@ class StepPrinter:
         values = (inverse.T if step.transposed else inverse) * sp.Matrix(total)
         return lines + self._loop("element", [Entry(unknown, s, False, value) for s, value in
                                               zip(unknown.kept, values, strict=True)])
+
+    def _invert(self, step: Invert) -> list[str]:
+        lines, entries = self._matrix(step.equation)
+        return lines + self._loop(step.equation.over, entries) + self._inversion(step.equation)
 
     def _matrix(self, step: Solve) -> tuple[list[str], list[Entry]]:
         """What the nodes add to the matrix, where its sum is not known beforehand."""

@@ -20,7 +20,7 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     layout, planar = kernel.layout, kernel.layout.planar
     printer = StepPrinter(kernel.space, layout, kernel.names)
     residual = printer.lines(kernel.residual)
-    in_residual = _counted(printer)
+    in_residual = counted(printer)
     energy = [*printer.lines(kernel.energy), *templates.ENERGY_OUTPUTS[planar]]
     energy += templates.FRICTION_FIELD * kernel.options[1].traits.rates
     prepared = printer.lines(kernel.prepared)
@@ -32,8 +32,8 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
         width="width" if layout.modes is None else layout.first_mode + layout.modes,
         reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows) + sum(TALL[name] for name in uses.tall),
-        work_squares=len(uses.squares), rows=indented([*_reads(layout), *_rows(uses)], 1),
-        residual_operations=in_residual, column_operations=_counted(printer),
+        work_squares=len(uses.squares), rows=indented([*reads(layout), *scratch_rows(uses)], 1),
+        residual_operations=in_residual, column_operations=counted(printer),
         residual=indented(residual, 2), sums=_sums(kernel), prepared=_prepared(prepared),
         energy=indented(energy, 3), seeds=indented(templates.SEEDS[planar], 4),
         tangent=indented(tangent, 4))
@@ -81,7 +81,7 @@ def _nodes(layout: Layout) -> str:
     return f"{layout.positions} position(s) and {layout.rotations} rotation(s)"
 
 
-def _reads(layout: Layout) -> list[str]:
+def reads(layout: Layout) -> list[str]:
     """Counts that are not known beforehand: those of the first element, as all of a batch have."""
     known = {"N_POSITIONS": layout.positions, "N_ROTATIONS": layout.rotations,
              "ROTATIONS": layout.first_rotation, "MODES": layout.first_mode}
@@ -91,7 +91,7 @@ def _reads(layout: Layout) -> list[str]:
     return [f"{name} = {values[name]}" for name, count in known.items() if count is None]
 
 
-def _counted(printer: StepPrinter) -> str:
+def counted(printer: StepPrinter) -> str:
     """Arithmetic of the element, of each position and rotation, and products, as a tuple."""
     found = [printer.operations[home] for home in ("element", "position", "rotation")]
     return f"({', '.join(map(str, [*found, printer.products]))})"
@@ -109,7 +109,7 @@ def _prepared(lines: list[str]) -> str:
     return indented(lines, 3) + "\n" * bool(lines)
 
 
-def _rows(uses: Resources) -> list[str]:
+def scratch_rows(uses: Resources) -> list[str]:
     """Scratch memory: a row of local coordinates each, or of rotations of the nodes."""
     margin = f" + {MARGIN}" if uses.squares else ""
     lines, first = [f"row = padded(max(n{margin}, 9*N_ROTATIONS))"], 0

@@ -135,6 +135,24 @@ class Solve(NamedTuple):
                     ("inverse_3",) * (inverted and not space.planar))
 
 
+class Invert(NamedTuple):
+    """The inverse of the matrix of an equation, for others that have the same."""
+
+    equation: Solve
+
+    @property
+    def title(self) -> str:
+        """What the matrix belongs to."""
+        return "matrix of: " + self.equation.title
+
+    def uses(self, space: Space, names: Names) -> Uses:
+        """Arrays of the matrix, and the inversion where there is one to be done."""
+        if self.equation.known_matrix(space) is not None:
+            return Uses(())
+        values = [name_functions(sp.sympify(v), names) for v in self.equation.matrix(space)]
+        return Uses(_arrays(space, values), ("inverse_3",) * (not space.planar))
+
+
 class Tail(NamedTuple):
     """An array from a place on, as an argument of a search."""
 
@@ -244,7 +262,8 @@ class Damping(NamedTuple):
         return united(step.uses(space, names) for step in self.steps)
 
 
-Step = Stage | Product | Solve | Search | Call | Repeat | Values | Shift | Scaling | Damping
+Step = (Stage | Product | Solve | Invert | Search | Call | Repeat | Values | Shift | Scaling
+        | Damping)
 
 
 def united(uses: Iterable[Uses]) -> Uses:

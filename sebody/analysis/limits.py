@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.analysis.quality import remarks
-from sebody.analysis.softening import cautious_limit, divergence, reach
-from sebody.analysis.thresholds import FLAT, LINEAR
+from sebody.analysis.softening import cautious_limit, divergence, first_frequency, reach
+from sebody.analysis.thresholds import FAST, FLAT, LINEAR
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
@@ -85,13 +85,18 @@ class Watch:
             self.say(key, message)
 
     def _compare(self, body: Superelement, spin: NDArray, speed: float) -> None:
-        if f"spin {body.name}" in self._said:
+        keys = f"spin {body.name}", f"fast {body.name}"
+        if keys[0] in self._said:
             return
         axis = np.array([0.0, 0.0, 1.0]) if body.body.planar else spin / speed
-        limit = spin_limit(body, spin / speed)
-        if speed * reach(body, axis) > limit:
-            self.say(f"spin {body.name}", f"spin {speed:.3g} rad/s is above the limit {limit:.3g} "
-                     f"of body {body.name!r}, whose stiffness does not grow with it: "
+        felt, limit = speed * reach(body, axis), divergence(body, axis)
+        if felt > limit:
+            self.say(keys[0], f"spin {speed:.3g} rad/s is above the limit {limit:.3g} of body "
+                     f"{body.name!r}, whose stiffness does not grow with it: {_remedy(body)}")
+        elif keys[1] not in self._said and felt > FAST * min(limit, first_frequency(body)):
+            self.say(keys[1], f"body {body.name!r} spins at {speed:.3g} rad/s, more than a quarter "
+                     f"of {_compared(limit, first_frequency(body))}: its stiffness does not grow "
+                     "with the spin, and frequencies are off by a per cent and more; "
                      f"{_remedy(body)}")
 
 
@@ -115,7 +120,7 @@ def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
                  if id(t) in numbering.triplets]
         key = id(body.body), body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in limits:
-            limits[key] = np.inf if body.stiffening else cautious_limit(body)
+            limits[key] = np.inf if body.stiffening else FAST * cautious_limit(body)
         if parts:
             found.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True),
                                                      limits[key]))
@@ -161,6 +166,13 @@ def _remedy(body: Superelement) -> str:
     if body.body.invariants.stiffens:
         return "divide it in two, or let it stiffen with stiffening=True"
     return "divide it in two, or give its FE model a geometric stiffness"
+
+
+def _compared(limit: float, first: float) -> str:
+    """What a fast spin is compared with."""
+    if first < limit:
+        return f"{first:.3g}, the body's first frequency with one node held"
+    return f"{limit:.3g}, where it diverges"
 
 
 def _spread(body: Superelement) -> float:

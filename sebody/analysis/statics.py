@@ -18,6 +18,7 @@ from sebody.results.result import Result
 ITERATIONS = 25
 RESISTED = 100              # where motions are resisted
 LARGEST = 0.5               # correction then, as a share of the extent or in radians
+FAINTEST = 1e-4             # resistance that is left to motions without any stiffness
 SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
 PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 
@@ -123,7 +124,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin, resisted: bool = Fal
         if not np.isfinite(change) or change > 1.0 and not resisted:
             return False
         if resisted:
-            resistance = min(change, 1.0)
+            resistance = max(min(change, 1.0), FAINTEST)
             correction *= min(1.0, LARGEST / max(change, tolerance))
         state.R_old[:], state.dq[:] = state.R, -correction
         state.q[:] -= correction

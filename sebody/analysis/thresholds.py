@@ -5,6 +5,7 @@ balances and constraints, which reports judge by, too, are in `sebody.results.au
 """
 
 LINEAR = 0.3        # rad, local rotation: linear stiffness misses its square, a tenth
+FAST = 0.25         # spin without stiffening, of the first frequency: a per cent of it
 FLAT = 1e-3         # smallest ratio of the spreads of nodes that define a frame
 CUT = 0.3           # share of steps that were cut: most of the time goes into failed ones
 PERIOD = 6.0        # steps a period: periods are off by (2 pi / 6)^2 / 12, a tenth

@@ -1,6 +1,6 @@
 """Bodies and elements in batches that share a kernel: their index rows and constants."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import accumulate
 from types import ModuleType
 from typing import NamedTuple
@@ -74,8 +74,9 @@ def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
     elements = [*model.rigid_bodies.values(), *model.constraints, *model.loads]
     idle = [e for e in elements if not element_kernel(e.kind).POWER]
     working = [e for e in elements if element_kernel(e.kind).POWER]
-    joints = _element_batches(numbering, constants, idle)
-    loads = _element_batches(numbering, constants, working)
+    frames = {id(body): k for k, body in enumerate(model.bodies.values())}
+    joints = _element_batches(numbering, constants, idle, frames)
+    loads = _element_batches(numbering, constants, working, frames)
     return Batches(bodies + joints + loads, len(bodies), len(bodies) + len(joints),
                    np.concatenate(constants.rows))
 
@@ -102,21 +103,38 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
     return list(batches.values())
 
 
-def _element_batches(numbering: Numbering, constants: _Constants,
-                     elements: Iterable[Element]) -> list[Batch]:
+def _element_batches(numbering: Numbering, constants: _Constants, elements: Iterable[Element],
+                     frames: Mapping[int, int]) -> list[Batch]:
+    """Batches of elements; those on bodies know the frame of theirs, by id of the body."""
     batches: dict[tuple, Batch] = {}
     for element in elements:
         kernel, unknowns = element_kernel(element.kind), element_unknowns(numbering, element)
         check_element(element, kernel, len(unknowns), numbering)
-        row = index_row(element.name, kernel, unknowns, frame=0,
-                        constants=constants.add(constants_row(element.name, kernel, {},
-                                                              element.constants)),
+        frame = -1 if element.body is None else frames[id(element.body)]
+        row = index_row(element.name, kernel, unknowns, frame=max(frame, 0),
+                        constants=constants.add(_element_constants(element, kernel)),
                         port=numbering.ports.get(id(element), 0), positions=positions_of(element),
-                        nodes=[numbering.rotations[id(t)] for t in element.triplets
-                               if id(t) in numbering.rotations])
+                        nodes=_matrices(numbering, element))
         function = [] if element.function is None else [element.function.address]
-        _append(batches, kernel, -1, row + function, unknowns, id(element), len(unknowns))
+        modes = 0 if element.body is None else element.body.body.modes
+        _append(batches, kernel, frame, row + function, unknowns, id(element),
+                len(unknowns) - modes)
     return list(batches.values())
+
+
+def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
+    """The row of constants; a load on a body has what places the frame, too."""
+    if element.body is None:
+        return constants_row(element.name, kernel, {}, element.constants)
+    return constants_row(element.name, kernel, counts_of(element.body),
+                         frame_constants(element.body) | dict(element.constants))
+
+
+def _matrices(numbering: Numbering, element: Element) -> list[int]:
+    """Numbers of the rotation matrices; a load on a planar body counts its angles by zeros."""
+    if element.body is not None:
+        return [numbering.rotations.get(id(t), 0) for t in element.body.rotations]
+    return [numbering.rotations[id(t)] for t in element.triplets if id(t) in numbering.rotations]
 
 
 def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: list[int],
@@ -133,6 +151,9 @@ def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: li
 def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     """Coordinates of an element, then its multipliers."""
     unknowns = [c for t in element.triplets for c in coordinates(numbering, t)]
+    if element.body is not None:
+        first = numbering.modes[element.body.name]
+        unknowns += range(first, first + element.body.body.modes)
     if element.mode is not None:
         unknowns.append(numbering.modes[element.mode[0]] + element.mode[1])
     if element.multipliers:
@@ -144,16 +165,15 @@ def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
 def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     """Values of the constants that the kernel of a superelement reads, by name."""
     reduced = body.body
-    points = reduced.coordinates[list(reduced.position_nodes)]
-    origin = body.alpha @ points
+    origin = body.alpha @ reduced.coordinates[list(reduced.position_nodes)]
     of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
     option = INERTIA_OPTIONS[body.inertia]
     damping = {} if option.rates or reduced.damping is None else {"C": reduced.damping}
-    values = {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
-            "alpha_rs": body.alpha_r, "X": points - origin, "S": reduced.stiffness,
-            "M": reduced.mass, "mass_columns": of_translations, "mass_rows": of_translations.T,
-            "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
-            "full": [_filled(body)], "masses": [reduced.total_mass], **damping}
+    values = frame_constants(body) | {
+        "S": reduced.stiffness, "M": reduced.mass, "mass_columns": of_translations,
+        "mass_rows": of_translations.T,
+        "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
+        "full": [_filled(body)], "masses": [reduced.total_mass], **damping}
     if not option.rates:
         return values
     if not option.field:
@@ -161,6 +181,13 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts_of(body), values)
     return values | floating_constants(body.invariants.about(origin), reduced.stiffness,
                                        conditions, reduced.damping)
+
+
+def frame_constants(body: Superelement) -> dict[str, ArrayLike]:
+    """Values of what places the frame of a superelement, by name."""
+    points = body.body.coordinates[list(body.body.position_nodes)]
+    return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
+            "alpha_rs": body.alpha_r, "X": points - body.alpha @ points}
 
 
 def _filled(body: Superelement) -> int:

@@ -12,7 +12,7 @@ from sebody.assembly.ports import port_arrays
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.kernels.layout import LANES, scratch_size
-from sebody.kernels.loader import load
+from sebody.kernels.loader import element_kernel, load
 from sebody.model.mechanism import Mechanism
 
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
@@ -69,6 +69,8 @@ def work_size(model: Mechanism) -> int:
         kernel = load(body.kernel)
         rows.append(scratch_size(kernel.WORK_ROWS, kernel.WORK_SQUARES, len(body.body.stiffness),
                                  len(body.rotations)))
+    rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, len(one.body.body.stiffness),
+                          len(one.body.rotations)) for one in model.loads if one.body is not None]
     elements = max((sum(t.start.size for t in one.triplets) for one in model.loads), default=0)
     return max([*rows, 64, 4 * elements])
 

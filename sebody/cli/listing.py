@@ -9,6 +9,8 @@ from sebody.cli.inputs import described, parameters, source
 from sebody.kernels.names import ELEMENT
 from sebody.studies.catalogue import kernels, scenes
 
+RESULTS = ".npz", ".h5"         # files of results
+
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
@@ -21,7 +23,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Print the lists."""
-    if options.scene and options.scene.endswith(".npz"):
+    if options.scene and options.scene.endswith(RESULTS):
         _list_quantities(options.scene)
     elif options.scene:
         _list_parameters(options.scene)

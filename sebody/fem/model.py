@@ -89,8 +89,12 @@ class FEModel:
                         else f"the {size} rows of dof_map")
                 raise InputError(f"{name} has shape {matrix.shape}; {have} need ({size}, {size})")
             object.__setattr__(self, name, matrix)
+        if self.geometric_stiffness is not None:
+            inputs.function(self.geometric_stiffness, "geometric_stiffness", "give a function of a "
+                            "displacement (n_dofs,), or leave it out")
         if self.mass_field is not None:
-            self.mass_field.check(size, dimension)
+            inputs.instance(self.mass_field, "mass_field", MassField, "give a MassField, or leave "
+                            "it out").check(size, dimension)
         else:
             own = nodal_field(self.mass, self.coordinates, self.rows)
             object.__setattr__(self, "mass_field", own)

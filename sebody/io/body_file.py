@@ -1,8 +1,8 @@
 """Body files: a reduced body in one npz file that any program can read.
 
 Arrays are members by name (``stiffness``, ``mass``, ``coordinates``, ``invariants.J0``,
-``recovery.shapes``, ...); the member ``notes`` is a JSON text with everything else: format and
-version, layout, names of the boundary nodes, units, provenance.
+``recovery.shapes``, ``loads.NAME``, ...); the member ``notes`` is a JSON text with everything else:
+format and version, layout, names of the boundary nodes, units, provenance.
 """
 
 import json
@@ -195,6 +195,8 @@ def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -
             _flatten(inner, f"{prefix}{name}.", arrays, texts)
         elif isinstance(value, np.ndarray):
             arrays[prefix + name] = value
+        elif isinstance(value, Mapping):
+            arrays |= {f"{prefix}{name}.{key}": array for key, array in value.items()}
         elif value is not None:
             texts[prefix + name] = _named(value, prefix + name, arrays)
 
@@ -222,6 +224,8 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
                  if name.startswith(f"{part}.")}
         if found:
             parts[part] = kind(**found)
+    parts["loads"] = {name.removeprefix("loads."): array for name, array in arrays.items()
+                      if name.startswith("loads.")}
     missing = {"stiffness", "mass", "coordinates", "keeps"} - set(parts)
     if missing:
         raise KeyError(missing)

@@ -239,12 +239,16 @@ RECORD_T, RECORD_ITERATIONS, RECORD_WORKS = (
 Q_PART, R_PART, V_PART, A_PART = (
     [part.name for part in RECORD.parts].index(name) for name in ("q", "R", "v", "a"))
 
-# constants of every superelement; a frame or inertia option may declare more
-SUPERELEMENT_CONSTANTS = (
+# what places the frame of a body, and constants of every superelement; a frame or inertia option
+# may declare more
+FRAME_CONSTANTS = (
     Part("alphas", ("N_POSITIONS",), "frame weights of the positions"),
     Part("fits", ("N_POSITIONS",), "weights in the rotation of best fit"),
     Part("alpha_rs", ("N_ROTATIONS",), "frame weights of the rotations"),
     Part("X", ("N_POSITIONS", "D"), "nodes in the undeformed frame [length]"),
+)
+SUPERELEMENT_CONSTANTS = (
+    *FRAME_CONSTANTS,
     Part("S", ("n", "n"), "reduced stiffness", columns=True),
     Part("M", ("n", "n"), "reduced mass", columns=True),
     Part("mass_columns", ("n", "D"), "Mbar r of the rigid translations r", columns=True),

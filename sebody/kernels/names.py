@@ -15,6 +15,11 @@ def element_name(kind: str) -> str:
     return ELEMENT + kind
 
 
+def body_load_kind(frame: str, planar: bool) -> str:
+    """Kind of a load on a body with this frame: the name of its kernel without the prefix."""
+    return "planar_" * planar + f"body_load_{frame}"
+
+
 def general_layout(layout: str) -> str:
     """Layout of the general kernels that serve a layout, too."""
     return PLANAR * layout.startswith(PLANAR) + ANY

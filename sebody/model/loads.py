@@ -1,17 +1,20 @@
 """Loads of a model: forces and torques, each with a name and its work, and gravity."""
 
 from collections.abc import Callable, Iterable
+from difflib import get_close_matches
 
 from numpy.typing import ArrayLike
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.kernels.names import body_load_kind
 from sebody.kernels.user_functions import compile_force
+from sebody.model.frames import FRAMES
 from sebody.model.functions import with_compiled_helpers
 from sebody.model.histories import History, clock, history
 from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Node, positions, rotations
+from sebody.model.parts import Element, Node, Superelement, positions, rotations
 
 
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,
@@ -58,10 +61,7 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
 
     A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
     """
-    if not isinstance(body, str) or body not in model.bodies:
-        raise InputError(f"superelement {body!r} is unknown: the model has "
-                         f"{', '.join(model.bodies) or 'none'}")
-    count = model.bodies[body].body.modes
+    count = _body(model, body).body.modes
     mode = inputs.integer(mode, f"mode of superelement {body!r}")
     if not 0 <= mode < count:
         raise InputError(f"superelement {body!r} has no mode {mode!r}: it has {count}, from 0")
@@ -70,6 +70,40 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
     name = chosen_name(model, name, f"force on mode {mode} of {body}")
     return _add(model, Element(name, "mode_force", (), {"factor": factor}, history=course,
                                mode=(body, mode)))
+
+
+def body_load(model: Mechanism, body: str, load: str,
+              amplitude: ArrayLike | Callable[[float], float] | History | None = None,
+              name: str | None = None) -> Element:
+    """A load that was reduced with a superelement: pressure, traction, a force inside, times a
+    history.
+
+    The load turns with the frame of the body. Its parts act on the boundary nodes where these are,
+    and on the internal modes.
+
+    Parameters
+    ----------
+    body : str
+        Name of a superelement.
+    load : str
+        Name of one of its loads, see `ReducedBody.loads`.
+
+    Raises
+    ------
+    InputError
+        A superelement or load there is not.
+    """
+    placed = _body(model, body)
+    loads = placed.body.loads
+    if not isinstance(load, str) or load not in loads:
+        raise InputError(f"superelement {body!r} has no load {load!r}: "
+                         + _others(str(load), loads, "it has", "it was reduced without loads, give "
+                                   "craig_bampton loads={...}"))
+    kind = body_load_kind(FRAMES[placed.frame].kernel, model.planar)
+    course = history(amplitude)
+    name = chosen_name(model, name, f"{load} on {body}")
+    return _add(model, Element(name, kind, placed.places, {"P": loads[load]}, history=course,
+                               body=placed))
 
 
 def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
@@ -116,6 +150,23 @@ def gravity(model: Mechanism, field: ArrayLike) -> None:
         Another number of values than coordinates, or values that are not finite.
     """
     model.gravity_field = vector(model, field, "gravity")
+
+
+def _body(model: Mechanism, name: str) -> Superelement:
+    """A superelement by its name."""
+    if not isinstance(name, str) or name not in model.bodies:
+        raise InputError(f"superelement {name!r} is unknown: "
+                         + _others(str(name), model.bodies, "the model has", "the model has none"))
+    return model.bodies[name]
+
+
+def _others(name: str, known: Iterable[str], have: str, without: str) -> str:
+    """Names that are near, or all there are."""
+    known = list(known)
+    near = get_close_matches(name, known)
+    if near:
+        return f"did you mean {' or '.join(map(repr, near))}?"
+    return f"{have} {', '.join(known)}" if known else without
 
 
 def _add(model: Mechanism, load: Element) -> Element:

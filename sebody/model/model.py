@@ -58,6 +58,7 @@ class Model(Mechanism):
     force = atomic(loads.force)
     torque = atomic(loads.torque)
     mode_force = atomic(loads.mode_force)
+    body_load = atomic(loads.body_load)
     user_force = atomic(loads.user_force)
     gravity = atomic(loads.gravity)
 

@@ -127,6 +127,7 @@ class Element:
     history: History | None = None
     mode: tuple[str, int] | None = None     # superelement and internal mode of a mode force
     function: object = None                 # compiled function of a user force, kept alive
+    body: Superelement | None = None        # on all whose coordinates a load on a body acts
     triplets: tuple[Triplet, ...] = field(init=False)       # those of the places
 
     def __post_init__(self) -> None:

@@ -1,7 +1,7 @@
 """The superelement in the form the multibody code takes: reduced matrices and their layout."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,7 @@ from sebody.errors import InputError
 from sebody.reduction import checks
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.loads import named_vectors
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.rigid import rigid_motions
 from sebody.reduction.summary import mode_lines, place
@@ -50,6 +51,8 @@ class ReducedBody:
         Shapes of the FE model, for `displacements`.
     notes : tuple of str
         How the body was made, in sentences, for `summary`.
+    loads : mapping of str to (n,), optional
+        Reduced loads by name, ``Phi^T p``; see `Model.body_load`.
 
     Raises
     ------
@@ -67,6 +70,7 @@ class ReducedBody:
     invariants: InertiaInvariants | None = None
     recovery: Recovery | None = None
     notes: tuple[str, ...] = ()
+    loads: Mapping[str, NDArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         coordinates = inputs.reals(self.coordinates, "coordinates",
@@ -95,8 +99,12 @@ class ReducedBody:
             self._store("damping", (damping + damping.T) / 2)
             checks.check_damping(self.damping, rigid, names)
         if self.invariants is not None:
+            inputs.instance(self.invariants, "invariants", InertiaInvariants,
+                            "give InertiaInvariants, as a reduction makes them")
             check_invariants(self.invariants, self.stiffness, self.mass,
                              self.rigid_modes_about(self.invariants.origin), names)
+        loads = named_vectors(self.loads, len(names), "coordinates of the body")
+        object.__setattr__(self, "loads", {n: _read_only(load) for n, load in loads.items()})
 
     def _store(self, name: str, array: NDArray) -> None:
         object.__setattr__(self, name, _read_only(array))
@@ -268,4 +276,5 @@ class ReducedBody:
             coordinates=self.coordinates @ rotation.T,
             invariants=self.invariants and self.invariants.rotated(rotation, by),
             recovery=self.recovery and self.recovery.rotated(rotation, by),
+            loads={name: by @ load for name, load in self.loads.items()},
         )

@@ -8,6 +8,7 @@ from scipy import sparse
 
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
+from sebody.inputs import refusal
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.boundary import Boundary
 from sebody.reduction.clamped import ClampedInterior
@@ -110,11 +111,11 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
     """Load modes and resultants; a prestress is its displacement above the forces on the means."""
     ties, basis, n = boundary.ties, component.basis, boundary.ties.size
     shapes = ties.spread(basis)
+    _check_linear(fe_model, shapes @ np.ones(shapes.shape[1]))
 
     def geometric(prestress: NDArray) -> NDArray:
         displacement = ties.spread(prestress[:n])
         tangent = fe_model.geometric_stiffness(displacement)
-        _check_geometric(tangent, fe_model.stiffness)
         G = shapes.T @ (tangent @ shapes) + boundary.second_order(
             fe_model.stiffness @ displacement, prestress[n:], basis)
         return (G + G.T) / 2
@@ -140,10 +141,25 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
     return replace(found, load_modes=ties.spread(found.load_modes[:n]))
 
 
+def _check_linear(fe_model: FEModel, displacement: NDArray) -> None:
+    """Refuse what is no prestress: it must double with the displacement."""
+    once, twice = (fe_model.geometric_stiffness(k * displacement) for k in (1.0, 2.0))
+    for tangent in (once, twice):
+        _check_geometric(tangent, fe_model.stiffness)
+    if abs(twice - 2.0 * once).max() > _ASYMMETRY * abs(once).max():
+        raise InputError("geometric_stiffness does not double with the displacement; give that of "
+                         "the linear stresses, without the stiffness at rest or terms of second "
+                         "order")
+
+
 def _check_geometric(tangent: sparse.csc_array, stiffness: sparse.csc_array) -> None:
+    if not (sparse.issparse(tangent) or isinstance(tangent, np.ndarray)):
+        raise refusal("the value of geometric_stiffness", tangent, "return a sparse matrix")
     if tangent.shape != stiffness.shape:
         raise InputError(f"geometric_stiffness has shape {tangent.shape}; the model's DOFs need "
                          f"{stiffness.shape}")
+    if not np.isfinite(tangent.data if sparse.issparse(tangent) else tangent).all():
+        raise InputError("geometric_stiffness is not finite; compute it again")
     if abs(tangent - tangent.T).max() > _ASYMMETRY * abs(tangent).max():
         raise InputError("geometric_stiffness is not symmetric; give the second derivative of the "
                          "energy, not a tangent with follower forces")

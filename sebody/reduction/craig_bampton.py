@@ -3,10 +3,10 @@
     FE matrices -> constraint modes (2)-(4) -> fixed-interface modes (5)-(6) -> project (25), (38)
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from sebody import inputs
@@ -26,6 +26,8 @@ def craig_bampton(
     modes: int | Accuracy,
     select: Sequence[int] | None = None,
     recover: Sequence[int] | None = None,
+    loads: Mapping[str, ArrayLike] | None = None,
+    residual_modes: bool = False,
 ) -> ReducedBody:
     """Superelement of an FE model; no modes gives Guyan's reduction.
 
@@ -50,14 +52,19 @@ def craig_bampton(
     recover : sequence of int, optional
         FE nodes whose motion and stress shall be known afterwards, of a large model; all by
         default. Stresses need all nodes of the elements around.
+    loads : mapping of str to (n_dofs,), optional
+        Loads on the FE DOFs by name, see `sebody.fem.loads`; applied with `Model.body_load`.
+    residual_modes : bool
+        Further internal modes that make the static answer to every load exact.
 
     Raises
     ------
     InputError
         Unknown or repeated boundary node, a triplet the nodes do not have, more modes than there
-        are, or boundary nodes that leave a mechanism inside.
+        are, boundary nodes that leave a mechanism inside, or loads of another length.
     """
-    return reduce(fe_model, boundary, modes, "craig-bampton", select, recover)
+    return reduce(fe_model, boundary, modes, "craig-bampton", select, recover, loads,
+                  residual_modes)
 
 
 def component_modes(

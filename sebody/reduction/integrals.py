@@ -27,6 +27,8 @@ class MassIntegrals:
         turn = np.broadcast_to(np.eye(self.angles), (count, self.angles, self.angles))
         still = np.zeros((count, self.angles, self.dimension))
         self._translations = shift, still                       # E_t
+        # (e_k x v)_c = turns[k, c, b] v_b
+        self._turns = _cross(np.eye(self.dimension)[None])[:, 0]
         self._rotations = _cross(arms[:, :, None])[..., 0].transpose(1, 2, 0), turn     # E_r
 
     def shapes(self, basis: NDArray) -> tuple[NDArray, NDArray]:
@@ -69,25 +71,46 @@ class MassIntegrals:
         """All integrals but Mbar's stiffness companions, by the names of `InertiaInvariants`."""
         shapes = self.shapes(basis)
         weighed = self._weighed(shapes)
-        turned = self._turned(shapes)
-        turned_weighed = [self._weighed(one) for one in turned]
         rigid_t, rigid_r = self._translations, self._rotations
-        r = range(self.angles)
-        K = np.array([_dot(turned[k], weighed) for k in r])
-        J2 = np.array([[_dot(turned[k], turned_weighed[m]) for m in r] for k in r])
-        if self._field.inertia is not None and self.angles == 3:
-            K_more, J2_more = self._second_order(shapes[1])
-            K, J2 = K + K_more, J2 + J2_more
-        return {
-            "c0": self._first_moment(), "S1": _dot(rigid_t, weighed),
-            "J0": _dot(rigid_r, self._weighed(rigid_r)), "g": _dot(rigid_r, weighed),
-            "h": np.array([_dot(rigid_r, turned_weighed[m]) for m in r]).transpose(1, 0, 2),
-            "K": K, "J2": (J2 + J2.transpose(1, 0, 2, 3)) / 2, "Mbar": _dot(shapes, weighed),
+        weighed_r = self._weighed(rigid_r)
+        # a product for every pair of components; turning shapes mixes the pairs
+        parts = [np.ascontiguousarray(shapes[0][:, c]) for c in range(self.dimension)]
+        loads = [np.ascontiguousarray(weighed[0][:, c]) for c in range(self.dimension)]
+        S = np.array([[part.T @ load for load in loads] for part in parts])
+        arms = np.array([[weighed_r[0][:, c].T @ part for part in parts]
+                         for c in range(self.dimension)])
+        turns = self._turns
+        found = {
+            "c0": self._first_moment(), "S1": self._dot(rigid_t, weighed),
+            "J0": self._dot(rigid_r, weighed_r), "g": self._dot(rigid_r, weighed),
+            "h": np.einsum("lcb,cbrn->rln", turns, arms),
+            "K": np.einsum("kcb,bcmn->kmn", turns, S),
+            "J2": np.einsum("kcb,lcd,bdmn->klmn", turns, turns, S, optimize=True),
+            "Mbar": np.einsum("ccmn->mn", S),
         }
+        if self._field.inertia is not None:
+            self._add_rotations(found, shapes[1], weighed[1], weighed_r[1])
+        found["J2"] = (found["J2"] + found["J2"].transpose(1, 0, 2, 3)) / 2
+        return found
+
+    def _add_rotations(self, found: dict[str, NDArray], psi: NDArray, moments: NDArray,
+                       rigid_moments: NDArray) -> None:
+        """What the rotary inertia of the points adds; in a plane it does not turn."""
+        found["Mbar"] = found["Mbar"] + _flat(psi).T @ _flat(moments)
+        if self.angles == 1:
+            return
+        turned = _cross(psi)
+        K, J2 = self._second_order(psi)
+        weighed = [self._field.inertia @ one for one in turned]
+        found["K"] = found["K"] + K + [_flat(one).T @ _flat(moments) for one in turned]
+        found["J2"] = found["J2"] + J2 + [[_flat(one).T @ _flat(other) for other in weighed]
+                                          for one in turned]
+        found["h"] = found["h"] + np.array([_flat(rigid_moments).T @ _flat(one)
+                                            for one in turned]).transpose(1, 0, 2)
 
     def _first_moment(self) -> NDArray:
         places = self._arms[:, :, None], np.zeros((len(self._arms), self.angles, 1))
-        return _dot(self._translations, self._weighed(places))[:, 0]
+        return self._dot(self._translations, self._weighed(places))[:, 0]
 
     def _second_order(self, psi: NDArray) -> tuple[NDArray, NDArray]:
         """What the second-order rotation of the points adds to K and J2 (no such term in a plane).
@@ -116,6 +139,12 @@ class MassIntegrals:
             return momentum, np.zeros_like(turned)
         return momentum, self._field.inertia @ turned
 
+    def _dot(self, first: tuple[NDArray, NDArray], second: tuple[NDArray, NDArray]) -> NDArray:
+        """Sum over points of the products of two sets of shapes, (m1, m2)."""
+        found = _flat(first[0]).T @ _flat(second[0])
+        return found if self._field.inertia is None else found + (
+            _flat(first[1]).T @ _flat(second[1]))
+
     def _turned(self, shapes: tuple[NDArray, NDArray]) -> list[tuple[NDArray, NDArray]]:
         """``A_k`` of the shapes, for every k."""
         moved, turned = shapes
@@ -123,10 +152,9 @@ class MassIntegrals:
         return list(zip(_cross(moved), vectors, strict=True))
 
 
-def _dot(first: tuple[NDArray, NDArray], second: tuple[NDArray, NDArray]) -> NDArray:
-    """Sum over points of the products of two sets of shapes, (m1, m2)."""
-    return sum(a.reshape(-1, a.shape[2]).T @ b.reshape(-1, b.shape[2])
-               for a, b in zip(first, second, strict=True))
+def _flat(shapes: NDArray) -> NDArray:
+    """Points and components (p, c, m) as rows, (p c, m)."""
+    return shapes.reshape(-1, shapes.shape[2])
 
 
 def _cross(vectors: NDArray) -> NDArray:

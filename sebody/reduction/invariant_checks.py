@@ -78,6 +78,19 @@ def _check_rigid(invariants: InertiaInvariants, rigid: NDArray, scale: NDArray) 
     for k, row in enumerate(invariants.K):
         expected = np.array([_turned(k, e) @ invariants.S1 for e in np.eye(D)])
         _compare("K", whole[:, :D].T @ row, expected, still, scale, "S1")
+    _check_quadratic(invariants, whole[:, :D], still, scale)
+
+
+def _check_quadratic(invariants: InertiaInvariants, shifts: NDArray, still: NDArray,
+                     scale: NDArray) -> None:
+    """J2 on rigid translations: what two axes make of them, times S1."""
+    D, axes = len(invariants.c0), range(len(invariants.J0))
+    of_shifts = np.array([[_turned(k, one) for one in np.eye(D)] for k in axes])
+    of_rows = np.array([[_turned(k, column) for column in invariants.S1.T] for k in axes])
+    for k in axes:
+        for other in axes:
+            expected = (of_shifts[k] @ of_rows[other].T + of_shifts[other] @ of_rows[k].T) / 2
+            _compare("J2", shifts.T @ invariants.J2[k, other], expected, still, scale, "S1")
 
 
 def _check_resultants(invariants: InertiaInvariants, stiffness: NDArray, scale: NDArray) -> None:

@@ -13,6 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody import inputs
+
 
 @dataclass(frozen=True, eq=False)
 class InertiaInvariants:
@@ -76,7 +78,8 @@ class InertiaInvariants:
         for field in fields(self):
             if field.name == "mass":
                 continue
-            array = np.array(getattr(self, field.name), dtype=float)
+            array = np.array(inputs.reals(getattr(self, field.name), f"invariants.{field.name}",
+                                          "give an array of real numbers"))
             array.flags.writeable = False
             object.__setattr__(self, field.name, array)
 

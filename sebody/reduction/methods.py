@@ -21,11 +21,11 @@ R.J. Guyan, AIAA J. 3, 1965; R.R. Craig and M.C.C. Bampton, AIAA J. 6, 1968; R.H
 Struct. 1, 1971; S. Rubin, AIAA J. 13, 1975.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy import linalg, sparse
 
 from sebody import inputs
@@ -38,6 +38,7 @@ from sebody.reduction.clamped import ClampedInterior, canonical_turn
 from sebody.reduction.component import ComponentModes, check_count, static_modes
 from sebody.reduction.constants import with_constants, with_shapes
 from sebody.reduction.factor import is_strainless
+from sebody.reduction.loads import fe_loads, with_residual_modes
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
 _DEPENDENT = 1e-10  # strain energy of a shape beside those before it, relative to its own
@@ -46,7 +47,8 @@ _MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to
 
 def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
            method: str = "craig-bampton", select: Sequence[int] | None = None,
-           recover: Sequence[int] | None = None) -> ReducedBody:
+           recover: Sequence[int] | None = None, loads: Mapping[str, ArrayLike] | None = None,
+           residual_modes: bool = False) -> ReducedBody:
     """Superelement of an FE model by one of four methods; see `sebody.reduction.methods`.
 
     Parameters
@@ -66,6 +68,11 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     recover : sequence of int, optional
         FE nodes whose motion and stress shall be known afterwards, of a large model; all by
         default. Stresses need all nodes of the elements around.
+    loads : mapping of str to (n_dofs,), optional
+        Loads on the FE DOFs by name, see `sebody.fem.loads`; applied with `Model.body_load`.
+    residual_modes : bool
+        For 'craig-bampton' and 'guyan': further internal modes that make the static answer to every
+        load exact.
 
     Returns
     -------
@@ -78,11 +85,12 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     ------
     InputError
         Unknown or repeated interfaces, triplets that nodes do not have, more modes than there are,
-        or a boundary that leaves a mechanism inside.
+        a boundary that leaves a mechanism inside, or loads of another length.
     """
     inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
     method = inputs.choice(method, "method", METHODS)
-    _check_options(method, modes, select)
+    _check_options(method, modes, select, inputs.flag(residual_modes, "residual_modes"))
+    names, forces = fe_loads(loads, fe_model.stiffness.shape[0])
     edge = boundary_of(fe_model, boundary)
     matrices, interior, static = clamped(fe_model, edge)
     notes = [f"{method} from {matrices[0].shape[0]} DOFs", *edge.notes]
@@ -97,12 +105,16 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     else:
         free = _FreeModes(edge, *matrices, modes)
         component = free.component(static, interior)
+    forces = edge.ties.gather(forces)
+    if residual_modes:
+        component = with_residual_modes(component, interior, matrices[1], forces)
     reduced = component.project(*matrices)
     if method == "macneal":
         component, reduced = _without_residual_mass(component, reduced[0], free, matrices[1])
         notes.append("no exact inertia: residual modes carry no mass")
     body = ReducedBody(*reduced, edge.coordinates, edge.keeps, len(component.omega_squared),
-                       notes=tuple(notes))
+                       notes=tuple(notes),
+                       loads=dict(zip(names, forces.T @ component.basis, strict=True)))
     if method == "macneal":
         body = with_shapes(body, fe_model, edge, component)
     else:
@@ -117,7 +129,7 @@ def clamped(fe_model: FEModel, edge: Boundary
     ties = edge.ties
     stiffness, mass = (ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
     interior = ClampedInterior(stiffness, mass, edge.held, edge.means, ties.rigid, ties.lengths,
-                               ties.name)
+                               ties.name, ties.places)
     static = static_modes(stiffness, interior, *edge.unit_motions())
     rigid = ties.rigid / ties.lengths[:, None]
     if is_strainless(stiffness, rigid):
@@ -125,7 +137,11 @@ def clamped(fe_model: FEModel, edge: Boundary
     return (stiffness, mass), interior, static
 
 
-def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | None) -> None:
+def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | None,
+                   residual_modes: bool) -> None:
+    if residual_modes and method not in ("craig-bampton", "guyan"):
+        raise InputError("residual_modes is for methods 'craig-bampton' and 'guyan', whose modes "
+                         f"are of the clamped body; {method!r} has residual shapes of its own")
     if method == "guyan" and (isinstance(modes, Accuracy) or inputs.integer(modes, "modes") != 0):
         raise InputError(f"modes is {inputs.shown(modes)}, but method 'guyan' has none: leave it "
                          "out, or choose another method")
@@ -151,7 +167,7 @@ class _FreeModes:
         self.rigid = linalg.solve_triangular(factor, rigid.T, trans="T").T
         momenta = sparse.csr_array((mass @ self.rigid).T)
         free = ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
-                               ties.lengths, ties.name)
+                               ties.lengths, ties.name, ties.places)
         self.elastic = free.vibrations(check_count(modes, free, "body has {} elastic modes"))[1]
 
     def component(self, static: ComponentModes, interior: ClampedInterior) -> ComponentModes:

@@ -51,7 +51,11 @@ def save_vtk(recording: Recording, path: str | Path, every: int = 1) -> Path:
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file, so the states of VTK series {path} have no folder: "
                          "give another path")
-    folder.mkdir(exist_ok=True)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise InputError(f"folder {folder} of the VTK series cannot be made ({error.strerror}): "
+                         "give another path") from error
     states = np.arange(0, len(times), every)
     written: list[tuple[float, str]] = []
     for state in states:

@@ -168,3 +168,32 @@ def test_a_free_blade_is_warned_of_while_it_is_straight():
     model.rigid_velocity((0, 0, 0), 1.05 * limit * TURN[:, 2])
     messages = said(lambda: Simulation(model, 1e-3).run_to(1e-2))
     assert len(messages) == 1 and f"is above the limit {limit:.3g} of body 'blade'" in messages[0]
+
+
+@pytest.mark.parametrize("option", [{"inertia": "b"}, {"inertia": "d"},
+                                    {"inertia": "c", "stiffened": False}])
+def test_fast_spins_without_stiffening_are_warned_of(option):
+    """At a quarter of the first frequency flapping is off by a per cent: Southwell's coefficient.
+
+    ``omega^2 = omega_1^2 + 1.19334 W^2`` for small spins of a cantilever.
+    """
+    option = option | {"torsion": 1.0}      # stiff enough that bending comes first
+    first = first_frequency(blade(**option, modes=4).bodies["blade"])
+    assert first == pytest.approx(3.516, rel=1e-3)
+    spin = TURN @ [0.0, 0.0, 0.25 * first]
+    found = modes(equilibrium(blade(**option, modes=4), 2, spin=spin), spin).omega
+    flap = np.sqrt(first**2 + 1.19334 * spin @ spin)
+    assert 3e-3 < 1 - found[np.argmin(np.abs(found - flap))] / flap < 1.5e-2
+    assert turning((0, 0, 1), 0.24 * first, **option) == ([], [])
+    for messages in turning((0, 0, 1), 0.26 * first, **option):
+        assert len(messages) == 1
+        assert "'blade' spins at 0.914 rad/s, more than a quarter of 3.52, the body's first f" in (
+            messages[0])
+        assert "frequencies are off by a per cent and more; divide it in two, or" in messages[0]
+
+
+def test_a_blade_with_soft_torsion_is_warned_of_before_it_diverges():
+    """Growth begins at 0.28, a quarter of which counts."""
+    for messages in turning((0, 0, 1), 0.08, torsion=1e-3):
+        assert len(messages) == 1
+        assert "more than a quarter of 0.283, where it diverges" in messages[0]

@@ -49,6 +49,13 @@ def test_set_ups_are_timed_by_scene(capsys):
     assert len(found) == len(bench.SCENES) and found["planar-hinged-beam"] > 0.0
 
 
+def test_options_are_compared_on_one_body(capsys):
+    imported("bench_one_body").main(["--json"], "stretch")
+    row, = json.loads(capsys.readouterr().out)
+    assert row["C, stiffening"] == pytest.approx(row["exact"], rel=1e-3)
+    assert row["B"] == pytest.approx(0.35, abs=2e-3)
+
+
 def test_variable_steps_are_compared_with_the_best_fixed_step():
     (error, steps, spent, best), = imported("bench_accuracy").compare(
         planar_hinged_beam.build, 0.5, 0.05, 16, (1e-2,), 1)
@@ -74,6 +81,20 @@ def test_everyday_mechanisms_run_in_every_place(monkeypatch, capsys):
     assert all(one["microseconds"] > 0.0 and one["cuts"] == 0 for one in found.values())
 
 
+def test_options_are_compared_with_exact_values(monkeypatch, capsys):
+    bench = imported("bench_stiffening")
+    monkeypatch.setattr(bench, "OPTIONS", {name: bench.OPTIONS[name] for name in (
+        "B", "C + stiffening")})
+    bench.main(["--json", "propeller"])
+    (row, values), = json.loads(capsys.readouterr().out).items()
+    assert row == "propeller moment" and list(values) == ["exact", "B", "C + stiffening"]
+    assert values["C + stiffening"] == pytest.approx(values["exact"], abs=1e-3)
+    bench.main(["Euler, 4"])
+    out = capsys.readouterr().out.splitlines()
+    assert out[0] == "| | exact | B | C + stiffening |"
+    assert out[2].startswith("| Euler, 4 modes: load | 2.4674 | 3.165")
+
+
 def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
     bench = imported("bench_modes")
     monkeypatch.setattr(bench, "MOST", 1)
@@ -83,3 +104,12 @@ def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
     for row in (beam, weak):
         assert row["true"] <= bench.TOLERANCE and row["free"] <= bench.TOLERANCE
         assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
+
+
+def test_recovered_stresses_are_compared_with_full_solutions():
+    bench = imported("bench_recovery")
+    row = bench.errors({"beam": bench.beam}, (2,))["beam"]["2"]
+    assert max(row["static"]) < 1e-4                # at rest Guyan's shapes are exact
+    near, middle = row["moving"]
+    assert near < 0.6 * row["moving, without"][0] and middle < 0.05
+    assert min(bench.seconds(bench.large_field((3, 2, 2), 20, 14)).values()) > 0.0

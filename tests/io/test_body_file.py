@@ -1,7 +1,7 @@
 """Bodies in files: nothing is lost, and nothing else is taken for one."""
 
 import json
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 import pytest
@@ -98,6 +98,16 @@ def test_a_defect_names_the_command_that_says_more(tmp_path):
     with pytest.raises(InputError, match=rf"body file {path}: stiffness resists rigid motion.*"
                                          rf"'sebody inspect {path}' says more"):
         load_body(path)
+
+
+def test_loads_come_back_by_name(tmp_path):
+    """Names may be any text."""
+    body = block()
+    random = np.random.default_rng(1)
+    loads = {name: random.normal(size=len(body.mass)) for name in ("wind", "p.1/a b")}
+    found = load_body(save_body(replace(body, loads=loads), tmp_path / "body.npz")).loads
+    assert list(found) == list(loads)
+    assert all(np.array_equal(found[name], loads[name]) for name in loads)
 
 
 def test_damaged_files_are_refused(tmp_path):

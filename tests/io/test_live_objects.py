@@ -6,6 +6,7 @@ from scipy.linalg import eigh
 
 from sebody import InputError
 from sebody.fem import FEModel
+from sebody.fem.stress import elasticity
 from sebody.io import from_ngsolve, from_skfem
 from sebody.reduction import RigidFace, craig_bampton
 
@@ -160,3 +161,38 @@ def rows_of_the_same_nodes(one: FEModel, other: FEModel):
     order = np.empty(one.stiffness.shape[0], dtype=int)
     order[other.rows.ravel()] = one.rows[nodes].ravel()
     return order
+
+
+GRADIENT = 1e-3 * np.array([[0.3, -0.7, 0.2], [0.5, 0.4, -0.6], [-0.1, 0.8, -0.9]])
+
+
+def test_models_know_their_stresses():
+    """Of an affine displacement they are uniform."""
+    strain = 1e-3 * np.array([0.3, 0.4, -0.9, 0.2, 0.1, -0.2])
+    found = 0
+    for model in kinds():
+        one, = model.stress
+        stress = one.stress((model.coordinates @ GRADIENT.T)[:, :, None])
+        expected = np.broadcast_to(elasticity(E, NU) @ strain, stress.shape[:3])
+        np.testing.assert_allclose(stress[..., 0], expected, rtol=1e-9)
+        found += 1
+    assert found == 4
+    skfem = pytest.importorskip("skfem")
+    assert skfem_model(skfem.MeshHex(), skfem.ElementHex1(), ()).stress == ()
+
+
+def test_two_sources_give_the_same_stresses(two_bodies):
+    """Of unit boundary coordinates, at nodes half way; elements at tied nodes have none."""
+    found = []
+    for body in two_bodies:
+        recovery = body.recovery
+        one, = recovery.stress
+        shapes = recovery.shapes[:, :12].reshape(len(recovery.coordinates), -1, 12)
+        values = one.at_nodes(one.stress(shapes))
+        middle = np.flatnonzero(np.isclose(recovery.coordinates[:, 0], sum(ENDS) / 2))
+        middle = middle[np.lexsort(recovery.coordinates[middle].T.round(6))]
+        found.append(np.array([values[one.nodes == node].mean(axis=0) for node in middle]))
+    mine, theirs = found
+    assert mine.shape == theirs.shape and len(mine) > 5
+    np.testing.assert_allclose(mine, theirs, rtol=0, atol=1e-6 * np.abs(mine).max())
+    assert len(two_bodies[1].recovery.stress[0].nodes) < len(two_bodies[0].recovery.stress[0].nodes)

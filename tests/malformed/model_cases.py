@@ -17,12 +17,13 @@ from malformed.cases import (
 )
 
 from sebody import Model
-from sebody.fem import Section, straight_beam
+from sebody.fem import Section, loads, straight_beam
 from sebody.reduction import craig_bampton
 
 SECTION = Section(1.0, 1e-2, 1e-2, 1e-2, 1e6, 0.3, 1.0)
 POINTS = {"a": (0.0, 0.0, 0.0), "b": (1.0, 0.2, 0.0), "c": (0.0, 0.0, 0.0), "d": (0.0, 2.0, 0.0)}
-BODY = craig_bampton(straight_beam(POINTS["a"], POINTS["b"], SECTION, 2), {0: "full", 2: "full"}, 1)
+FE = straight_beam(POINTS["a"], POINTS["b"], SECTION, 2)
+BODY = craig_bampton(FE, {0: "full", 2: "full"}, 1, loads={"wind": loads.line_load(FE, (0, 0, 1))})
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 TABLE = [(0.0, 0.0), (1.0, 2.0)]
 
@@ -202,6 +203,10 @@ LOADS = {
             "mode": [*are("mode of superelement 'beam'", *NO_COUNT),
                      *have("superelement 'beam' has no mode", 1, -1)],
             "factor": are("force on mode 0 of 'beam'", *NO_NUMBER), "amplitude": histories()[:4]}),
+    "body_load": Right(Model.body_load, {"body": "beam", "load": "wind", "amplitude": TABLE}, {
+        "body": have("superelement", "ball", None, 3, [], BODY),
+        "load": have("superelement 'beam' has no load", "rain", None, 3, []),
+        "amplitude": histories()[:4], "name": names("wind on beam")}),
     "user_force": Right(Model.user_force, {
         "name": "new", "nodes": ["a"], "function": lambda t, x, v, force: None}, {
             "name": are("name of a user force", *NO_NAME),

@@ -28,6 +28,8 @@ def changed(body, **arrays):
         (lambda i: {"c0": i.c0 + 1}, "c0 contradicts the reduced mass"),
         (lambda i: {"mass": 2 * i.mass}, "mass contradicts the reduced mass"),
         (lambda i: {"K": i.K.transpose(0, 2, 1)}, "K contradicts S1"),
+        (lambda i: {"J2": 2 * i.J2}, "J2 contradicts S1: .* with the same modes in the same order"),
+        (lambda i: {"J2": "much"}, "invariants.J2 .*: give an array of real numbers"),
         (lambda i: {"Q": np.triu(i.Q)}, "invariants.Q is not symmetric; use a geometric"),
         (lambda i: {"Ghat": np.triu(i.Ghat)}, "invariants.Ghat is not symmetric"),
         (lambda i: {"lam": 2 * i.lam}, "lam and E make more stiffness than the body has"),
@@ -41,6 +43,23 @@ def test_contradictions_are_named(change, text):
         changed(body, **change(body.invariants))
 
 
+def test_constants_of_other_modes_and_other_bodies_are_named():
+    """As many modes, but others; another material; something else."""
+    def beam(select, section=THICK):
+        model = straight_beam(START, END, section, 6, up=UP)
+        return craig_bampton(model, {0: "full", 6: "full"}, 4, select)
+    body = beam([0, 1])
+    for other, text in (
+            (beam([2, 3]).invariants, "Mbar contradicts the reduced mass: .*; compute both from "
+                                      "one FE model, with the same modes in the same order"),
+            (beam([0, 1, 2]).invariants, "invariants.S1 has shape .*; 14 coordinates and 2 slaved"),
+            (beam([0, 1], replace(THICK, youngs_modulus=3e6)).invariants, "more stiffness than the "
+                                                                          "body has"),
+            (5, "invariants is 5: give InertiaInvariants, as a reduction makes them")):
+        with pytest.raises(InputError, match=text):
+            replace(body, invariants=other)
+
+
 def test_what_an_fe_model_gives_is_checked():
     model = straight_beam(START, END, THICK, 4, up=UP)
     ends = {0: "full", 4: "full"}
@@ -48,7 +67,12 @@ def test_what_an_fe_model_gives_is_checked():
     for fault, text in (
             ({"mass_field": other.mass_field}, "mass_field makes another mass than the FE mass"),
             ({"geometric_stiffness": lambda u: model.stiffness[:6, :6]}, "has shape .6, 6.; the m"),
-            ({"geometric_stiffness": lambda u: model.stiffness * u[:, None]}, "not symmetric; give")
+            ({"geometric_stiffness": lambda u: model.stiffness * u[:, None]}, "not symmetric; gi"),
+            ({"geometric_stiffness": 5}, "geometric_stiffness is 5: give a function of a displace"),
+            ({"geometric_stiffness": lambda u: None}, "value of geometric_stiffness is None: ret"),
+            ({"geometric_stiffness": lambda u: np.nan * model.stiffness}, "is not finite; compute"),
+            ({"geometric_stiffness": lambda u: model.stiffness}, "does not double with the displ"),
+            ({"mass_field": 5}, "mass_field is 5: give a MassField")
     ):
         with pytest.raises(InputError, match=text):
             craig_bampton(replace(model, **fault), ends, 2)

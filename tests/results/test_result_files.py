@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from sebody import InputError, Model, Result, WriteError, simulate
+from sebody.cli.entry import main
 from sebody.fem import hexahedral_block, rectangle
 from sebody.reduction import RigidFace, craig_bampton
 from sebody.scenes import hinged_beam
@@ -72,6 +73,19 @@ def test_a_full_disk_leaves_the_older_file(result, tmp_path, name):
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert path.read_bytes() == older and os.listdir(tmp_path) == [name]
+
+
+def test_the_command_writes_hdf5(tmp_path, capsys):
+    path = tmp_path / "run.h5"
+    assert main(["run", "planar-hinged-beam", "--t-end", "0.1", "--output", str(path)]) == 0
+    assert f"histories            {path}" in capsys.readouterr().out
+    loaded = Result.load(path)
+    assert loaded.field("beam").velocity().shape[1] == 2
+    # motion in a plane, in space
+    points, _, data = read_by_vtk(series(loaded.save_vtk(tmp_path / "run.pvd", every=5))[-1][1])
+    assert np.array_equal(points[:, 2], np.zeros(len(points)))
+    assert_allclose(points[:loaded.field("beam").count, :2], loaded.field("beam").position())
+    assert np.isnan(data["von_mises"]).all()        # of a section without fibres
 
 
 def test_tables(result):

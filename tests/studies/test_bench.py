@@ -108,3 +108,17 @@ def test_operations_are_those_of_all_elements():
     assert min(counts) > 0
     assert own.flops_per_step(result) == pytest.approx(
         result.iterations_per_step * (sum(counts) + 8))
+
+
+def test_many_short_runs_are_measured_by_all_threads_and_alone(monkeypatch):
+    from sebody.studies.bench import ensemble, peer
+
+    monkeypatch.setattr(peer, "available", lambda: False)
+    monkeypatch.setattr(ensemble, "ALONE", 2)
+    together, paper, alone = ensemble.measure(10)
+    assert {m.scene for m in (together, paper, alone)} == {"ensemble"}
+    assert paper.variant == f"{together.variant}, inertia b"
+    assert together.thread_efficiency > 0 and alone.thread_efficiency is None
+    assert "thread_efficiency" in together.as_dict()
+    # runs of 300 steps: the time a step belongs to the time of all runs
+    assert together.wall_seconds == pytest.approx(together.us_per_step * 1e-6 * 300 * 10)

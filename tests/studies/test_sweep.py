@@ -222,3 +222,13 @@ def test_a_killed_worker_loses_nothing(tmp_path):
     here = sweep(build, {"tip": final("tip.position")},
                  {"length": [1.0 + 0.001 * k for k in range(600)], "t_end": [0.5]})
     assert np.array_equal(np.array(tip), here["tip"])
+
+
+def test_workers_with_another_version_are_refused(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    versions = iter(["0.0.9", "0.0.8"])
+    monkeypatch.setattr(places, "_version", lambda: next(versions))
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False,
+                                  dashboard_address=None) as here:
+        with pytest.raises(InputError, match="has sebody 0.0.8, this is 0.0.9: install one"):
+            sweep(build, OUTPUTS, {"length": [1.0]}, cluster=here.scheduler_address)

@@ -41,14 +41,14 @@ def option_a(q: Quantities) -> Inertia:
     check_same("frame term of option A (45)", on_frame_w.subs(meaning),
                -conjugate_to(form, dth0), frames)
     return Inertia(
-        (_relative_rotation(q),
+        (relative_rotation(q),
          Stage("angular velocities in frame axes, (36)", "rotation", sets=((q.w, Q * Om),))),
         (accelerate, Stage("their rates, (46)", "rotation", sets=((q.wd, w_rate),))),
         force, short, on_frame, on_frame_w, conjugate, relative_rotating(Q, dth, dth0), PRODUCTS,
         ("yd", "p"))
 
 
-def _relative_rotation(q: Quantities) -> Stage:
+def relative_rotation(q: Quantities) -> Stage:
     """The rotation of a node in the frame."""
     return Stage("rotation of the node in the frame", "rotation",
                  sets=((q.Q, q.R0.symbols.T * q.R.symbols),), role=Role.BY_RULE)

@@ -50,6 +50,9 @@ class Image:
 
     def __init__(self, template: Simulation, handles: Mapping[str, Handle]):
         self.template, self.handles = template, handles
+        self.lines = None
+        if not handles:         # a single run of the model as it is
+            return
         self.places = Places(template.system, template.state)
         self.floats = np.zeros(self.places.size)
         self.places.packed(template.system, self.floats)
@@ -74,8 +77,6 @@ class Image:
     def _lines(self, handles: Mapping[str, Handle]) -> Lines | None:
         """Slopes of all numbers; None unless they depend linearly on all parameters together."""
         base, slopes, steps = self._numbers(), [], []
-        if not handles:
-            return Lines(np.zeros(0, dtype=int), csr_array((0, 0)))
         for handle in handles.values():
             for k in range(handle.base.size):
                 slopes.append(self._slope(handle, k, base))

@@ -56,8 +56,11 @@ class Work:
 
     def go(self, threads: int, progress: Callable[[float], None] | None) -> None:
         """Do all runs; Ctrl-C ends them, and the outcome says so."""
-        workers = [Thread(target=self._work, daemon=True) for _ in range(threads)]
+        workers = [Thread(target=self._work, daemon=True)
+                   for _ in range(threads if self.outcome.runs > 1 else 0)]
         try:
+            if not workers:
+                self._work()
             for worker in workers:
                 worker.start()
             while any(worker.is_alive() for worker in workers):
@@ -126,9 +129,8 @@ class Work:
 
     def _differences(self) -> NDArray:
         """Values less those of the model as built, (runs, components)."""
-        return np.hstack([np.zeros((self.outcome.runs, 0)), *(
-            (self.values[name] - handle.base).reshape(self.outcome.runs, -1)
-            for name, handle in self.image.handles.items())])
+        return np.hstack([(self.values[name] - handle.base).reshape(self.outcome.runs, -1)
+                          for name, handle in self.image.handles.items()])
 
 
 def processors() -> int:

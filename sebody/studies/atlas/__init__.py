@@ -10,12 +10,13 @@ from collections.abc import Callable, Iterable
 from sebody.analysis.first_run import PARTS, compile_missing
 from sebody.errors import InputError, LimitWarning
 from sebody.kernels.names import element_name, superelement_name
-from sebody.studies.atlas import geometry, inertia, integration, spin
+from sebody.studies.atlas import geometry, inertia, integration, spin, torsion
 from sebody.studies.atlas.draw import draw
 from sebody.studies.atlas.finding import Finding, Row
 
 CASES: dict[str, Callable[[], Finding]] = {
     "divergence": spin.spurious_divergence,
+    "torsion": torsion.soft_torsion,
     "one-body": spin.frequencies,
     "spin-up": spin.spin_up_outcomes,
     "euler": spin.buckling,

@@ -24,7 +24,7 @@ COUNTS = (1, 2, 4, 8)
 MODES = 4               # of one body that stiffens
 T_END = 20.0            # of the spin-up
 DEEPEST = {"kane": -0.53366, "simo": -0.57392}  # 12 quadratic geometrically exact elements
-SPINS = (0.0, 1.5, 3.0, 4.5, 6.0, 7.5, 9.0, 10.5, 12.0)
+SPINS = (0.0, 1.5, 3.0, 4.0, 5.0, 5.5, 6.0, 6.5, 8.0, 10.0, 12.0)
 LAG = {3.0: 3.7435, 6.0: 4.2632, 12.0: 5.4270}  # tables of rotating beams, a power series
 WITHIN = (1e-3, 1e-3, 5e-3)                     # four modes in the plane; eight: 3e-4 at 6
 
@@ -59,11 +59,13 @@ def frequencies() -> Finding:
     finding = Finding(
         "one body that turns",
         "A beam's first frequency in the plane of the spin grows, from 3.516 to 5.427 at 12. One "
-        "body that stiffens follows it; exact inertia without stiffening and option B fall to zero "
-        "before 7.",
+        "body that stiffens follows it; exact inertia without stiffening and option B have none "
+        "from 6 on.",
         "Stiffens by default.", "spin, W sqrt(rho A L^4 / EI)", "frequency / sqrt(EI / rho A L^4)")
     for eta, exact in LAG.items():
         finding.rows.append(Row(f"theory, spin {eta:g}", exact, lag(eta), 1e-4, REFERENCE))
+    line = np.linspace(SPINS[0], SPINS[-1], 25)
+    finding.curves["beam"] = line, [lag(eta) for eta in line]
     kinds = {"one body that stiffens": {"inertia": None},
              "exact inertia alone": {"inertia": None, "stiffening": False},
              "option B": {"inertia": "b"}}
@@ -76,7 +78,6 @@ def frequencies() -> Finding:
                              for (eta, exact), within in zip(LAG.items(), WITHIN, strict=True)]
         else:
             finding.rows.append(Row(f"{name}, spin 12: unstable", 0.0, end[12.0], 0.0))
-    finding.curves["beam"] = SPINS, [lag(eta) for eta in SPINS]
     return finding
 
 
@@ -155,8 +156,8 @@ def buckling() -> Finding:
     _by_bodies(finding, lambda n, frame: euler_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
                    lambda: pressed(arm(n, frame), p, False)), 1.5, 6.0, 19), 2e-3)
-    _of_one_body(finding, np.pi**2 / 4, False, 1e-3)
     finding.curves["beam"] = COUNTS, [np.pi**2 / 4] * len(COUNTS)
+    _of_one_body(finding, np.pi**2 / 4, False, 1e-3)
     return finding
 
 
@@ -172,8 +173,8 @@ def flutter() -> Finding:
     _by_bodies(finding, lambda n, frame: beck_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
                    lambda: pressed(arm(n, frame, 6 // n + 1), p, True)), 15.0, 80.0, 27), 0.01)
-    _of_one_body(finding, 20.0509536, True, 1e-3)
     finding.curves["beam"] = COUNTS, [20.0509536] * len(COUNTS)
+    _of_one_body(finding, 20.0509536, True, 1e-3)
     return finding
 
 
@@ -183,6 +184,7 @@ def _of_one_body(finding: Finding, exact: float, follower: bool, within: float) 
         found = onset(lambda p, own=frame: grows(lambda: pressed(
             arm(1, own, MODES, None), p, follower)), 0.9 * exact, 1.1 * exact, 3)
         finding.rows.append(Row(f"{frame} frame, one body that stiffens", exact, found, within))
+    finding.curves["one body that stiffens"] = (1,), [found]
 
 
 def _by_bodies(finding: Finding, theory: Callable[[int, str], float],

@@ -5,18 +5,19 @@ from collections.abc import Iterable
 
 from sebody.analysis.first_run import prepare
 from sebody.errors import InputError
-from sebody.studies.bench import machine, own, peer
+from sebody.studies.bench import ensemble, machine, own, peer
 from sebody.studies.bench.measurement import Measurement
 
 SCENES = ("hinged-beam", "planar-hinged-beam", "spherical-beam", "chain", "slider-crank",
           "four-bar", "heavy-top")
-EXTRA = ("modes",)      # only by name: the peer takes a minute
+EXTRA = ("modes", ensemble.SCENE)       # only by name: the peer takes a minute
 
 
 def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
     """Measure scenes, all by default, each beside the peer's models in the same run.
 
-    "modes" is the hinged beam by the number of its internal modes.
+    "modes" is the hinged beam by the number of its internal modes, "ensemble" ten thousand short
+    runs of it.
 
     Raises
     ------
@@ -28,9 +29,10 @@ def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
         if name not in SCENES + EXTRA:
             raise InputError(f"there is no benchmark of scene {name!r}: use "
                              f"{', '.join(SCENES + EXTRA)}")
-    prepare(case.build().model for name in chosen for case in own.cases(name)[:4])
-    found = []
-    for name in chosen:
+    others = [name for name in chosen if name != ensemble.SCENE]
+    prepare(case.build().model for name in others for case in own.cases(name)[:4])
+    found = ensemble.measure() if ensemble.SCENE in chosen else []
+    for name in others:
         found += [own.measure(case) for case in own.cases(name)]
         if peer.available():
             found += peer.measure(name)
@@ -47,6 +49,9 @@ def report(measurements: list[Measurement], rate: float) -> str:
             f"{_number(m.iterations_per_step, '5.2f')} {_number(m.tip_error, '9.2e')} "
             f"{1e3 * m.wall_seconds:8.2f} {_number(_kilo(m.flops_per_step), '7.2f')} "
             f"{_number(_fraction(m, rate), '8.0%')}")
+    lines += [f"{m.scene}, {m.variant}: {m.wall_seconds:.2f} s for all runs" + (
+        "" if m.thread_efficiency is None else f", thread efficiency {m.thread_efficiency:.2f}")
+        for m in measurements if m.scene == ensemble.SCENE]
     lines += ["", f"this machine: {rate / 1e9:.2f} Gflop/s on 16 x 16 products, one core"]
     return "\n".join([*lines, *ratios(measurements)])
 

@@ -22,7 +22,9 @@ class Measurement:
     flops_per_step : float or None
         From the operation counts of the kernels.
     wall_seconds : float
-        Median time of a whole run.
+        Median time of a whole run; of an ensemble, of all its runs.
+    thread_efficiency : float or None
+        Of an ensemble, see `sebody.studies.bench.ensemble`.
     """
 
     scene: str
@@ -34,6 +36,7 @@ class Measurement:
     tip_error: float | None
     wall_seconds: float
     flops_per_step: float | None = None
+    thread_efficiency: float | None = None
 
     def as_dict(self) -> dict:
         """For JSON."""

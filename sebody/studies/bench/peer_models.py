@@ -102,12 +102,12 @@ def planar_beams(h: float, elements: int) -> Run:
     return _rotated(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
 
 
-def spatial_beams(h: float, elements: int) -> Run:
+def spatial_beams(h: float, elements: int, t_end: float = T_END) -> Run:
     """The hinged beam as geometrically exact beam elements in space."""
     system, mbs = new_system()
     base, tip = _exact_beams(mbs, np.sqrt(2.0) * 100.0, elements, [1, 1, 1, 1, 1, 0])
     _load(mbs, base, "torque", (0, 0, 1), TORQUE)
-    return _rotated(solve(system, mbs, tip, h, T_END, modified=False), np.pi / 4)
+    return _rotated(solve(system, mbs, tip, h, t_end, modified=False), np.pi / 4)
 
 
 def _exact_beams(mbs, length: float, elements: int, held: list[int]):

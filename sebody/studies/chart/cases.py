@@ -78,7 +78,7 @@ def _divisions() -> list[Variant]:
     found += [Variant("bodies", f"{n} bodies, {m} modes", {"bodies": n, "modes": m,
                                                            "elements": 24})
               for n in (2, 4, 8) for m in (0, 2)]
-    found += [Variant("steps", f"1 body, 2 modes, {STEPS[f]}", {"bodies": 1, "modes": 2}, f)
+    found += [Variant("steps", f"1 body, 4 modes, {STEPS[f]}", {"bodies": 1, "modes": 4}, f)
               for f in STEPS if f != 1.0]
     return found + [Variant("steps", f"2 bodies, 0 modes, {STEPS[f]}",
                             {"bodies": 2, "modes": 0, "elements": 24}, f)

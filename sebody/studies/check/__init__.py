@@ -11,6 +11,7 @@ from sebody.errors import InputError
 from sebody.kernels.loader import load
 from sebody.kernels.names import SUPERELEMENT
 from sebody.studies.catalogue import kernel_files
+from sebody.studies.check.body_loads import check_body_load
 from sebody.studies.check.elements import check_element
 from sebody.studies.check.report import summary, table, verdict
 from sebody.studies.check.states import CheckRow
@@ -34,6 +35,8 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
             raise InputError(f"kernel {name!r} is unknown: there are {', '.join(known)}")
     compile_missing(chosen)
     for name in chosen:
-        check = check_superelement if name.startswith(SUPERELEMENT) else check_element
-        rows += check(name, load(name))
+        module = load(name)
+        check = (check_superelement if name.startswith(SUPERELEMENT) else
+                 check_body_load if hasattr(module, "FRAME") else check_element)
+        rows += check(name, module)
     return rows

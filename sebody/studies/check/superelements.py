@@ -86,10 +86,10 @@ def nodes_of(module: ModuleType) -> tuple[Nodes, ...]:
                  and n.positions >= traits.fewest_positions[module.PLANAR])
 
 
-def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3,
-                      gravity: float = 0.0, damping: float = 0.0,
-                      nodes: Nodes | None = None) -> Case:
-    """A generic state of a superelement kernel, with the first of its `nodes_of` by default."""
+def placed_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3,
+                nodes: Nodes | None = None
+                ) -> tuple[Case, dict[str, NDArray], np.random.Generator]:
+    """A generic state, without constants; those of the frame and two matrices, by name."""
     random = np.random.default_rng(seed)
     npos, nrot, modes = nodes or nodes_of(module)[0]
     planar = module.PLANAR
@@ -109,14 +109,23 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
     about = np.array([0.0, 0.0, beta]) if planar else beta * random.normal(size=3) / 1.8
     frame = (base * Rotation.from_rotvec(about)).as_matrix().ravel()
     v, a = random.normal(size=n), random.normal(size=n)
+    case = Case(module, n, index_row(n, npos, nrot), np.zeros(0), q, R, v, a, frame, frame.copy())
+    return case, {"alphas": alpha, "fits": np.full(npos, 1 / npos), "alpha_rs": alpha_r, "X": X,
+                  "S": S, "M": M}, random
+
+
+def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3,
+                      gravity: float = 0.0, damping: float = 0.0,
+                      nodes: Nodes | None = None) -> Case:
+    """A generic state of a superelement kernel, with the first of its `nodes_of` by default."""
+    case, values, random = placed_case(module, seed, psi, beta, nodes)
+    n, d, M = case.n, case.dimension, values["M"]
     of_translations, moment = random.normal(size=(n, d)), random.normal(size=d)
-    values = {"alphas": alpha, "fits": np.full(npos, 1 / npos), "alpha_rs": alpha_r, "X": X, "S": S,
-              "M": M, "mass_columns": of_translations, "mass_rows": of_translations.T,
-              "mc": moment, "full": [n], "masses": [1.3]}
+    values |= {"mass_columns": of_translations, "mass_rows": of_translations.T, "mc": moment,
+               "full": [n], "masses": [1.3]}
     if module.DAMPED:
         values["C"] = damping * M @ M     # any positive matrix
-    case = Case(module, n, index_row(n, npos, nrot), np.zeros(0), q, R, v, a, frame, frame.copy(),
-                gravity * random.normal(size=3))
+    case = case._replace(field=gravity * random.normal(size=3))
     if is_floating(case):
         slaved, resultants = FOLLOWING[seed % len(FOLLOWING)]
         case = case._replace(slaved=slaved, resultants=resultants, damped=damping > 0)
