@@ -14,12 +14,11 @@ from sebody.kernels.dense import (
     add_block_times,
     add_rows_times,
     block_times,
+    clear,
     columns_times,
-    gather,
     inverse_3,
     rows_times,
     scale,
-    scatter,
 )
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.layout import (
@@ -46,6 +45,14 @@ from sebody.kernels.layout import (
     TANGENT,
     Part,
 )
+from sebody.kernels.packed_products import (
+    add_packed,
+    add_packed_times,
+    from_free,
+    packed_room,
+    packed_times,
+    to_free,
+)
 from sebody.kernels.pipeline import kernel_function
 from sebody.kernels.rotations import inverse_tangent_coefficients, inverse_tangent_second
 
@@ -59,30 +66,33 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 117
+WORK_ROWS = 119
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (508, 168, 750, 18),
-              "column": (75, 228, 2420, 3)}
+OPERATIONS = {"residual": (583, 168, 543, 2),
+              "column": (150, 228, 1751, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
-    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
-    Part("kept", ("free",), "local coordinates that determine the others in the frame"),
+    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
+    Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
+    Part("axes", ("bound_free", "bound"),
+         "boundary coordinates that determine the others", columns=True),
+    Part("axes_back", ("bound", "bound_free"), "its transpose", columns=True),
+    Part("order", ("free",), "where these and the modes are among themselves"),
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
     Part("moment_rows", ("lines", "N"), "their transpose", columns=True),
-    Part("quadratics", ("N", "quadratic"),
-         "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
-    Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
-    Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
-    Part("Cz", ("free", "damped"), "reduced damping", columns=True),
-    Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
+    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
+    Part("of_rate", ("rated", "N", "N"), "K_k^T - K_k, K_k^T", packed=True),
+    Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
+    Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
+    Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
-    Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
+    Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -106,58 +116,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     eta = at(work, 8*row)
     etad = at(work, 9*row)
     gamma = at(work, 10*row)
-    z = at(work, 11*row)
-    zd = at(work, 12*row)
-    zdd = at(work, 13*row)
-    line0 = at(work, 14*row)
-    line1 = at(work, 15*row)
-    line2 = at(work, 16*row)
-    product0 = at(work, 17*row)
-    product1 = at(work, 18*row)
-    product2 = at(work, 19*row)
-    by_moment_columns = at(work, 20*row)
-    by_products = at(work, 21*row)
-    local = at(work, 22*row)
-    along = at(work, 23*row)
-    twice = at(work, 24*row)
-    by_E = at(work, 25*row)
-    by_Gy = at(work, 26*row)
-    s = at(work, 27*row)
-    h = at(work, 28*row)
-    moved = at(work, 29*row)
-    squares = at(work, 30*row)
-    dqe = at(work, 31*row)
-    dve = at(work, 32*row)
-    dae = at(work, 33*row)
-    e2s = at(work, 34*row)
-    by_place = at(work, 35*row)
-    by_rate = at(work, 36*row)
-    ones = at(work, 37*row)
-    by_followers = at(work, 38*row)
-    of_E = at(work, 39*row)
-    of_Gy = at(work, 40*row)
-    dy = at(work, 41*row)
-    dz = at(work, 42*row)
-    dlocal = at(work, 43*row)
-    dyd = at(work, 44*row)
-    dacc = at(work, 45*row)
-    deta = at(work, 46*row)
-    detad = at(work, 47*row)
-    dgamma = at(work, 48*row)
-    dzd = at(work, 49*row)
-    dzdd = at(work, 50*row)
-    ds = at(work, 51*row)
-    dh = at(work, 52*row)
-    dg = at(work, 53*row)
-    Zq = at(work, 54*row)
-    Zd = at(work, 66*row)
-    products = at(work, 78*row)
-    Za = at(work, 93*row)
-    more = at(work, 105*row)
-    Gy = at(work, (117 + 0*(n + 18))*row)
-    Lz = at(work, (117 + 1*(n + 18))*row)
-    Lv = at(work, (117 + 2*(n + 18))*row)
-    La = at(work, (117 + 3*(n + 18))*row)
+    unordered = at(work, 11*row)
+    z = at(work, 12*row)
+    zd = at(work, 13*row)
+    zdd = at(work, 14*row)
+    line0 = at(work, 15*row)
+    line1 = at(work, 16*row)
+    line2 = at(work, 17*row)
+    product0 = at(work, 18*row)
+    product1 = at(work, 19*row)
+    product3 = at(work, 20*row)
+    product2 = at(work, 21*row)
+    by_moment_columns = at(work, 22*row)
+    by_products = at(work, 23*row)
+    local = at(work, 24*row)
+    along = at(work, 25*row)
+    twice = at(work, 26*row)
+    by_E = at(work, 27*row)
+    by_Gy = at(work, 28*row)
+    s = at(work, 29*row)
+    h = at(work, 30*row)
+    moved = at(work, 31*row)
+    squares = at(work, 32*row)
+    dqe = at(work, 33*row)
+    dve = at(work, 34*row)
+    dae = at(work, 35*row)
+    e2s = at(work, 36*row)
+    by_place = at(work, 37*row)
+    by_rate = at(work, 38*row)
+    ones = at(work, 39*row)
+    by_followers = at(work, 40*row)
+    of_E = at(work, 41*row)
+    of_Gy = at(work, 42*row)
+    dy = at(work, 43*row)
+    dz = at(work, 44*row)
+    dlocal = at(work, 45*row)
+    dyd = at(work, 46*row)
+    dacc = at(work, 47*row)
+    deta = at(work, 48*row)
+    detad = at(work, 49*row)
+    dgamma = at(work, 50*row)
+    dzd = at(work, 51*row)
+    dzdd = at(work, 52*row)
+    ds = at(work, 53*row)
+    dh = at(work, 54*row)
+    dg = at(work, 55*row)
+    Zq = at(work, 56*row)
+    Zd = at(work, 68*row)
+    products = at(work, 80*row)
+    Za = at(work, 95*row)
+    more = at(work, 107*row)
+    Gy = at(work, (119 + 0*(n + 18))*row)
+    Lz = at(work, (119 + 1*(n + 18))*row)
+    Lv = at(work, (119 + 2*(n + 18))*row)
+    La = at(work, (119 + 3*(n + 18))*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
@@ -176,23 +188,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         masses = at(full, 1)
         sizes = at(masses, 1)
         slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])
-        free = n - 6
-        N = free + slaved
-        quadratic, slaving = 12*N, slaved*free
+        free, bound, bound_free = n - 6, MODES, MODES - 6
+        N, stretching = free + slaved, resultants + 1
         hn, hN, deep = padded(free), padded(N), padded(N + 6)
-        kept = at(sizes, 3)
-        c0 = at(kept, free)
+        turn = at(sizes, 3)
+        axes = at(turn, 9)
+        axes_back = at(axes, bound*padded(bound_free))
+        order = at(axes_back, bound_free*padded(bound))
+        c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
         moment_rows = at(moment_columns, 12*padded(N))
-        quadratics = at(moment_rows, N*padded(12))
-        Mz = at(quadratics, quadratic*padded(N))
-        Sz = at(Mz, N*padded(N))
-        Cz = at(Sz, free*padded(free))
-        followers = at(Cz, damped*padded(free))
-        lam = at(followers, slaving*padded(free))
+        of_place = at(moment_rows, N*padded(12))
+        of_rate = at(of_place, packed_room(9, N, N))
+        Mz = at(of_rate, packed_room(6, N, N))
+        Cz = at(Mz, packed_room(1, N, N))
+        followers = at(Cz, packed_room(damped, free, free))
+        lam = at(followers, packed_room(slaved, free, free))
         E = at(lam, resultants)
-        Ghat = at(E, resultants*padded(free))
+        stretched = at(E, resultants*padded(free))
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -348,58 +362,89 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
-        # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
-        rhs_x = rhs_y = rhs_z = 0.0
+        # rate: rates of the elastic rotations, the frame held
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            alpha_r = alpha_rs[j]
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t37 = -Om_x*psi_y + Om_y*psi_x
-            t38 = e0*ep_y
-            t39 = Om0_x*psi_z - Om0_z*psi_x
-            t40 = e0*ep_z
-            t41 = Om0_x*ep_z
-            t42 = -Om0_z*ep_x + t41
-            t43 = e0*psi_z
-            t44 = -Om0_x*psi_y + Om0_y*psi_x
-            t45 = Om_x*psi_z - Om_z*psi_x
-            t46 = -Om0_x*ep_y + Om0_y*ep_x
-            t47 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-            t48 = e0*psi_y
-            t49 = A_x*psi_z
-            t50 = Om_x*ep_z
-            t51 = -A_z*psi_x - Om_z*ep_x + t49 + t50
-            t52 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t53 = e1*t52
-            t54 = psi_y*t53
-            t55 = psi_z*t53
-            t56 = e0*ep_x
-            t57 = -Om_y*psi_z + Om_z*psi_y
-            t58 = e0*psi_x
-            t59 = -Om0_y*psi_z + Om0_z*psi_y
-            t60 = -Om0_y*ep_z + Om0_z*ep_y
-            t61 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-            t62 = psi_x*t53
-            rhs_x += (-alpha_r*(-A_x + (0.5)*A_y*psi_z - 0.5*A_z*psi_y + (0.5)*Om0_y*ep_z -
-                0.5*Om0_z*ep_y + (0.5)*Om_y*ep_z - 0.5*Om_z*ep_y + e0*ep_y*t44 + e0*ep_z*t45 +
-                e0*psi_y*t46 + e0*psi_z*t51 + e1*psi_y*t44*t52 + e1*psi_z*t45*t52 - t37*t38 -
-                t37*t54 - t39*t40 - t39*t55 - t42*t43 - t47*t48))
-            rhs_y += (-alpha_r*(-A_y + (0.5)*A_z*psi_x + (0.5)*Om0_z*ep_x + (0.5)*Om_z*ep_x +
-                e0*ep_x*t37 + e0*ep_z*t59 + e0*psi_x*t47 + e0*psi_z*t60 + e1*psi_x*t37*t52 +
-                e1*psi_z*t52*t59 - t40*t57 - 0.5*t41 - t43*t61 - t44*t56 - t44*t62 - t46*t58 -
-                0.5*t49 - 0.5*t50 - t55*t57))
-            rhs_z += (-alpha_r*((0.5)*A_x*psi_y - 0.5*A_y*psi_x - A_z + (0.5)*Om0_x*ep_y -
-                0.5*Om0_y*ep_x + (0.5)*Om_x*ep_y - 0.5*Om_y*ep_x + e0*ep_x*t39 + e0*ep_y*t57 +
-                e0*psi_x*t42 + e0*psi_y*t61 + e1*psi_x*t39*t52 + e1*psi_y*t52*t57 - t38*t59 -
-                t45*t56 - t45*t62 - t48*t60 - t51*t58 - t54*t59))
+            t37 = A_y*psi_z
+            t38 = Om0_y*ep_z
+            t39 = Om_y*ep_z
+            t40 = -Om_x*psi_y + Om_y*psi_x
+            t41 = e0*ep_y
+            t42 = Om0_x*psi_z - Om0_z*psi_x
+            t43 = e0*ep_z
+            t44 = Om0_x*ep_z
+            t45 = Om0_z*ep_x
+            t46 = t44 - t45
+            t47 = e0*psi_z
+            t48 = -Om0_x*psi_y + Om0_y*psi_x
+            t49 = Om_x*psi_z - Om_z*psi_x
+            t50 = Om0_x*ep_y
+            t51 = Om0_y*ep_x - t50
+            t52 = e0*psi_y
+            t53 = A_x*psi_y
+            t54 = Om_x*ep_y
+            t55 = A_y*psi_x + Om_y*ep_x - t53 - t54
+            t56 = A_x*psi_z
+            t57 = Om_x*ep_z
+            t58 = A_z*psi_x
+            t59 = Om_z*ep_x
+            t60 = t56 + t57 - t58 - t59
+            t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t62 = psi_y*t61
+            t63 = psi_z*t61
+            t64 = e0*ep_x
+            t65 = -Om_y*psi_z + Om_z*psi_y
+            t66 = e0*psi_x
+            t67 = -Om0_y*psi_z + Om0_z*psi_y
+            t68 = Om0_z*ep_y - t38
+            t69 = A_z*psi_y + Om_z*ep_y - t37 - t39
+            t70 = psi_x*t61
+            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t37 -
+                0.5*t38 - 0.5*t39 + t40*t41 + t40*t62 - t41*t48 + t42*t43 + t42*t63 - t43*t49 +
+                t46*t47 - t47*t60 - t48*t62 - t49*t63 - t51*t52 + t52*t55)
+            etad[j3 + 1] = (A_y - t40*t64 - t40*t70 + t43*t65 - t43*t67 + (0.5)*t44 - 0.5*t45 -
+                t47*t68 + t47*t69 + t48*t64 + t48*t70 + t51*t66 - t55*t66 + (0.5)*t56 + (0.5)*t57
+                - 0.5*t58 - 0.5*t59 + t63*t65 - t63*t67)
+            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x - t41*t65 +
+                t41*t67 - t42*t64 - t42*t70 - t46*t66 + t49*t64 + t49*t70 - 0.5*t50 + t52*t68 -
+                t52*t69 - 0.5*t53 - 0.5*t54 + t60*t66 - t62*t65 + t62*t67)
+        # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
+        rhs_x = rhs_y = rhs_z = 0.0
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + 3*j
+            alpha_r = alpha_rs[j]
+            epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
+            rhs_x += alpha_r*epd_x
+            rhs_y += alpha_r*epd_y
+            rhs_z += alpha_r*epd_z
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
+        # rate: rates of the elastic rotations
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + 3*j
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
+            e0 = e0s[j]
+            t71 = (0.5)*psi_z
+            t72 = e0*psi_x
+            t73 = psi_y*t72
+            t74 = (0.5)*psi_y
+            t75 = psi_z*t72
+            t76 = e0*psi_y*psi_y
+            t77 = e0*psi_z*psi_z - 1
+            t78 = (0.5)*psi_x
+            t79 = e0*psi_y*psi_z
+            t80 = e0*psi_x*psi_x
+            etad[j3] = Om0d_x*(t76 + t77) + Om0d_y*(-t71 - t73) + Om0d_z*(t74 - t75) + epd_x
+            etad[j3 + 1] = Om0d_x*(t71 - t73) + Om0d_y*(t77 + t80) + Om0d_z*(-t78 - t79) + epd_y
+            etad[j3 + 2] = Om0d_x*(-t74 - t75) + Om0d_y*(t78 - t79) + Om0d_z*(t76 + t80 - 1) + epd_z
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -408,75 +453,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t63 = X_y + u_y
-            t64 = X_z + u_z
-            t65 = X_x + u_x
+            t81 = X_y + u_y
+            t82 = X_z + u_z
+            t83 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t64 + Om0d_z*t63 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t82 + Om0d_z*t81 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t64 - Om0d_z*t65 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t82 - Om0d_z*t83 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t63 + Om0d_y*t65 - a0_z + acc_z)
-        # rate: rates of the elastic rotations
-        for j in range(N_ROTATIONS):
-            j3 = ROTATIONS + 3*j
-            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-            Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-            ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-            A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
-            e0 = e0s[j]
-            e1 = e1s[j]
-            t66 = A_y*psi_z
-            t67 = Om0_y*ep_z
-            t68 = Om0d_y*psi_z
-            t69 = Om_y*ep_z
-            t70 = -Om_x*psi_y + Om_y*psi_x
-            t71 = e0*ep_y
-            t72 = Om0_x*psi_z - Om0_z*psi_x
-            t73 = e0*ep_z
-            t74 = -Om0_x*psi_y + Om0_y*psi_x
-            t75 = Om_x*psi_z - Om_z*psi_x
-            t76 = A_x*psi_y
-            t77 = Om_x*ep_y
-            t78 = A_y*psi_x + Om_y*ep_x - t76 - t77
-            t79 = e0*psi_y
-            t80 = Om0_x*ep_z
-            t81 = Om0d_x*psi_z
-            t82 = Om0_z*ep_x
-            t83 = Om0d_z*psi_x
-            t84 = t80 + t81 - t82 - t83
-            t85 = e0*psi_z
-            t86 = Om0_x*ep_y
-            t87 = Om0d_x*psi_y
-            t88 = Om0_y*ep_x + Om0d_y*psi_x - t86 - t87
-            t89 = A_x*psi_z
-            t90 = Om_x*ep_z
-            t91 = A_z*psi_x
-            t92 = Om_z*ep_x
-            t93 = t89 + t90 - t91 - t92
-            t94 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t95 = e1*t94
-            t96 = psi_y*t95
-            t97 = psi_z*t95
-            t98 = e0*ep_x
-            t99 = -Om_y*psi_z + Om_z*psi_y
-            t100 = -Om0_y*psi_z + Om0_z*psi_y
-            t101 = e0*psi_x
-            t102 = A_z*psi_y + Om_z*ep_y - t66 - t69
-            t103 = Om0_z*ep_y + Om0d_z*psi_y - t67 - t68
-            t104 = psi_x*t95
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t66 - 0.5*t67 - 0.5*t68 - 0.5*t69 + t70*t71 + t70*t96 -
-                t71*t74 + t72*t73 + t72*t97 - t73*t75 - t74*t96 - t75*t97 + t78*t79 - t79*t88 +
-                t84*t85 - t85*t93)
-            etad[j3 + 1] = (A_y - Om0d_y - t100*t73 - t100*t97 - t101*t78 + t101*t88 + t102*t85 -
-                t103*t85 - t104*t70 + t104*t74 - t70*t98 + t73*t99 + t74*t98 + (0.5)*t80 +
-                (0.5)*t81 - 0.5*t82 - 0.5*t83 + (0.5)*t89 + (0.5)*t90 - 0.5*t91 - 0.5*t92 +
-                t97*t99)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t75 + e0*ep_y*t100 + e0*psi_x*t93 + e0*psi_y*t103 +
-                e1*psi_x*t75*t94 + e1*psi_y*t100*t94 - t101*t84 - t102*t79 - t104*t72 - t71*t99 -
-                t72*t98 - 0.5*t76 - 0.5*t77 - 0.5*t86 - 0.5*t87 - t96*t99)
+                Om0_y*vs_x - Om0d_x*t81 + Om0d_y*t83 - a0_z + acc_z)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -487,15 +472,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
         gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
         # coordinates that determine the others, of y
-        gather(y, kept, z, free, hN)
+        to_free(y, axes, order, unordered, z, bound, bound_free, free, hN)
         # coordinates that determine the others, of eta
-        gather(eta, kept, zd, free, hN)
+        to_free(eta, axes, order, unordered, zd, bound, bound_free, free, hN)
         # coordinates that determine the others, of etad
-        gather(etad, kept, zdd, free, hN)
+        to_free(etad, axes, order, unordered, zdd, bound, bound_free, free, hN)
         # Q_b z, all b
-        block_times(followers, z, Zq, slaved*hn, free, slaved*hn)
+        packed_times(followers, z, Zq, slaved*hn)
         # Q_b zd, all b
-        block_times(followers, zd, Zd, slaved*hn, free, slaved*hn)
+        packed_times(followers, zd, Zd, slaved*hn)
         # eta_b = y . Q_b y / 2
         rows_times(Zq, z, at(z, free), free, slaved, hn)
         # half of it
@@ -513,13 +498,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # first moments and couplings of zdd
         columns_times(moment_rows, zdd, line2, 12, N)
         # J2_kl z and K_k^T z
-        block_times(quadratics, z, products, 9*hN, N, 12*hN)
-        # K_k^T zdot and (K_k^T - K_k) zdot
-        block_times(at(quadratics, 6*hN), zd, at(products, 9*hN), 6*hN, N, 12*hN)
+        packed_times(of_place, z, products, 9*hN)
+        # (K_k^T - K_k) zdot and K_k^T zdot
+        packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 6, hN)
         # quadratic parts, by zd
-        rows_times(products, zd, product1, N, 12, hN)
+        rows_times(products, zd, product1, N, 9, hN)
+        # quadratic parts, by zd
+        rows_times(at(products, 12*hN), zd, product3, N, 3, hN)
         # quadratic parts, by zdd
         rows_times(at(products, 6*hN), zdd, product2, N, 3, hN)
         # integrals over the body
@@ -539,7 +526,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         jzd_xx, jzd_yy, jzd_zz, jzd_xy, jzd_xz, jzd_yz = (product1[0], product1[1], product1[2],
             product1[3], product1[4], product1[5])
         uzd_x, uzd_y, uzd_z = product1[6], product1[7], product1[8]
-        vzd_x, vzd_y, vzd_z = product1[9], product1[10], product1[11]
+        vzd_x, vzd_y, vzd_z = product3[0], product3[1], product3[2]
         uzdd_x, uzdd_y, uzdd_z = product2[0], product2[1], product2[2]
         sum_c_x = S1z0_x + c0_x
         sum_c_y = S1z0_y + c0_y
@@ -571,64 +558,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         sum_coupled_x = vzd_x
         sum_coupled_y = vzd_y
         sum_coupled_z = vzd_z
-        # motion of the frame as a factor of local tangents
+        # motion of the frame in axes of the body, a factor of local tangents
+        turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+            turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        zdd[N] = a0_x - gamma_x
-        zdd[N + 1] = a0_y - gamma_y
-        zdd[N + 2] = a0_z - gamma_z
-        zdd[N + 3] = Om0d_x
-        zdd[N + 4] = Om0d_y
-        zdd[N + 5] = Om0d_z
-        zd[N] = Om0_x
-        zd[N + 1] = Om0_y
-        zd[N + 2] = Om0_z
+        t84 = a0_x - gamma_x
+        t85 = a0_y - gamma_y
+        t86 = a0_z - gamma_z
+        zdd[N] = t84*turn_xx + t85*turn_yx + t86*turn_zx
+        zdd[N + 1] = t84*turn_xy + t85*turn_yy + t86*turn_zy
+        zdd[N + 2] = t84*turn_xz + t85*turn_yz + t86*turn_zz
+        zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
+        zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
+        zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
+        zd[N] = Om0_x*turn_xx + Om0_y*turn_yx + Om0_z*turn_zx
+        zd[N + 1] = Om0_x*turn_xy + Om0_y*turn_yy + Om0_z*turn_zy
+        zd[N + 2] = Om0_x*turn_xz + Om0_y*turn_yz + Om0_z*turn_zz
         # factors of the force on a coordinate
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
-        t105 = Om0_x*Om0_x
-        t106 = Om0_y*Om0_y
-        t107 = Om0_z*Om0_z
-        t108 = Om0_x*Om0_y
-        t109 = Om0_x*Om0_z
-        t110 = Om0_y*Om0_z
+        turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+        spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
+        t87 = spin_x*spin_x
+        t88 = spin_y*spin_y
+        t89 = spin_z*spin_z
+        t90 = spin_x*spin_y
+        t91 = spin_x*spin_z
+        t92 = spin_y*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
-        by_moment_columns[3] = Om0d_x
-        by_moment_columns[4] = Om0d_y
-        by_moment_columns[5] = Om0d_z
-        by_moment_columns[6] = -0.5*t105
-        by_moment_columns[7] = -0.5*t106
-        by_moment_columns[8] = -0.5*t107
-        by_moment_columns[9] = -t108
-        by_moment_columns[10] = -t109
-        by_moment_columns[11] = -t110
-        by_products[0] = -t105
-        by_products[1] = -t106
-        by_products[2] = -t107
-        by_products[3] = -2*t108
-        by_products[4] = -2*t109
-        by_products[5] = -2*t110
-        by_products[6] = Om0d_x
-        by_products[7] = Om0d_y
-        by_products[8] = Om0d_z
-        by_products[9] = 0
-        by_products[10] = 0
-        by_products[11] = 0
-        by_products[12] = Om0_x
-        by_products[13] = Om0_y
-        by_products[14] = Om0_z
+        by_moment_columns[3] = turning_x
+        by_moment_columns[4] = turning_y
+        by_moment_columns[5] = turning_z
+        by_moment_columns[6] = -0.5*t87
+        by_moment_columns[7] = -0.5*t88
+        by_moment_columns[8] = -0.5*t89
+        by_moment_columns[9] = -t90
+        by_moment_columns[10] = -t91
+        by_moment_columns[11] = -t92
+        by_products[0] = -t87
+        by_products[1] = -t88
+        by_products[2] = -t89
+        by_products[3] = -2*t90
+        by_products[4] = -2*t91
+        by_products[5] = -2*t92
+        by_products[6] = turning_x
+        by_products[7] = turning_y
+        by_products[8] = turning_z
+        by_products[9] = spin_x
+        by_products[10] = spin_y
+        by_products[11] = spin_z
         # force on the coordinates: first moments, couplings, inertia at rest
         columns_times(moment_columns, by_moment_columns, local, N, 12)
         # of the deformed body
-        add_block_times(products, by_products, local, N, 15, hN)
+        add_block_times(products, by_products, local, N, 12, hN)
         # inertia force of deformation, Mbar zddot
-        add_block_times(Mz, zdd, local, N, N, hN)
-        # elastic force, Sbar y
-        add_block_times(Sz, z, local, free, free, hn)
+        add_packed_times(Mz, zdd, local)
         # damping force, Cbar ydot
-        add_block_times(Cz, zd, local, free, damped, hn)
-        # Ghat_e y, all e
-        block_times(Ghat, z, Gy, resultants*hn, free, resultants*hn)
+        add_packed_times(Cz, zd, local)
+        # Ghat_e y of all e, and Sbar y
+        packed_times(stretched, z, Gy, stretching*hn)
         # E_e . y
         rows_times(E, z, along, free, resultants, hn)
         # y . Ghat_e y
@@ -639,45 +628,52 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t111 = (0.5)*twice_e
-            t112 = 1/lam_e
-            by_E[e] = t111
-            by_Gy[e] = along_e + t111*t112
-            stiffened += t111*(along_e + (0.25)*t112*twice_e)
-        # their forces
+            t93 = (0.5)*twice_e
+            t94 = 1/lam_e
+            by_E[e] = t93
+            by_Gy[e] = along_e + t93*t94
+            stiffened += t93*(along_e + (0.25)*t94*twice_e)
+        # and of Sbar y
+        by_Gy[resultants] = 1
+        # forces of the resultants
         add_block_times(E, by_E, local, free, resultants, hn)
-        # and those of the geometric stiffness
-        add_block_times(Gy, by_Gy, local, free, resultants, hn)
+        # and those of the geometric stiffness, with Sbar y
+        add_block_times(Gy, by_Gy, local, free, stretching, hn)
         # forces on eta, pulled back
         add_block_times(Zq, at(local, free), local, free, slaved, hn)
-        # force and moment on the frame
+        # force and moment on the frame, in axes of the body
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
+        turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+        spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
         mass = masses[0]
-        t113 = 2*sum_cd_z
-        t114 = 2*Om0_z
-        t115 = Om0_x*sum_c_y - Om0_y*sum_c_x
-        t116 = -Om0_x*sum_c_z + Om0_z*sum_c_x
-        t117 = Om0_y*sum_c_z - Om0_z*sum_c_y
-        t118 = Om0_x*sum_J_xz + Om0_y*sum_J_yz + Om0_z*sum_J_zz
-        t119 = Om0_x*sum_J_xy + Om0_y*sum_J_yy + Om0_z*sum_J_yz
-        t120 = Om0_x*sum_J_xx + Om0_y*sum_J_xy + Om0_z*sum_J_xz
-        local[N] = (Om0_y*t113 + Om0_y*t115 - Om0_z*t116 + Om0d_y*sum_c_z - Om0d_z*sum_c_y +
-            felt_x*mass - sum_cd_y*t114 + sum_cdd_x)
-        local[N + 1] = (-Om0_x*t113 - Om0_x*t115 + Om0_z*t117 - Om0d_x*sum_c_z + Om0d_z*sum_c_x +
-            felt_y*mass + sum_cd_x*t114 + sum_cdd_y)
-        local[N + 2] = (2*Om0_x*sum_cd_y + Om0_x*t116 - 2*Om0_y*sum_cd_x - Om0_y*t117 +
-            Om0d_x*sum_c_y - Om0d_y*sum_c_x + felt_z*mass + sum_cdd_z)
-        local[N + 3] = (Om0_x*sum_Jd_xx + Om0_y*sum_Jd_xy + Om0_y*sum_spun_z + Om0_y*t118 +
-            Om0_z*sum_Jd_xz - Om0_z*sum_spun_y - Om0_z*t119 + Om0d_x*sum_J_xx + Om0d_y*sum_J_xy +
-            Om0d_z*sum_J_xz - felt_y*sum_c_z + felt_z*sum_c_y + sum_accelerated_x + sum_coupled_x)
-        local[N + 4] = (Om0_x*sum_Jd_xy - Om0_x*sum_spun_z - Om0_x*t118 + Om0_y*sum_Jd_yy +
-            Om0_z*sum_Jd_yz + Om0_z*sum_spun_x + Om0_z*t120 + Om0d_x*sum_J_xy + Om0d_y*sum_J_yy +
-            Om0d_z*sum_J_yz + felt_x*sum_c_z - felt_z*sum_c_x + sum_accelerated_y + sum_coupled_y)
-        local[N + 5] = (Om0_x*sum_Jd_xz + Om0_x*sum_spun_y + Om0_x*t119 + Om0_y*sum_Jd_yz -
-            Om0_y*sum_spun_x - Om0_y*t120 + Om0_z*sum_Jd_zz + Om0d_x*sum_J_xz + Om0d_y*sum_J_yz +
-            Om0d_z*sum_J_zz - felt_x*sum_c_y + felt_y*sum_c_x + sum_accelerated_z + sum_coupled_z)
+        t95 = 2*sum_cd_z
+        t96 = 2*spin_z
+        t97 = spin_x*sum_c_y - spin_y*sum_c_x
+        t98 = -spin_x*sum_c_z + spin_z*sum_c_x
+        t99 = spin_y*sum_c_z - spin_z*sum_c_y
+        t100 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+        t101 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+        t102 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+        local[N] = (felt_x*mass + spin_y*t95 + spin_y*t97 - spin_z*t98 - sum_c_y*turning_z +
+            sum_c_z*turning_y - sum_cd_y*t96 + sum_cdd_x)
+        local[N + 1] = (felt_y*mass - spin_x*t95 - spin_x*t97 + spin_z*t99 + sum_c_x*turning_z -
+            sum_c_z*turning_x + sum_cd_x*t96 + sum_cdd_y)
+        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t98 - 2*spin_y*sum_cd_x -
+            spin_y*t99 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+        local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy +
+            spin_y*sum_spun_z + spin_y*t100 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t101 +
+            sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z + sum_accelerated_x +
+            sum_coupled_x)
+        local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z -
+            spin_x*t100 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t102 +
+            sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z + sum_accelerated_y +
+            sum_coupled_y)
+        local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz + spin_x*sum_spun_y +
+            spin_x*t101 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t102 + spin_z*sum_Jd_zz +
+            sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z + sum_accelerated_z +
+            sum_coupled_z)
         # forces conjugate to y
-        scatter(local, kept, s, free, n)
+        from_free(local, axes_back, order, unordered, s, bound, bound_free, free)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -686,45 +682,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t121 = X_z + u_z
-            t122 = X_y + u_y
-            t123 = X_x + u_x
+            t103 = X_z + u_z
+            t104 = X_y + u_y
+            t105 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t121 - f_z*t122
-            W_y += -f_x*t121 + f_z*t123
-            W_z += f_x*t122 - f_y*t123
+            W_x += f_y*t103 - f_z*t104
+            W_y += -f_x*t103 + f_z*t105
+            W_z += f_x*t104 - f_y*t105
         # inertia and weight on the frame
+        turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+            turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         Rt_x, Rt_y, Rt_z = local[N], local[N + 1], local[N + 2]
         Rr_x, Rr_y, Rr_z = local[N + 3], local[N + 4], local[N + 5]
-        F_x += Rt_x
-        F_y += Rt_y
-        F_z += Rt_z
-        W_x += Rr_x
-        W_y += Rr_y
-        W_z += Rr_z
+        F_x += Rt_x*turn_xx + Rt_y*turn_xy + Rt_z*turn_xz
+        F_y += Rt_x*turn_yx + Rt_y*turn_yy + Rt_z*turn_yz
+        F_z += Rt_x*turn_zx + Rt_y*turn_zy + Rt_z*turn_zz
+        W_x += Rr_x*turn_xx + Rr_y*turn_xy + Rr_z*turn_xz
+        W_y += Rr_x*turn_yx + Rr_y*turn_yy + Rr_z*turn_yz
+        W_z += Rr_x*turn_zx + Rr_y*turn_zy + Rr_z*turn_zz
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t124 = -m_x*psi_y + m_y*psi_x
-            t125 = m_x*psi_z
-            t126 = -m_z*psi_x + t125
-            t127 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t124 + e0*psi_z*t126 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t124 - e0*psi_z*t127 - m_y + (0.5)*m_z*psi_x - 0.5*t125
-            W_z += -e0*psi_x*t126 + e0*psi_y*t127 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t106 = -m_x*psi_y + m_y*psi_x
+            t107 = m_x*psi_z
+            t108 = -m_z*psi_x + t107
+            t109 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t106 + e0*psi_z*t108 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t106 - e0*psi_z*t109 - m_y + (0.5)*m_z*psi_x - 0.5*t107
+            W_z += -e0*psi_x*t108 + e0*psi_y*t109 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t128 = W_x + rhs_x
-        t129 = W_y + rhs_y
-        t130 = W_z + rhs_z
-        wp_x = Bxx*t128 + Byx*t129 + Bzx*t130
-        wp_y = Bxy*t128 + Byy*t129 + Bzy*t130
-        wp_z = Bxz*t128 + Byz*t129 + Bzz*t130
+        t110 = W_x + rhs_x
+        t111 = W_y + rhs_y
+        t112 = W_z + rhs_z
+        wp_x = Bxx*t110 + Byx*t111 + Bzx*t112
+        wp_y = Bxy*t110 + Byy*t111 + Bzy*t112
+        wp_z = Bxz*t110 + Byz*t111 + Bzz*t112
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -747,83 +745,94 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t131 = m_y*psi_z
-            t132 = m_x*psi_y
-            t133 = m_y*psi_x - t132
-            t134 = e0*psi_y
-            t135 = m_x*psi_z
-            t136 = m_z*psi_x
-            t137 = t135 - t136
-            t138 = e0*psi_z
-            t139 = psi_y*wp_z
-            t140 = psi_z*wp_y
-            t141 = psi_x*wp_y
-            t142 = psi_y*wp_x
-            t143 = t141 - t142
-            t144 = psi_x*wp_z
-            t145 = psi_z*wp_x - t144
-            t146 = m_z*psi_y - t131
-            t147 = e0*psi_x
-            t148 = t139 - t140
-            g[j3] = (alpha_r*(t134*t143 - t138*t145 - 0.5*t139 + (0.5)*t140 + wp_x) + m_x -
-                0.5*m_z*psi_y + (0.5)*t131 + t133*t134 - t137*t138)
-            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t138*t148 - t143*t147 + (0.5)*t144 + wp_y) +
-                m_y - t133*t147 - 0.5*t135 + (0.5)*t136 + t138*t146)
-            g[j3 + 2] = (alpha_r*(-t134*t148 - 0.5*t141 + (0.5)*t142 + t145*t147 + wp_z) -
-                0.5*m_y*psi_x + m_z + (0.5)*t132 - t134*t146 + t137*t147)
+            t113 = m_y*psi_z
+            t114 = m_x*psi_y
+            t115 = m_y*psi_x - t114
+            t116 = e0*psi_y
+            t117 = m_x*psi_z
+            t118 = m_z*psi_x
+            t119 = t117 - t118
+            t120 = e0*psi_z
+            t121 = psi_y*wp_z
+            t122 = psi_z*wp_y
+            t123 = psi_x*wp_y
+            t124 = psi_y*wp_x
+            t125 = t123 - t124
+            t126 = psi_x*wp_z
+            t127 = psi_z*wp_x - t126
+            t128 = m_z*psi_y - t113
+            t129 = e0*psi_x
+            t130 = t121 - t122
+            g[j3] = (alpha_r*(t116*t125 - t120*t127 - 0.5*t121 + (0.5)*t122 + wp_x) + m_x -
+                0.5*m_z*psi_y + (0.5)*t113 + t115*t116 - t119*t120)
+            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t120*t130 - t125*t129 + (0.5)*t126 + wp_y) +
+                m_y - t115*t129 - 0.5*t117 + (0.5)*t118 + t120*t128)
+            g[j3 + 2] = (alpha_r*(-t116*t130 - 0.5*t123 + (0.5)*t124 + t127*t129 + wp_z) -
+                0.5*m_y*psi_x + m_z + (0.5)*t114 - t116*t128 + t119*t129)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
             g[k] = fm
         if task == ENERGY:
             # momentum of deformation, Mbar zdot
-            block_times(Mz, zd, moved, N, N, hN)
+            packed_times(Mz, zd, moved, 1*hN)
             # twice its energy
-            rows_times(moved, zd, squares, N, 1, hN)
-            # elastic force, Sbar y
-            block_times(Sz, z, moved, free, free, hn)
-            # twice its energy
-            rows_times(moved, z, at(squares, 1), free, 1, hn)
+            rows_times(moved, zd, at(squares, 0), N, 1, hN)
+            # twice that of Sbar y
+            rows_times(at(Gy, resultants*hn), z, at(squares, 1), free, 1, hn)
             # damping force, Cbar ydot
-            block_times(Cz, zd, moved, free, damped, hn)
+            packed_times(Cz, zd, moved, 1*hN)
             # its power
             rows_times(moved, zd, at(squares, 2), free, 1, hn)
             # energies, momentum and its moment about the origin
+            turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             moving = squares[0]
             elastic = squares[1]
-            t149 = Om0_y*sum_c_z - Om0_z*sum_c_y + sum_cd_x
-            t150 = -Om0_x*sum_c_z + Om0_z*sum_c_x + sum_cd_y
-            t151 = Om0_x*sum_c_y - Om0_y*sum_c_x + sum_cd_z
-            t152 = Om0_x*sum_J_xx + Om0_y*sum_J_xy + Om0_z*sum_J_xz
-            t153 = Om0_x*sum_J_xy + Om0_y*sum_J_yy + Om0_z*sum_J_yz
-            t154 = Om0_x*sum_J_xz + Om0_y*sum_J_yz + Om0_z*sum_J_zz
-            t155 = mass*x0_x
-            t156 = mass*x0_y
-            t157 = mass*x0_z
-            t158 = mass*v0_x + t149
-            t159 = mass*v0_y + t150
-            t160 = mass*v0_z + t151
-            t161 = R0_xx*t158 + R0_xy*t159 + R0_xz*t160
-            t162 = R0_yx*t158 + R0_yy*t159 + R0_yz*t160
-            t163 = R0_zx*t158 + R0_zy*t159 + R0_zz*t160
-            t164 = sum_c_y*v0_z - sum_c_z*v0_y + sum_spun_x + t152
-            t165 = -sum_c_x*v0_z + sum_c_z*v0_x + sum_spun_y + t153
-            t166 = sum_c_x*v0_y - sum_c_y*v0_x + sum_spun_z + t154
-            kinetic = (Om0_x*sum_spun_x + (0.5)*Om0_x*t152 + Om0_y*sum_spun_y + (0.5)*Om0_y*t153 +
-                Om0_z*sum_spun_z + (0.5)*Om0_z*t154 + (0.5)*mass*(v0_x*v0_x + v0_y*v0_y +
-                v0_z*v0_z) + (0.5)*moving + t149*v0_x + t150*v0_y + t151*v0_z)
+            t131 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            t132 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t133 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t134 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
+            t135 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
+            t136 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
+            t137 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
+            t138 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
+            t139 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
+            t140 = mass*x0_x
+            t141 = mass*x0_y
+            t142 = mass*x0_z
+            t143 = mass*t139 + t138
+            t144 = mass*t137 + t136
+            t145 = mass*t135 + t134
+            t146 = t143*turn_xx + t144*turn_xy + t145*turn_xz
+            t147 = t143*turn_yx + t144*turn_yy + t145*turn_yz
+            t148 = t143*turn_zx + t144*turn_zy + t145*turn_zz
+            t149 = R0_xx*t146 + R0_xy*t147 + R0_xz*t148
+            t150 = R0_yx*t146 + R0_yy*t147 + R0_yz*t148
+            t151 = R0_zx*t146 + R0_zy*t147 + R0_zz*t148
+            t152 = sum_c_y*t135 - sum_c_z*t137 + sum_spun_x + t131
+            t153 = -sum_c_x*t135 + sum_c_z*t139 + sum_spun_y + t132
+            t154 = sum_c_x*t137 - sum_c_y*t139 + sum_spun_z + t133
+            t155 = t152*turn_xx + t153*turn_xy + t154*turn_xz
+            t156 = t152*turn_yx + t153*turn_yy + t154*turn_yz
+            t157 = t152*turn_zx + t153*turn_zy + t154*turn_zz
+            kinetic = ((0.5)*mass*(t135*t135 + t137*t137 + t139*t139) + (0.5)*moving +
+                spin_x*sum_spun_x + (0.5)*spin_x*t131 + spin_y*sum_spun_y + (0.5)*spin_y*t132 +
+                spin_z*sum_spun_z + (0.5)*spin_z*t133 + t134*t135 + t136*t137 + t138*t139)
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(R0_xx*t155 + R0_yx*t156 + R0_zx*t157 + sum_c_x) -
-                gamma_y*(R0_xy*t155 + R0_yy*t156 + R0_zy*t157 + sum_c_y) - gamma_z*(R0_xz*t155 +
-                R0_yz*t156 + R0_zz*t157 + sum_c_z))
-            P_x = t161
-            P_y = t162
-            P_z = t163
-            H_x = R0_xx*t164 + R0_xy*t165 + R0_xz*t166 - t162*x0_z + t163*x0_y
-            H_y = R0_yx*t164 + R0_yy*t165 + R0_yz*t166 + t161*x0_z - t163*x0_x
-            H_z = R0_zx*t164 + R0_zy*t165 + R0_zz*t166 - t161*x0_y + t162*x0_x
+            potential = (-gamma_x*(R0_xx*t140 + R0_yx*t141 + R0_zx*t142 + sum_c_x*turn_xx +
+                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t140 + R0_yy*t141 + R0_zy*t142
+                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t140 +
+                R0_yz*t141 + R0_zz*t142 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
+            P_x = t149
+            P_y = t150
+            P_z = t151
+            H_x = R0_xx*t155 + R0_xy*t156 + R0_xz*t157 - t150*x0_z + t151*x0_y
+            H_y = R0_yx*t155 + R0_yy*t156 + R0_yz*t157 + t149*x0_z - t151*x0_x
+            H_z = R0_zx*t155 + R0_zy*t156 + R0_zz*t157 - t149*x0_y + t150*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -840,62 +849,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             # Q_b zdd, all b
-            block_times(followers, zdd, Za, slaved*hn, free, slaved*hn)
+            packed_times(followers, zdd, Za, slaved*hn)
             # second derivative of the coefficients of T^-1
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 e2s[j] = (inverse_tangent_second(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2]
                     * y[j3 + 2]))
             # J2_kl zdot
-            block_times(quadratics, zd, more, 6*hN, N, 12*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            block_times(at(quadratics, 6*hN), zdd, at(more, 6*hN), 6*hN, N, 12*hN)
+            packed_times(of_place, zd, more, 9*hN)
+            # (K_k^T - K_k) zddot and K_k^T zddot
+            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
             # factors of the local tangents
-            t167 = 2*Om0_x*c_geo
-            by_place[0] = -Om0_x*Om0_x*c_geo
-            by_place[1] = -Om0_y*Om0_y*c_geo
-            by_place[2] = -Om0_z*Om0_z*c_geo
-            by_place[3] = -Om0_y*t167
-            by_place[4] = -Om0_z*t167
-            by_place[5] = -2*Om0_y*Om0_z*c_geo
-            by_place[6] = Om0d_x*c_geo
-            by_place[7] = Om0d_y*c_geo
-            by_place[8] = Om0d_z*c_geo
-            by_place[9] = 0
-            by_place[10] = 0
-            by_place[11] = 0
-            by_rate[0] = 0
-            by_rate[1] = 0
-            by_rate[2] = 0
+            turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
+            t158 = 2*c_geo*spin_x
+            by_place[0] = -c_geo*spin_x*spin_x
+            by_place[1] = -c_geo*spin_y*spin_y
+            by_place[2] = -c_geo*spin_z*spin_z
+            by_place[3] = -spin_y*t158
+            by_place[4] = -spin_z*t158
+            by_place[5] = -2*c_geo*spin_y*spin_z
+            by_place[6] = c_geo*turning_x
+            by_place[7] = c_geo*turning_y
+            by_place[8] = c_geo*turning_z
+            by_rate[0] = spin_x
+            by_rate[1] = spin_y
+            by_rate[2] = spin_z
             by_rate[3] = 0
             by_rate[4] = 0
             by_rate[5] = 0
-            by_rate[6] = 0
-            by_rate[7] = 0
-            by_rate[8] = 0
-            by_rate[9] = Om0_x
-            by_rate[10] = Om0_y
-            by_rate[11] = Om0_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
                 on_eta = local[free + b]
                 by_followers[b] = c_geo*on_eta
-            # local tangents: columns of the coordinates
-            for j in range(N):
-                # by z
-                block_times(at(quadratics, j*12*hN), by_place, at(Lz, j*deep), N, 12, hN)
-                # by zdot
-                block_times(at(quadratics, j*12*hN), by_rate, at(Lv, j*deep), N, 12, hN)
-                # by zddot
-                block_times(at(Mz, j*hN), ones, at(La, j*deep), N, 1, hN)
-            # elastic and slaved parts
+            # local tangents
+            clear(Lz, N*deep)
+            # local tangents
+            clear(Lv, N*deep)
+            # local tangents
+            clear(La, N*deep)
+            # by z: J2_kl and K_k^T
+            add_packed(of_place, by_place, Lz, deep)
+            # forces on eta
+            add_packed(followers, by_followers, Lz, deep)
+            # by zdot: K_k^T - K_k
+            add_packed(of_rate, by_rate, Lv, deep)
+            # structural damping
+            add_packed(Cz, ones, Lv, deep)
+            # by zddot
+            add_packed(Mz, ones, La, deep)
+            # stiffness and geometric stiffness
+            add_packed(stretched, by_Gy, Lz, deep)
+            # changes of the resultants
             for j in range(free):
-                # stiffness
-                add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
-                # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep),
-                                free, slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]
@@ -903,20 +910,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gy_j = Gy[e*hn + j]
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
-                # change of the resultants
+                # their forces
                 add_block_times(E, of_E, at(Lz, j*deep), free, resultants, hn)
                 # the same
                 add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
-                # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free,
-                                resultants, hn)
-            # structural damping
-            for j in range(damped):
-                # a column
-                add_block_times(at(Cz, j*hn), ones, at(Lv, j*deep), free, 1, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
+                turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+                spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
                 row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
@@ -929,71 +931,75 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i], products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i], products[8*hN
                     + i])
-                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                row_w_x, row_w_y, row_w_z = (products[9*hN + i], products[10*hN + i],
                     products[11*hN + i])
-                row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
+                row_v_x, row_v_y, row_v_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[1*hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
-                t168 = Om0_x*row_S1_y
-                t169 = Om0_y*row_S1_x
-                t170 = t168 - t169
-                t171 = Om0_x*row_S1_z
-                t172 = Om0_z*row_S1_x - t171
-                t173 = Om0_y*row_S1_z
-                t174 = Om0_z*row_S1_y
-                t175 = t173 - t174
-                t176 = 2*Om0_x
-                t177 = 2*Om0_y
-                t178 = 2*Om0_z
-                t179 = -row_w_z
-                t180 = row_v_z + t179
-                t181 = row_h_xx + 2*row_j_xx
-                t182 = row_h_xy + 2*row_j_xy
-                t183 = row_h_xz + 2*row_j_xz
-                t184 = -row_w_y
-                t185 = row_v_y + t184
-                t186 = row_h_yz + 2*row_j_yz
-                t187 = row_h_zz + 2*row_j_zz
-                t188 = Om0_x*t183 + Om0_y*t186 + Om0_z*t187
-                t189 = row_h_yy + 2*row_j_yy
-                t190 = Om0_x*t182 + Om0_y*t189 + Om0_z*t186
-                t191 = -row_w_x
-                t192 = row_v_x + t191
-                t193 = Om0_x*t181 + Om0_y*t182 + Om0_z*t183
-                t194 = row_g_z + row_u_z
-                t195 = row_g_y + row_u_y
-                t196 = row_g_x + row_u_x
-                Lz[i*deep + N] = c_geo*(Om0_y*t170 - Om0_z*t172 + Om0d_y*row_S1_z - Om0d_z*row_S1_y)
-                Lz[i*deep + N + 1] = (c_geo*(-Om0_x*t170 + Om0_z*t175 - Om0d_x*row_S1_z +
-                    Om0d_z*row_S1_x))
-                Lz[i*deep + N + 2] = (c_geo*(Om0_x*t172 - Om0_y*t175 + Om0d_x*row_S1_y -
-                    Om0d_y*row_S1_x))
-                Lz[i*deep + N + 3] = (c_geo*(Om0_y*t180 + Om0_y*t188 - Om0_z*t185 - Om0_z*t190 +
-                    Om0d_x*t181 + Om0d_y*t182 + Om0d_z*t183 - felt_y*row_S1_z + felt_z*row_S1_y +
-                    row_jd_xx*t176 + row_jd_xy*t177 + row_jd_xz*t178 + row_ua_x - row_wa_x))
-                Lz[i*deep + N + 4] = (c_geo*(-Om0_x*t180 - Om0_x*t188 + Om0_z*t192 + Om0_z*t193 +
-                    Om0d_x*t182 + Om0d_y*t189 + Om0d_z*t186 + felt_x*row_S1_z - felt_z*row_S1_x +
-                    row_jd_xy*t176 + row_jd_yy*t177 + row_jd_yz*t178 + row_ua_y - row_wa_y))
-                Lz[i*deep + N + 5] = (c_geo*(Om0_x*t185 + Om0_x*t190 - Om0_y*t192 - Om0_y*t193 +
-                    Om0d_x*t183 + Om0d_y*t186 + Om0d_z*t187 - felt_x*row_S1_y + felt_y*row_S1_x +
-                    row_jd_xz*t176 + row_jd_yz*t177 + row_jd_zz*t178 + row_ua_z - row_wa_z))
-                Lv[i*deep + N] = 2*t173 - 2*t174
-                Lv[i*deep + N + 1] = 2*Om0_z*row_S1_x - 2*t171
-                Lv[i*deep + N + 2] = 2*t168 - 2*t169
-                Lv[i*deep + N + 3] = Om0_y*t194 - Om0_z*t195 + 2*row_v_x + t191 + t193
-                Lv[i*deep + N + 4] = -Om0_x*t194 + Om0_z*t196 + 2*row_v_y + t184 + t190
-                Lv[i*deep + N + 5] = Om0_x*t195 - Om0_y*t196 + 2*row_v_z + t179 + t188
+                row_wa_x, row_wa_y, row_wa_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
+                row_ua_x, row_ua_y, row_ua_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                t159 = row_S1_x*spin_z
+                t160 = row_S1_z*spin_x
+                t161 = t159 - t160
+                t162 = row_S1_x*spin_y
+                t163 = row_S1_y*spin_x - t162
+                t164 = row_S1_y*spin_z
+                t165 = row_S1_z*spin_y - t164
+                t166 = 2*spin_x
+                t167 = 2*spin_y
+                t168 = 2*spin_z
+                t169 = -row_w_z
+                t170 = row_v_z + t169
+                t171 = row_h_xx + 2*row_j_xx
+                t172 = row_h_xy + 2*row_j_xy
+                t173 = row_h_xz + 2*row_j_xz
+                t174 = -row_w_y
+                t175 = row_v_y + t174
+                t176 = row_h_yz + 2*row_j_yz
+                t177 = row_h_zz + 2*row_j_zz
+                t178 = spin_x*t173 + spin_y*t176 + spin_z*t177
+                t179 = row_h_yy + 2*row_j_yy
+                t180 = spin_x*t172 + spin_y*t179 + spin_z*t176
+                t181 = -row_w_x
+                t182 = row_v_x + t181
+                t183 = spin_x*t171 + spin_y*t172 + spin_z*t173
+                t184 = row_g_z + row_u_z
+                t185 = row_g_y + row_u_y
+                t186 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t163 -
+                    spin_z*t161))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t163
+                    + spin_z*t165))
+                Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
+                    spin_x*t161 - spin_y*t165))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t166 +
+                    row_jd_xy*t167 + row_jd_xz*t168 + row_ua_x - row_wa_x + spin_y*t170 +
+                    spin_y*t178 - spin_z*t175 - spin_z*t180 + t171*turning_x + t172*turning_y +
+                    t173*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t166 +
+                    row_jd_yy*t167 + row_jd_yz*t168 + row_ua_y - row_wa_y - spin_x*t170 -
+                    spin_x*t178 + spin_z*t182 + spin_z*t183 + t172*turning_x + t176*turning_z +
+                    t179*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t166 +
+                    row_jd_yz*t167 + row_jd_zz*t168 + row_ua_z - row_wa_z + spin_x*t175 +
+                    spin_x*t180 - spin_y*t182 - spin_y*t183 + t173*turning_x + t176*turning_y +
+                    t177*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t164
+                Lv[i*deep + N + 1] = 2*t159 - 2*t160
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t162
+                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t184 - spin_z*t185 + t181 + t183
+                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t184 + spin_z*t186 + t174 + t180
+                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t185 - spin_y*t186 + t169 + t178
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t196
-                La[i*deep + N + 4] = t195
-                La[i*deep + N + 5] = t194
+                La[i*deep + N + 3] = t186
+                La[i*deep + N + 4] = t185
+                La[i*deep + N + 5] = t184
             # local tangents: motion of the frame
             for i in range(N):
+                spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
                 row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
@@ -1006,16 +1012,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i], products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i], products[8*hN
                     + i])
-                row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
-                    products[14*hN + i])
-                t197 = row_h_xy + 2*row_j_xy
-                t198 = row_h_xz + 2*row_j_xz
-                t199 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = -Om0_x*(row_h_xx + 2*row_j_xx) - Om0_y*t197 - Om0_z*t198 + row_w_x
-                Lv[(N + 1)*deep + i] = (-Om0_x*t197 - Om0_y*(row_h_yy + 2*row_j_yy) - Om0_z*t199 +
-                    row_w_y)
-                Lv[(N + 2)*deep + i] = (-Om0_x*t198 - Om0_y*t199 - Om0_z*(row_h_zz + 2*row_j_zz) +
-                    row_w_z)
+                row_w_x, row_w_y, row_w_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
+                t187 = row_h_xy + 2*row_j_xy
+                t188 = row_h_xz + 2*row_j_xz
+                t189 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t187 -
+                    spin_z*t188)
+                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t187 - spin_y*(row_h_yy + 2*row_j_yy) -
+                    spin_z*t189)
+                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t188 - spin_y*t189 - spin_z*(row_h_zz +
+                    2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -1023,80 +1030,81 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 La[(N + 4)*deep + i] = row_g_y + row_u_y
                 La[(N + 5)*deep + i] = row_g_z + row_u_z
             # local tangents: force on the frame by its motion
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t200 = Om0_y*sum_c_y
-            t201 = Om0_z*sum_c_z
-            t202 = 2*sum_cd_z
-            t203 = Om0_x*sum_c_y
-            t204 = 2*sum_cd_y
-            t205 = Om0_z*sum_c_x
-            t206 = Om0_y*sum_J_xz
-            t207 = Om0_z*sum_J_xy
-            t208 = Om0_y*sum_J_yz
-            t209 = Om0_x*sum_J_xz
-            t210 = Om0_z*sum_J_zz + sum_spun_z
-            t211 = Om0_z*sum_J_yz
-            t212 = Om0_x*sum_J_xy
-            t213 = Om0_y*sum_J_yy + sum_spun_y
-            t214 = Om0_x*sum_c_x
-            t215 = 2*sum_cd_x
-            t216 = Om0_y*sum_c_z
-            t217 = Om0_x*sum_J_yz
-            t218 = Om0_z*sum_J_xz
-            t219 = Om0_y*sum_J_xy
-            t220 = Om0_x*sum_J_xx + sum_spun_x
-            t221 = -sum_c_y
-            t222 = -sum_c_z
-            t223 = -sum_c_x
-            Lv[N*deep + N] = t200 + t201
-            Lv[N*deep + N + 1] = Om0_y*sum_c_x - t202 - 2*t203
-            Lv[N*deep + N + 2] = -2*Om0_x*sum_c_z + t204 + t205
-            Lv[N*deep + N + 3] = sum_Jd_xx + t206 - t207
-            Lv[N*deep + N + 4] = Om0_z*sum_J_xx + sum_Jd_xy - t208 - 2*t209 - t210
-            Lv[N*deep + N + 5] = -Om0_y*sum_J_xx + sum_Jd_xz + t211 + 2*t212 + t213
-            Lv[(N + 1)*deep + N] = -2*Om0_y*sum_c_x + t202 + t203
-            Lv[(N + 1)*deep + N + 1] = t201 + t214
-            Lv[(N + 1)*deep + N + 2] = Om0_z*sum_c_y - t215 - 2*t216
-            Lv[(N + 1)*deep + N + 3] = -Om0_z*sum_J_yy + sum_Jd_xy + 2*t208 + t209 + t210
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t207 - t217
-            Lv[(N + 1)*deep + N + 5] = Om0_x*sum_J_yy + sum_Jd_yz - t218 - 2*t219 - t220
-            Lv[(N + 2)*deep + N] = Om0_x*sum_c_z - t204 - 2*t205
-            Lv[(N + 2)*deep + N + 1] = -2*Om0_z*sum_c_y + t215 + t216
-            Lv[(N + 2)*deep + N + 2] = t200 + t214
-            Lv[(N + 2)*deep + N + 3] = Om0_y*sum_J_zz + sum_Jd_xz - 2*t211 - t212 - t213
-            Lv[(N + 2)*deep + N + 4] = -Om0_x*sum_J_zz + sum_Jd_yz + 2*t218 + t219 + t220
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t206 + t217
+            t190 = spin_y*sum_c_y
+            t191 = spin_z*sum_c_z
+            t192 = 2*sum_cd_z
+            t193 = spin_x*sum_c_y
+            t194 = 2*sum_cd_y
+            t195 = spin_z*sum_c_x
+            t196 = spin_y*sum_J_xz
+            t197 = spin_z*sum_J_xy
+            t198 = spin_y*sum_J_yz
+            t199 = spin_x*sum_J_xz
+            t200 = spin_z*sum_J_zz + sum_spun_z
+            t201 = spin_z*sum_J_yz
+            t202 = spin_x*sum_J_xy
+            t203 = spin_y*sum_J_yy + sum_spun_y
+            t204 = spin_x*sum_c_x
+            t205 = 2*sum_cd_x
+            t206 = spin_y*sum_c_z
+            t207 = spin_x*sum_J_yz
+            t208 = spin_z*sum_J_xz
+            t209 = spin_y*sum_J_xy
+            t210 = spin_x*sum_J_xx + sum_spun_x
+            t211 = -sum_c_y
+            t212 = -sum_c_z
+            t213 = -sum_c_x
+            Lv[N*deep + N] = t190 + t191
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t192 - 2*t193
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t194 + t195
+            Lv[N*deep + N + 3] = sum_Jd_xx + t196 - t197
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t198 - 2*t199 - t200
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t201 + 2*t202 + t203
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t192 + t193
+            Lv[(N + 1)*deep + N + 1] = t191 + t204
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t205 - 2*t206
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t198 + t199 + t200
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t197 - t207
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t208 - 2*t209 - t210
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t194 - 2*t195
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t205 + t206
+            Lv[(N + 2)*deep + N + 2] = t190 + t204
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t201 - t202 - t203
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t208 + t209 + t210
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t196 + t207
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0
             La[N*deep + N + 2] = 0
             La[N*deep + N + 3] = 0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t221
+            La[N*deep + N + 5] = t211
             La[(N + 1)*deep + N] = 0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0
-            La[(N + 1)*deep + N + 3] = t222
+            La[(N + 1)*deep + N + 3] = t212
             La[(N + 1)*deep + N + 4] = 0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0
             La[(N + 2)*deep + N + 1] = 0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t223
+            La[(N + 2)*deep + N + 4] = t213
             La[(N + 2)*deep + N + 5] = 0
             La[(N + 3)*deep + N] = 0
-            La[(N + 3)*deep + N + 1] = t222
+            La[(N + 3)*deep + N + 1] = t212
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0
-            La[(N + 4)*deep + N + 2] = t223
+            La[(N + 4)*deep + N + 2] = t213
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t221
+            La[(N + 5)*deep + N] = t211
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1134,16 +1142,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t224 = -dth_x*psi_y + dth_y*psi_x
-                    t225 = dth_x*psi_z
-                    t226 = -dth_z*psi_x + t225
-                    t227 = -dth_y*psi_z + dth_z*psi_y
+                    t214 = -dth_x*psi_y + dth_y*psi_x
+                    t215 = dth_x*psi_z
+                    t216 = -dth_z*psi_x + t215
+                    t217 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t224 + e0*psi_z*t226))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t224 - e0*psi_z*t227
-                        - 0.5*t225))
+                        e0*psi_y*t214 + e0*psi_z*t216))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t214 - e0*psi_z*t217
+                        - 0.5*t215))
                     rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z -
-                        e0*psi_x*t226 + e0*psi_y*t227))
+                        e0*psi_x*t216 + e0*psi_y*t217))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1153,49 +1161,49 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t228 = X_y + u_y
-                    t229 = X_z + u_z
-                    t230 = X_x + u_x
-                    dy[i3] = -dth0_y*t229 + dth0_z*t228 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t229 - dth0_z*t230 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t228 + dth0_y*t230 - dx0_z + dx_z
+                    t218 = X_y + u_y
+                    t219 = X_z + u_z
+                    t220 = X_x + u_x
+                    dy[i3] = -dth0_y*t219 + dth0_z*t218 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t219 - dth0_z*t220 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t218 + dth0_y*t220 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t231 = dth0_y*psi_z
-                    t232 = dth_y*psi_z
-                    t233 = dth0_x*psi_y
-                    t234 = dth0_y*psi_x - t233
-                    t235 = e0*psi_y
-                    t236 = dth_x*psi_z
-                    t237 = dth_z*psi_x
-                    t238 = t236 - t237
-                    t239 = e0*psi_z
-                    t240 = dth_x*psi_y
-                    t241 = dth_y*psi_x - t240
-                    t242 = dth0_x*psi_z
-                    t243 = dth0_z*psi_x
-                    t244 = t242 - t243
-                    t245 = e0*psi_x
-                    t246 = dth_z*psi_y - t232
-                    t247 = dth0_z*psi_y - t231
+                    t221 = dth0_y*psi_z
+                    t222 = dth_y*psi_z
+                    t223 = dth0_x*psi_y
+                    t224 = dth0_y*psi_x - t223
+                    t225 = e0*psi_y
+                    t226 = dth_x*psi_z
+                    t227 = dth_z*psi_x
+                    t228 = t226 - t227
+                    t229 = e0*psi_z
+                    t230 = dth_x*psi_y
+                    t231 = dth_y*psi_x - t230
+                    t232 = dth0_x*psi_z
+                    t233 = dth0_z*psi_x
+                    t234 = t232 - t233
+                    t235 = e0*psi_x
+                    t236 = dth_z*psi_y - t222
+                    t237 = dth0_z*psi_y - t221
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t241 + e0*psi_z*t244 - 0.5*t231 - 0.5*t232 - t234*t235 -
-                        t238*t239)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t234*t245 + (0.5)*t236 - 0.5*t237 + t239*t246
-                        - t239*t247 - t241*t245 + (0.5)*t242 - 0.5*t243)
+                        e0*psi_y*t231 + e0*psi_z*t234 - 0.5*t221 - 0.5*t222 - t224*t225 -
+                        t228*t229)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t224*t235 + (0.5)*t226 - 0.5*t227 + t229*t236
+                        - t229*t237 - t231*t235 + (0.5)*t232 - 0.5*t233)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t238 + e0*psi_y*t247 - 0.5*t233 - t235*t246 - 0.5*t240 -
-                        t244*t245)
+                        e0*psi_x*t228 + e0*psi_y*t237 - 0.5*t223 - t225*t236 - 0.5*t230 -
+                        t234*t235)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # coordinates that determine the others, of dy
-                gather(dy, kept, dz, free, hN)
+                to_free(dy, axes, order, unordered, dz, bound, bound_free, free, hN)
                 # differential: eta_b
                 rows_times(Zq, dz, at(dz, free), free, slaved, hn)
                 # differential of the local forces by dz
@@ -1231,47 +1239,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t248 = -Om_x*psi_y + Om_y*psi_x
-                    t249 = dpsi_y*e0
-                    t250 = Om0_x*psi_z - Om0_z*psi_x
-                    t251 = dpsi_z*e0
-                    t252 = Om0_x*dpsi_z
-                    t253 = -Om0_z*dpsi_x + t252
-                    t254 = e0*psi_z
-                    t255 = -Om0_x*psi_y + Om0_y*psi_x
-                    t256 = Om_x*psi_z - Om_z*psi_x
-                    t257 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t258 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t259 = e0*psi_y
-                    t260 = Om_x*dpsi_z
-                    t261 = dOm_x*psi_z
-                    t262 = -Om_z*dpsi_x - dOm_z*psi_x + t260 + t261
-                    t263 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t264 = e1*t263
-                    t265 = psi_y*t264
-                    t266 = psi_z*t264
-                    t267 = dpsi_x*e0
-                    t268 = -Om_y*psi_z + Om_z*psi_y
-                    t269 = e0*psi_x
-                    t270 = -Om0_y*psi_z + Om0_z*psi_y
-                    t271 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t272 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t273 = psi_x*t264
+                    t238 = -Om_x*psi_y + Om_y*psi_x
+                    t239 = dpsi_y*e0
+                    t240 = Om0_x*psi_z - Om0_z*psi_x
+                    t241 = dpsi_z*e0
+                    t242 = Om0_x*dpsi_z
+                    t243 = -Om0_z*dpsi_x + t242
+                    t244 = e0*psi_z
+                    t245 = -Om0_x*psi_y + Om0_y*psi_x
+                    t246 = Om_x*psi_z - Om_z*psi_x
+                    t247 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t248 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t249 = e0*psi_y
+                    t250 = Om_x*dpsi_z
+                    t251 = dOm_x*psi_z
+                    t252 = -Om_z*dpsi_x - dOm_z*psi_x + t250 + t251
+                    t253 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t254 = e1*t253
+                    t255 = psi_y*t254
+                    t256 = psi_z*t254
+                    t257 = dpsi_x*e0
+                    t258 = -Om_y*psi_z + Om_z*psi_y
+                    t259 = e0*psi_x
+                    t260 = -Om0_y*psi_z + Om0_z*psi_y
+                    t261 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t262 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t263 = psi_x*t254
                     rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
                         - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t255 + dpsi_z*e0*t256 + e0*psi_y*t257 + e0*psi_z*t262 +
-                        e1*psi_y*t255*t263 + e1*psi_z*t256*t263 - t248*t249 - t248*t265 -
-                        t250*t251 - t250*t266 - t253*t254 - t258*t259))
+                        dpsi_y*e0*t245 + dpsi_z*e0*t246 + e0*psi_y*t247 + e0*psi_z*t252 +
+                        e1*psi_y*t245*t253 + e1*psi_z*t246*t253 - t238*t239 - t238*t255 -
+                        t240*t241 - t240*t256 - t243*t244 - t248*t249))
                     rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t248 + dpsi_z*e0*t270 + e0*psi_x*t258 +
-                        e0*psi_z*t271 + e1*psi_x*t248*t263 + e1*psi_z*t263*t270 - t251*t268 -
-                        0.5*t252 - t254*t272 - t255*t267 - t255*t273 - t257*t269 - 0.5*t260 -
-                        0.5*t261 - t266*t268))
+                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t238 + dpsi_z*e0*t260 + e0*psi_x*t248 +
+                        e0*psi_z*t261 + e1*psi_x*t238*t253 + e1*psi_z*t253*t260 - t241*t258 -
+                        0.5*t242 - t244*t262 - t245*t257 - t245*t263 - t247*t259 - 0.5*t250 -
+                        0.5*t251 - t256*t258))
                     rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
                         - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t250 + dpsi_y*e0*t268 + e0*psi_x*t253 + e0*psi_y*t272 +
-                        e1*psi_x*t250*t263 + e1*psi_y*t263*t268 - t249*t270 - t256*t267 -
-                        t256*t273 - t259*t271 - t262*t269 - t265*t270))
+                        dpsi_x*e0*t240 + dpsi_y*e0*t258 + e0*psi_x*t243 + e0*psi_y*t262 +
+                        e1*psi_x*t240*t253 + e1*psi_y*t253*t258 - t239*t260 - t246*t257 -
+                        t246*t263 - t249*t261 - t252*t259 - t255*t260))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1304,13 +1312,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t274 = X_y + u_y
-                    t275 = X_z + u_z
-                    t276 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t275 + dOm0_z*t274 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t275 - dOm0_z*t276 - dv0_y +
+                    t264 = X_y + u_y
+                    t265 = X_z + u_z
+                    t266 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t265 + dOm0_z*t264 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t265 - dOm0_z*t266 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t274 + dOm0_y*t276 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t264 + dOm0_y*t266 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1321,68 +1329,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t277 = Om0_y*dpsi_z
-                    t278 = Om_y*dpsi_z
-                    t279 = dOm0_y*psi_z
-                    t280 = dOm_y*psi_z
-                    t281 = -Om0_x*psi_y + Om0_y*psi_x
-                    t282 = dpsi_y*e0
-                    t283 = Om_x*psi_z - Om_z*psi_x
-                    t284 = dpsi_z*e0
-                    t285 = -Om_x*psi_y + Om_y*psi_x
-                    t286 = Om0_x*psi_z - Om0_z*psi_x
-                    t287 = Om0_x*dpsi_y
-                    t288 = dOm0_x*psi_y
-                    t289 = Om0_y*dpsi_x + dOm0_y*psi_x - t287 - t288
-                    t290 = e0*psi_y
-                    t291 = Om_x*dpsi_z
-                    t292 = dOm_x*psi_z
-                    t293 = Om_z*dpsi_x
-                    t294 = dOm_z*psi_x
-                    t295 = t291 + t292 - t293 - t294
-                    t296 = e0*psi_z
-                    t297 = Om_x*dpsi_y
-                    t298 = dOm_x*psi_y
-                    t299 = Om_y*dpsi_x + dOm_y*psi_x - t297 - t298
-                    t300 = Om0_x*dpsi_z
-                    t301 = dOm0_x*psi_z
-                    t302 = Om0_z*dpsi_x
-                    t303 = dOm0_z*psi_x
-                    t304 = t300 + t301 - t302 - t303
-                    t305 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t306 = e1*t305
-                    t307 = psi_y*t306
-                    t308 = psi_z*t306
-                    t309 = dpsi_x*e0
-                    t310 = -Om_y*psi_z + Om_z*psi_y
-                    t311 = -Om0_y*psi_z + Om0_z*psi_y
-                    t312 = e0*psi_x
-                    t313 = Om_z*dpsi_y + dOm_z*psi_y - t278 - t280
-                    t314 = Om0_z*dpsi_y + dOm0_z*psi_y - t277 - t279
-                    t315 = psi_x*t306
+                    t267 = Om0_y*dpsi_z
+                    t268 = Om_y*dpsi_z
+                    t269 = dOm0_y*psi_z
+                    t270 = dOm_y*psi_z
+                    t271 = -Om0_x*psi_y + Om0_y*psi_x
+                    t272 = dpsi_y*e0
+                    t273 = Om_x*psi_z - Om_z*psi_x
+                    t274 = dpsi_z*e0
+                    t275 = -Om_x*psi_y + Om_y*psi_x
+                    t276 = Om0_x*psi_z - Om0_z*psi_x
+                    t277 = Om0_x*dpsi_y
+                    t278 = dOm0_x*psi_y
+                    t279 = Om0_y*dpsi_x + dOm0_y*psi_x - t277 - t278
+                    t280 = e0*psi_y
+                    t281 = Om_x*dpsi_z
+                    t282 = dOm_x*psi_z
+                    t283 = Om_z*dpsi_x
+                    t284 = dOm_z*psi_x
+                    t285 = t281 + t282 - t283 - t284
+                    t286 = e0*psi_z
+                    t287 = Om_x*dpsi_y
+                    t288 = dOm_x*psi_y
+                    t289 = Om_y*dpsi_x + dOm_y*psi_x - t287 - t288
+                    t290 = Om0_x*dpsi_z
+                    t291 = dOm0_x*psi_z
+                    t292 = Om0_z*dpsi_x
+                    t293 = dOm0_z*psi_x
+                    t294 = t290 + t291 - t292 - t293
+                    t295 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t296 = e1*t295
+                    t297 = psi_y*t296
+                    t298 = psi_z*t296
+                    t299 = dpsi_x*e0
+                    t300 = -Om_y*psi_z + Om_z*psi_y
+                    t301 = -Om0_y*psi_z + Om0_z*psi_y
+                    t302 = e0*psi_x
+                    t303 = Om_z*dpsi_y + dOm_z*psi_y - t268 - t270
+                    t304 = Om0_z*dpsi_y + dOm0_z*psi_y - t267 - t269
+                    t305 = psi_x*t296
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t285 +
-                        dpsi_z*e0*t286 + e0*psi_y*t299 + e0*psi_z*t304 + e1*psi_y*t285*t305 +
-                        e1*psi_z*t286*t305 - 0.5*t277 - 0.5*t278 - 0.5*t279 - 0.5*t280 - t281*t282
-                        - t281*t307 - t283*t284 - t283*t308 - t289*t290 - t295*t296)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t281*t309 + t281*t315 + t284*t310 -
-                        t284*t311 - t285*t309 - t285*t315 + t289*t312 + (0.5)*t291 + (0.5)*t292 -
-                        0.5*t293 - 0.5*t294 + t296*t313 - t296*t314 - t299*t312 + (0.5)*t300 +
-                        (0.5)*t301 - 0.5*t302 - 0.5*t303 + t308*t310 - t308*t311)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t275 +
+                        dpsi_z*e0*t276 + e0*psi_y*t289 + e0*psi_z*t294 + e1*psi_y*t275*t295 +
+                        e1*psi_z*t276*t295 - 0.5*t267 - 0.5*t268 - 0.5*t269 - 0.5*t270 - t271*t272
+                        - t271*t297 - t273*t274 - t273*t298 - t279*t280 - t285*t286)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t271*t299 + t271*t305 + t274*t300 -
+                        t274*t301 - t275*t299 - t275*t305 + t279*t302 + (0.5)*t281 + (0.5)*t282 -
+                        0.5*t283 - 0.5*t284 + t286*t303 - t286*t304 - t289*t302 + (0.5)*t290 +
+                        (0.5)*t291 - 0.5*t292 - 0.5*t293 + t298*t300 - t298*t301)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t283 + dpsi_y*e0*t311 +
-                        e0*psi_x*t295 + e0*psi_y*t314 + e1*psi_x*t283*t305 + e1*psi_y*t305*t311 -
-                        t282*t310 - t286*t309 - t286*t315 - 0.5*t287 - 0.5*t288 - t290*t313 -
-                        0.5*t297 - 0.5*t298 - t304*t312 - t307*t310)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t273 + dpsi_y*e0*t301 +
+                        e0*psi_x*t285 + e0*psi_y*t304 + e1*psi_x*t273*t295 + e1*psi_y*t295*t301 -
+                        t272*t300 - t276*t299 - t276*t305 - 0.5*t277 - 0.5*t278 - t280*t303 -
+                        0.5*t287 - 0.5*t288 - t294*t302 - t297*t300)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
-                # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
-                rhs_x = rhs_y = rhs_z = 0.0
+                # differential: rate: rates of the elastic rotations, the frame held
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
-                    alpha_r = alpha_rs[j]
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                     ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
@@ -1394,135 +1400,212 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t316 = (0.5)*dpsi_z
-                    t317 = e0*psi_y
-                    t318 = dpsi_y*e0
-                    t319 = 2*psi_x
-                    t320 = dpsi_x*t319
-                    t321 = 2*psi_y
-                    t322 = 2*psi_z
-                    t323 = dpsi_y*t321 + dpsi_z*t322 + t320
-                    t324 = e1*t323
-                    t325 = psi_y*t324
-                    t326 = dpsi_x*t317 + psi_x*t318 + psi_x*t325
-                    t327 = Om0d_y*alpha_r
-                    t328 = (0.5)*dpsi_y
-                    t329 = e0*psi_z
-                    t330 = dpsi_z*e0
-                    t331 = psi_z*t324
-                    t332 = dpsi_x*t329 + psi_x*t330 + psi_x*t331
-                    t333 = Om0d_z*alpha_r
-                    t334 = psi_z*psi_z*t324 + t322*t330
-                    t335 = psi_y*psi_y*t324 + t318*t321
-                    t336 = Om0d_x*alpha_r
-                    t337 = -Om_x*psi_y + Om_y*psi_x
-                    t338 = dep_y*e0
-                    t339 = Om0_x*psi_z - Om0_z*psi_x
-                    t340 = dep_z*e0
-                    t341 = Om0_x*ep_z - Om0_z*ep_x
-                    t342 = -Om0_x*psi_y + Om0_y*psi_x
-                    t343 = Om_x*psi_z - Om_z*psi_x
-                    t344 = -Om0_x*ep_y + Om0_y*ep_x
-                    t345 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t346 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t347 = e0*ep_y
-                    t348 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t349 = e0*ep_z
-                    t350 = Om0_x*dep_z
-                    t351 = dOm0_x*ep_z
-                    t352 = -Om0_z*dep_x - dOm0_z*ep_x + t350 + t351
-                    t353 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t354 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t355 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t356 = -Om0_x*dep_y + Om0_y*dep_x - dOm0_x*ep_y + dOm0_y*ep_x
-                    t357 = ep_x*t319 + ep_y*t321 + ep_z*t322
-                    t358 = e1*t357
-                    t359 = dpsi_y*t358
-                    t360 = dpsi_z*t358
-                    t361 = ep_y*t324
-                    t362 = ep_z*t324
-                    t363 = psi_y*t358
-                    t364 = psi_z*t358
-                    t365 = (-A_x*dpsi_y + A_y*dpsi_x - Om_x*dep_y + Om_y*dep_x - dA_x*psi_y +
-                        dA_y*psi_x - dOm_x*ep_y + dOm_y*ep_x)
-                    t366 = A_x*dpsi_z
-                    t367 = Om_x*dep_z
-                    t368 = dA_x*psi_z
-                    t369 = dOm_x*ep_z
-                    t370 = (-A_z*dpsi_x - Om_z*dep_x - dA_z*psi_x - dOm_z*ep_x + t366 + t367 +
-                        t368 + t369)
-                    t371 = (dep_x*t319 + dep_y*t321 + dep_z*t322 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                        2*dpsi_z*ep_z)
-                    t372 = e1*t371
-                    t373 = psi_z*t372
-                    t374 = e2*t323*t357
-                    t375 = psi_z*t374
-                    t376 = (0.5)*dpsi_x
-                    t377 = psi_y*t330 + psi_z*t318 + psi_z*t325
-                    t378 = e0*t320 + psi_x*psi_x*t324
-                    t379 = dep_x*e0
-                    t380 = -Om_y*psi_z + Om_z*psi_y
-                    t381 = dpsi_x*e0
-                    t382 = -Om0_y*psi_z + Om0_z*psi_y
-                    t383 = -Om0_y*ep_z + Om0_z*ep_y
-                    t384 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t385 = e0*ep_x
-                    t386 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t387 = e0*psi_x
-                    t388 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t389 = -Om0_y*dep_z + Om0_z*dep_y - dOm0_y*ep_z + dOm0_z*ep_y
-                    t390 = dpsi_x*t358
-                    t391 = ep_x*t324
-                    t392 = psi_x*t324
-                    t393 = psi_x*t358
-                    t394 = (-A_y*dpsi_z + A_z*dpsi_y - Om_y*dep_z + Om_z*dep_y - dA_y*psi_z +
-                        dA_z*psi_y - dOm_y*ep_z + dOm_z*ep_y)
-                    t395 = psi_x*t372
-                    t396 = psi_x*t374
-                    rhs_x += (-alpha_r*((0.5)*A_y*dpsi_z - A_z*t328 + (0.5)*Om0_y*dep_z -
-                        0.5*Om0_z*dep_y + (0.5)*Om_y*dep_z - 0.5*Om_z*dep_y - dA_x +
-                        (0.5)*dA_y*psi_z - 0.5*dA_z*psi_y + (0.5)*dOm0_y*ep_z - 0.5*dOm0_z*ep_y +
-                        (0.5)*dOm_y*ep_z - 0.5*dOm_z*ep_y + dep_y*e0*t342 + dep_z*e0*t343 +
-                        dpsi_y*e0*t344 + dpsi_y*e1*t342*t357 + dpsi_z*e0*t353 +
-                        dpsi_z*e1*t343*t357 + e0*ep_y*t354 + e0*ep_z*t355 + e0*psi_y*t356 +
-                        e0*psi_z*t370 + e1*ep_y*t323*t342 + e1*ep_z*t323*t343 + e1*psi_y*t323*t344
-                        + e1*psi_y*t342*t371 + e1*psi_y*t354*t357 + e1*psi_z*t323*t353 +
-                        e1*psi_z*t343*t371 + e1*psi_z*t355*t357 + e2*psi_y*t323*t342*t357 +
-                        e2*psi_z*t323*t343*t357 - psi_y*t337*t372 - psi_y*t337*t374 - t317*t365 -
-                        t318*t345 - t325*t345 - t329*t352 - t330*t341 - t331*t341 - t337*t338 -
-                        t337*t359 - t337*t361 - t339*t340 - t339*t360 - t339*t362 - t339*t373 -
-                        t339*t375 - t346*t347 - t346*t363 - t348*t349 - t348*t364) - t327*(t316 +
-                        t326) - t333*(-t328 + t332) - t336*(-t334 - t335))
-                    rhs_y += (-alpha_r*((0.5)*A_z*dpsi_x + (0.5)*Om0_z*dep_x + (0.5)*Om_z*dep_x -
-                        dA_y + (0.5)*dA_z*psi_x + (0.5)*dOm0_z*ep_x + (0.5)*dOm_z*ep_x +
-                        dep_x*e0*t337 + dep_z*e0*t382 + dpsi_x*e0*t345 + dpsi_x*e1*t337*t357 +
-                        dpsi_z*e0*t383 + dpsi_z*e1*t357*t382 + e0*ep_x*t346 + e0*ep_z*t388 +
-                        e0*psi_x*t365 + e0*psi_z*t389 + e1*ep_x*t323*t337 + e1*ep_z*t323*t382 +
-                        e1*psi_x*t323*t345 + e1*psi_x*t337*t371 + e1*psi_x*t346*t357 +
-                        e1*psi_z*t323*t383 + e1*psi_z*t357*t388 + e1*psi_z*t371*t382 +
-                        e2*psi_x*t323*t337*t357 + e2*psi_z*t323*t357*t382 - t329*t394 - t330*t384
-                        - t331*t384 - t340*t380 - t342*t379 - t342*t390 - t342*t391 - t342*t395 -
-                        t342*t396 - t344*t381 - t344*t392 - t349*t386 - 0.5*t350 - 0.5*t351 -
-                        t354*t385 - t354*t393 - t356*t387 - t360*t380 - t362*t380 - t364*t386 -
-                        0.5*t366 - 0.5*t367 - 0.5*t368 - 0.5*t369 - t373*t380 - t375*t380) -
-                        t327*(-t334 - t378) - t333*(t376 + t377) - t336*(-t316 + t326))
-                    rhs_z += (-alpha_r*((0.5)*A_x*dpsi_y - 0.5*A_y*dpsi_x + (0.5)*Om0_x*dep_y -
-                        0.5*Om0_y*dep_x + (0.5)*Om_x*dep_y - 0.5*Om_y*dep_x + (0.5)*dA_x*psi_y -
-                        0.5*dA_y*psi_x - dA_z + (0.5)*dOm0_x*ep_y - 0.5*dOm0_y*ep_x +
-                        (0.5)*dOm_x*ep_y - 0.5*dOm_y*ep_x + dep_x*e0*t339 + dep_y*e0*t380 +
-                        dpsi_x*e0*t341 + dpsi_x*e1*t339*t357 + dpsi_y*e0*t384 +
-                        dpsi_y*e1*t357*t380 + e0*ep_x*t348 + e0*ep_y*t386 + e0*psi_x*t352 +
-                        e0*psi_y*t394 + e1*ep_x*t323*t339 + e1*ep_y*t323*t380 + e1*psi_x*t323*t341
-                        + e1*psi_x*t339*t371 + e1*psi_x*t348*t357 + e1*psi_y*t323*t384 +
-                        e1*psi_y*t357*t386 + e1*psi_y*t371*t380 + e2*psi_x*t323*t339*t357 +
-                        e2*psi_y*t323*t357*t380 - psi_y*t372*t382 - psi_y*t374*t382 - t317*t389 -
-                        t318*t383 - t325*t383 - t338*t382 - t343*t379 - t343*t390 - t343*t391 -
-                        t343*t395 - t343*t396 - t347*t388 - t353*t381 - t353*t392 - t355*t385 -
-                        t355*t393 - t359*t382 - t361*t382 - t363*t388 - t370*t387) - t327*(-t376 +
-                        t377) - t333*(-t335 - t378) - t336*(t328 + t332))
+                    t306 = A_y*dpsi_z
+                    t307 = Om0_y*dep_z
+                    t308 = Om_y*dep_z
+                    t309 = dA_y*psi_z
+                    t310 = dOm0_y*ep_z
+                    t311 = dOm_y*ep_z
+                    t312 = -Om_x*psi_y + Om_y*psi_x
+                    t313 = dep_y*e0
+                    t314 = Om0_x*psi_z - Om0_z*psi_x
+                    t315 = dep_z*e0
+                    t316 = Om0_x*ep_z - Om0_z*ep_x
+                    t317 = dpsi_z*e0
+                    t318 = -Om0_x*psi_y + Om0_y*psi_x
+                    t319 = Om_x*psi_z - Om_z*psi_x
+                    t320 = -Om0_x*ep_y + Om0_y*ep_x
+                    t321 = dpsi_y*e0
+                    t322 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t323 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t324 = e0*ep_y
+                    t325 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t326 = e0*ep_z
+                    t327 = Om0_x*dep_z
+                    t328 = dOm0_x*ep_z
+                    t329 = Om0_z*dep_x
+                    t330 = dOm0_z*ep_x
+                    t331 = t327 + t328 - t329 - t330
+                    t332 = e0*psi_z
+                    t333 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t334 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t335 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t336 = Om0_x*dep_y
+                    t337 = dOm0_x*ep_y
+                    t338 = Om0_y*dep_x + dOm0_y*ep_x - t336 - t337
+                    t339 = e0*psi_y
+                    t340 = 2*psi_x
+                    t341 = 2*psi_y
+                    t342 = 2*psi_z
+                    t343 = ep_x*t340 + ep_y*t341 + ep_z*t342
+                    t344 = e1*t343
+                    t345 = dpsi_y*t344
+                    t346 = dpsi_z*t344
+                    t347 = dpsi_x*t340 + dpsi_y*t341 + dpsi_z*t342
+                    t348 = e1*t347
+                    t349 = ep_y*t348
+                    t350 = ep_z*t348
+                    t351 = psi_z*t348
+                    t352 = psi_y*t348
+                    t353 = psi_y*t344
+                    t354 = psi_z*t344
+                    t355 = A_x*dpsi_y
+                    t356 = Om_x*dep_y
+                    t357 = dA_x*psi_y
+                    t358 = dOm_x*ep_y
+                    t359 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t355 - t356 - t357
+                        - t358)
+                    t360 = A_x*dpsi_z
+                    t361 = Om_x*dep_z
+                    t362 = dA_x*psi_z
+                    t363 = dOm_x*ep_z
+                    t364 = A_z*dpsi_x
+                    t365 = Om_z*dep_x
+                    t366 = dA_z*psi_x
+                    t367 = dOm_z*ep_x
+                    t368 = t360 + t361 + t362 + t363 - t364 - t365 - t366 - t367
+                    t369 = (e1*(dep_x*t340 + dep_y*t341 + dep_z*t342 + 2*dpsi_x*ep_x +
+                        2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
+                    t370 = psi_y*t312
+                    t371 = psi_z*t369
+                    t372 = t318*t369
+                    t373 = e2*t343*t347
+                    t374 = psi_z*t373
+                    t375 = t318*t373
+                    t376 = dep_x*e0
+                    t377 = -Om_y*psi_z + Om_z*psi_y
+                    t378 = dpsi_x*e0
+                    t379 = -Om0_y*psi_z + Om0_z*psi_y
+                    t380 = -Om0_y*ep_z + Om0_z*ep_y
+                    t381 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t382 = e0*ep_x
+                    t383 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t384 = e0*psi_x
+                    t385 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t386 = Om0_z*dep_y + dOm0_z*ep_y - t307 - t310
+                    t387 = dpsi_x*t344
+                    t388 = ep_x*t348
+                    t389 = psi_x*t348
+                    t390 = psi_x*t344
+                    t391 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t306 - t308 - t309
+                        - t311)
+                    t392 = psi_x*t369
+                    t393 = psi_x*t373
+                    t394 = psi_y*t369
+                    t395 = psi_y*t373
+                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
+                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t372 -
+                        psi_y*t375 - 0.5*t306 - 0.5*t307 - 0.5*t308 - 0.5*t309 - 0.5*t310 -
+                        0.5*t311 + t312*t313 + t312*t345 + t312*t349 - t313*t318 + t314*t315 +
+                        t314*t346 + t314*t350 + t314*t371 + t314*t374 - t315*t319 + t316*t317 +
+                        t316*t351 - t317*t333 - t318*t345 - t318*t349 - t319*t346 - t319*t350 -
+                        t319*t371 - t319*t374 - t320*t321 - t320*t352 + t321*t322 + t322*t352 +
+                        t323*t324 + t323*t353 - t324*t334 + t325*t326 + t325*t354 - t326*t335 +
+                        t331*t332 - t332*t368 - t333*t351 - t334*t353 - t335*t354 - t338*t339 +
+                        t339*t359 + t369*t370 + t370*t373)
+                    detad[j3 + 1] = (dA_y + psi_x*t372 + psi_x*t375 - t312*t376 - t312*t387 -
+                        t312*t388 - t312*t392 - t312*t393 + t315*t377 - t315*t379 - t317*t380 +
+                        t317*t381 + t318*t376 + t318*t387 + t318*t388 + t320*t378 + t320*t389 -
+                        t322*t378 - t322*t389 - t323*t382 - t323*t390 + t326*t383 - t326*t385 +
+                        (0.5)*t327 + (0.5)*t328 - 0.5*t329 - 0.5*t330 - t332*t386 + t332*t391 +
+                        t334*t382 + t334*t390 + t338*t384 + t346*t377 - t346*t379 + t350*t377 -
+                        t350*t379 - t351*t380 + t351*t381 + t354*t383 - t354*t385 - t359*t384 +
+                        (0.5)*t360 + (0.5)*t361 + (0.5)*t362 + (0.5)*t363 - 0.5*t364 - 0.5*t365 -
+                        0.5*t366 - 0.5*t367 + t371*t377 - t371*t379 + t374*t377 - t374*t379)
+                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
+                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t313*t377
+                        + t313*t379 - t314*t376 - t314*t387 - t314*t388 - t314*t392 - t314*t393 -
+                        t316*t378 - t316*t389 + t319*t376 + t319*t387 + t319*t388 + t319*t392 +
+                        t319*t393 + t321*t380 - t321*t381 - t324*t383 + t324*t385 - t325*t382 -
+                        t325*t390 - t331*t384 + t333*t378 + t333*t389 + t335*t382 + t335*t390 -
+                        0.5*t336 - 0.5*t337 + t339*t386 - t339*t391 - t345*t377 + t345*t379 -
+                        t349*t377 + t349*t379 + t352*t380 - t352*t381 - t353*t383 + t353*t385 -
+                        0.5*t355 - 0.5*t356 - 0.5*t357 - 0.5*t358 + t368*t384 - t377*t394 -
+                        t377*t395 + t379*t394 + t379*t395)
+                # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
+                rhs_x = rhs_y = rhs_z = 0.0
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + 3*j
+                    alpha_r = alpha_rs[j]
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
+                    depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
+                    e0 = e0s[j]
+                    e1 = e1s[j]
+                    t396 = (0.5)*dpsi_z
+                    t397 = dpsi_x*e0
+                    t398 = e0*psi_x
+                    t399 = 2*dpsi_x*psi_x
+                    t400 = 2*dpsi_y*psi_y
+                    t401 = 2*dpsi_z*psi_z
+                    t402 = e1*(t399 + t400 + t401)
+                    t403 = psi_x*t402
+                    t404 = dpsi_y*t398 + psi_y*t397 + psi_y*t403
+                    t405 = Om0d_y*alpha_r
+                    t406 = (0.5)*dpsi_y
+                    t407 = dpsi_z*t398 + psi_z*t397 + psi_z*t403
+                    t408 = Om0d_z*alpha_r
+                    t409 = e0*t401 + psi_z*psi_z*t402
+                    t410 = e0*t400 + psi_y*psi_y*t402
+                    t411 = Om0d_x*alpha_r
+                    t412 = (0.5)*dpsi_x
+                    t413 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t402
+                    t414 = e0*t399 + psi_x*psi_x*t402
+                    rhs_x += (alpha_r*depd_x - t405*(t396 + t404) - t408*(-t406 + t407) -
+                        t411*(-t409 - t410))
+                    rhs_y += (alpha_r*depd_y - t405*(-t409 - t414) - t408*(t412 + t413) -
+                        t411*(-t396 + t404))
+                    rhs_z += (alpha_r*depd_z - t405*(-t412 + t413) - t408*(-t410 - t414) -
+                        t411*(t406 + t407))
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
+                # differential: rate: rates of the elastic rotations
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + 3*j
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
+                    depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
+                    e0 = e0s[j]
+                    e1 = e1s[j]
+                    t415 = (0.5)*psi_z
+                    t416 = e0*psi_x
+                    t417 = psi_y*t416
+                    t418 = (0.5)*psi_y
+                    t419 = psi_z*t416
+                    t420 = psi_y*psi_y
+                    t421 = e0*t420
+                    t422 = psi_z*psi_z
+                    t423 = e0*t422 - 1
+                    t424 = (0.5)*dpsi_z
+                    t425 = dpsi_x*e0
+                    t426 = 2*dpsi_x*psi_x
+                    t427 = 2*dpsi_y*psi_y
+                    t428 = 2*dpsi_z*psi_z
+                    t429 = e1*(t426 + t427 + t428)
+                    t430 = psi_x*t429
+                    t431 = dpsi_y*t416 + psi_y*t425 + psi_y*t430
+                    t432 = (0.5)*dpsi_y
+                    t433 = dpsi_z*t416 + psi_z*t425 + psi_z*t430
+                    t434 = e0*t428 + t422*t429
+                    t435 = e0*t427 + t420*t429
+                    t436 = (0.5)*psi_x
+                    t437 = e0*psi_z
+                    t438 = psi_y*t437
+                    t439 = psi_x*psi_x
+                    t440 = e0*t439
+                    t441 = (0.5)*dpsi_x
+                    t442 = dpsi_y*t437 + dpsi_z*e0*psi_y + psi_y*psi_z*t429
+                    t443 = e0*t426 + t429*t439
+                    detad[j3] = (Om0d_x*(t434 + t435) + Om0d_y*(-t424 - t431) + Om0d_z*(t432 -
+                        t433) + dOm0d_x*(t421 + t423) + dOm0d_y*(-t415 - t417) + dOm0d_z*(t418 -
+                        t419) + depd_x)
+                    detad[j3 + 1] = (Om0d_x*(t424 - t431) + Om0d_y*(t434 + t443) + Om0d_z*(-t441 -
+                        t442) + dOm0d_x*(t415 - t417) + dOm0d_y*(t423 + t440) + dOm0d_z*(-t436 -
+                        t438) + depd_y)
+                    detad[j3 + 2] = (Om0d_x*(-t432 - t433) + Om0d_y*(t441 - t442) + Om0d_z*(t435 +
+                        t443) + dOm0d_x*(-t418 - t419) + dOm0d_y*(t436 - t438) + dOm0d_z*(t421 +
+                        t440 - 1) + depd_z)
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1534,173 +1617,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t397 = X_y + u_y
-                    t398 = X_z + u_z
-                    t399 = X_x + u_x
+                    t444 = X_y + u_y
+                    t445 = X_z + u_z
+                    t446 = X_x + u_x
                     detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
                         Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
                         dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t398 + dOm0d_z*t397 - da0_x + dacc_x)
+                        dOm0d_y*t445 + dOm0d_z*t444 - da0_x + dacc_x)
                     detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                         Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                         dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t398 - dOm0d_z*t399 - da0_y + dacc_y)
+                        dOm0d_x*t445 - dOm0d_z*t446 - da0_y + dacc_y)
                     detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                         Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                         dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t397 + dOm0d_y*t399 - da0_z + dacc_z)
-                # differential: rate: rates of the elastic rotations
-                for j in range(N_ROTATIONS):
-                    j3 = ROTATIONS + 3*j
-                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-                    Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-                    ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-                    A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
-                    dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
-                    dA_x, dA_y, dA_z = dae[j3], dae[j3 + 1], dae[j3 + 2]
-                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                    dep_x, dep_y, dep_z = deta[j3], deta[j3 + 1], deta[j3 + 2]
-                    e0 = e0s[j]
-                    e1 = e1s[j]
-                    e2 = e2s[j]
-                    t400 = A_y*dpsi_z
-                    t401 = Om0_y*dep_z
-                    t402 = Om0d_y*dpsi_z
-                    t403 = Om_y*dep_z
-                    t404 = dA_y*psi_z
-                    t405 = dOm0_y*ep_z
-                    t406 = dOm0d_y*psi_z
-                    t407 = dOm_y*ep_z
-                    t408 = -Om0_x*psi_y + Om0_y*psi_x
-                    t409 = dep_y*e0
-                    t410 = Om_x*psi_z - Om_z*psi_x
-                    t411 = dep_z*e0
-                    t412 = -Om_x*psi_y + Om_y*psi_x
-                    t413 = Om0_x*psi_z - Om0_z*psi_x
-                    t414 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t415 = dpsi_y*e0
-                    t416 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t417 = dpsi_z*e0
-                    t418 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t419 = e0*ep_y
-                    t420 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t421 = e0*ep_z
-                    t422 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t423 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t424 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t425 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t426 = 2*psi_x
-                    t427 = 2*psi_y
-                    t428 = 2*psi_z
-                    t429 = ep_x*t426 + ep_y*t427 + ep_z*t428
-                    t430 = e1*t429
-                    t431 = dpsi_y*t430
-                    t432 = dpsi_z*t430
-                    t433 = dpsi_x*t426 + dpsi_y*t427 + dpsi_z*t428
-                    t434 = e1*t433
-                    t435 = ep_y*t434
-                    t436 = ep_z*t434
-                    t437 = psi_y*t434
-                    t438 = psi_y*t430
-                    t439 = psi_z*t434
-                    t440 = psi_z*t430
-                    t441 = Om0_x*dep_y
-                    t442 = Om0d_x*dpsi_y
-                    t443 = dOm0_x*ep_y
-                    t444 = dOm0d_x*psi_y
-                    t445 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t441 -
-                        t442 - t443 - t444)
-                    t446 = e0*psi_y
-                    t447 = A_x*dpsi_z
-                    t448 = Om_x*dep_z
-                    t449 = dA_x*psi_z
-                    t450 = dOm_x*ep_z
-                    t451 = A_z*dpsi_x
-                    t452 = Om_z*dep_x
-                    t453 = dA_z*psi_x
-                    t454 = dOm_z*ep_x
-                    t455 = t447 + t448 + t449 + t450 - t451 - t452 - t453 - t454
-                    t456 = e0*psi_z
-                    t457 = A_x*dpsi_y
-                    t458 = Om_x*dep_y
-                    t459 = dA_x*psi_y
-                    t460 = dOm_x*ep_y
-                    t461 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t457 - t458 - t459
-                        - t460)
-                    t462 = Om0_x*dep_z
-                    t463 = Om0d_x*dpsi_z
-                    t464 = dOm0_x*ep_z
-                    t465 = dOm0d_x*psi_z
-                    t466 = Om0_z*dep_x
-                    t467 = Om0d_z*dpsi_x
-                    t468 = dOm0_z*ep_x
-                    t469 = dOm0d_z*psi_x
-                    t470 = t462 + t463 + t464 + t465 - t466 - t467 - t468 - t469
-                    t471 = (dep_x*t426 + dep_y*t427 + dep_z*t428 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                        2*dpsi_z*ep_z)
-                    t472 = e1*t471
-                    t473 = t408*t472
-                    t474 = psi_z*t472
-                    t475 = e2*t429*t433
-                    t476 = t408*t475
-                    t477 = psi_z*t475
-                    t478 = dep_x*e0
-                    t479 = -Om_y*psi_z + Om_z*psi_y
-                    t480 = -Om0_y*psi_z + Om0_z*psi_y
-                    t481 = dpsi_x*e0
-                    t482 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t483 = e0*ep_x
-                    t484 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t485 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t486 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t487 = dpsi_x*t430
-                    t488 = ep_x*t434
-                    t489 = psi_x*t434
-                    t490 = psi_x*t430
-                    t491 = e0*psi_x
-                    t492 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t400 - t403 - t404
-                        - t407)
-                    t493 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t401 -
-                        t402 - t405 - t406)
-                    t494 = psi_x*t472
-                    t495 = psi_x*t475
-                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
-                        (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t412 + dep_z*e0*t413 +
-                        dpsi_y*e0*t422 + dpsi_y*e1*t412*t429 + dpsi_z*e0*t423 +
-                        dpsi_z*e1*t413*t429 + e0*ep_y*t424 + e0*ep_z*t425 + e0*psi_y*t461 +
-                        e0*psi_z*t470 + e1*ep_y*t412*t433 + e1*ep_z*t413*t433 + e1*psi_y*t412*t471
-                        + e1*psi_y*t422*t433 + e1*psi_y*t424*t429 + e1*psi_z*t413*t471 +
-                        e1*psi_z*t423*t433 + e1*psi_z*t425*t429 + e2*psi_y*t412*t429*t433 +
-                        e2*psi_z*t413*t429*t433 - psi_y*t473 - psi_y*t476 - 0.5*t400 - 0.5*t401 -
-                        0.5*t402 - 0.5*t403 - 0.5*t404 - 0.5*t405 - 0.5*t406 - 0.5*t407 -
-                        t408*t409 - t408*t431 - t408*t435 - t410*t411 - t410*t432 - t410*t436 -
-                        t410*t474 - t410*t477 - t414*t415 - t414*t437 - t416*t417 - t416*t439 -
-                        t418*t419 - t418*t438 - t420*t421 - t420*t440 - t445*t446 - t455*t456)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t473 + psi_x*t476 + t408*t478 +
-                        t408*t487 + t408*t488 + t411*t479 - t411*t480 - t412*t478 - t412*t487 -
-                        t412*t488 - t412*t494 - t412*t495 + t414*t481 + t414*t489 + t417*t482 -
-                        t417*t485 + t418*t483 + t418*t490 + t421*t484 - t421*t486 - t422*t481 -
-                        t422*t489 - t424*t483 - t424*t490 + t432*t479 - t432*t480 + t436*t479 -
-                        t436*t480 + t439*t482 - t439*t485 + t440*t484 - t440*t486 + t445*t491 +
-                        (0.5)*t447 + (0.5)*t448 + (0.5)*t449 + (0.5)*t450 - 0.5*t451 - 0.5*t452 -
-                        0.5*t453 - 0.5*t454 + t456*t492 - t456*t493 - t461*t491 + (0.5)*t462 +
-                        (0.5)*t463 + (0.5)*t464 + (0.5)*t465 - 0.5*t466 - 0.5*t467 - 0.5*t468 -
-                        0.5*t469 + t474*t479 - t474*t480 + t477*t479 - t477*t480)
-                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
-                        (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t410 +
-                        dep_y*e0*t480 + dpsi_x*e0*t416 + dpsi_x*e1*t410*t429 + dpsi_y*e0*t485 +
-                        dpsi_y*e1*t429*t480 + e0*ep_x*t420 + e0*ep_y*t486 + e0*psi_x*t455 +
-                        e0*psi_y*t493 + e1*ep_x*t410*t433 + e1*ep_y*t433*t480 + e1*psi_x*t410*t471
-                        + e1*psi_x*t416*t433 + e1*psi_x*t420*t429 + e1*psi_y*t429*t486 +
-                        e1*psi_y*t433*t485 + e1*psi_y*t471*t480 + e2*psi_x*t410*t429*t433 +
-                        e2*psi_y*t429*t433*t480 - psi_y*t472*t479 - psi_y*t475*t479 - t409*t479 -
-                        t413*t478 - t413*t487 - t413*t488 - t413*t494 - t413*t495 - t415*t482 -
-                        t419*t484 - t423*t481 - t423*t489 - t425*t483 - t425*t490 - t431*t479 -
-                        t435*t479 - t437*t482 - t438*t484 - 0.5*t441 - 0.5*t442 - 0.5*t443 -
-                        0.5*t444 - t446*t492 - 0.5*t457 - 0.5*t458 - 0.5*t459 - 0.5*t460 -
-                        t470*t491)
+                        dOm0d_x*t444 + dOm0d_y*t446 - da0_z + dacc_z)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1710,12 +1641,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
                 dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
                 dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
-                # coordinates that determine the others, of dy
-                gather(dy, kept, dz, free, hN)
                 # coordinates that determine the others, of deta
-                gather(deta, kept, dzd, free, hN)
+                to_free(deta, axes, order, unordered, dzd, bound, bound_free, free, hN)
                 # coordinates that determine the others, of detad
-                gather(detad, kept, dzdd, free, hN)
+                to_free(detad, axes, order, unordered, dzdd, bound, bound_free, free, hN)
                 # differential: rates of eta
                 rows_times(Zq, dzd, at(dzd, free), free, slaved, hn)
                 # of Q_b y
@@ -1728,17 +1657,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 add_rows_times(Zd, dzd, at(dzdd, free), free, slaved, hn)
                 # of Q_b y
                 add_rows_times(Za, dz, at(dzdd, free), free, slaved, hn)
-                # differential: motion of the frame as a factor of local tangents
+                # differential: motion of the frame in axes of the body, a factor of local tangents
+                turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                    turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
+                    turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                dzdd[N] = da0_x - dgamma_x
-                dzdd[N + 1] = da0_y - dgamma_y
-                dzdd[N + 2] = da0_z - dgamma_z
-                dzdd[N + 3] = dOm0d_x
-                dzdd[N + 4] = dOm0d_y
-                dzdd[N + 5] = dOm0d_z
-                dzd[N] = dOm0_x
-                dzd[N + 1] = dOm0_y
-                dzd[N + 2] = dOm0_z
+                t447 = da0_x - dgamma_x
+                t448 = da0_y - dgamma_y
+                t449 = da0_z - dgamma_z
+                dzdd[N] = t447*turn_xx + t448*turn_yx + t449*turn_zx
+                dzdd[N + 1] = t447*turn_xy + t448*turn_yy + t449*turn_zy
+                dzdd[N + 2] = t447*turn_xz + t448*turn_yz + t449*turn_zz
+                dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
+                dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
+                dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
+                dzd[N] = dOm0_x*turn_xx + dOm0_y*turn_yx + dOm0_z*turn_zx
+                dzd[N + 1] = dOm0_x*turn_xy + dOm0_y*turn_yy + dOm0_z*turn_zy
+                dzd[N + 2] = dOm0_x*turn_xz + dOm0_y*turn_yz + dOm0_z*turn_zz
                 # differential of the local forces by dzd
                 add_block_times(Lv, dzd, dlocal, N + 6, N + 3, deep)
                 # differential of the local forces by dzdd
@@ -1746,7 +1681,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # forces on eta, pulled back
                 add_block_times(Zq, at(dlocal, free), dlocal, free, slaved, hn)
                 # forces conjugate to y
-                scatter(dlocal, kept, ds, free, n)
+                from_free(dlocal, axes_back, order, unordered, ds, bound, bound_free, free)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -1757,24 +1692,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t496 = X_z + u_z
-                    t497 = X_y + u_y
-                    t498 = X_x + u_x
+                    t450 = X_z + u_z
+                    t451 = X_y + u_y
+                    t452 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t496 - df_z*t497 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t496 + df_z*t498 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t497 - df_y*t498 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t450 - df_z*t451 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t450 + df_z*t452 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t451 - df_y*t452 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
+                turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                    turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
+                    turn[8])
                 dRt_x, dRt_y, dRt_z = dlocal[N], dlocal[N + 1], dlocal[N + 2]
                 dRr_x, dRr_y, dRr_z = dlocal[N + 3], dlocal[N + 4], dlocal[N + 5]
-                dF_x += dRt_x
-                dF_y += dRt_y
-                dF_z += dRt_z
-                dW_x += dRr_x
-                dW_y += dRr_y
-                dW_z += dRr_z
+                dF_x += dRt_x*turn_xx + dRt_y*turn_xy + dRt_z*turn_xz
+                dF_y += dRt_x*turn_yx + dRt_y*turn_yy + dRt_z*turn_yz
+                dF_z += dRt_x*turn_zx + dRt_y*turn_zy + dRt_z*turn_zz
+                dW_x += dRr_x*turn_xx + dRr_y*turn_xy + dRr_z*turn_xz
+                dW_y += dRr_x*turn_yx + dRr_y*turn_yy + dRr_z*turn_yz
+                dW_z += dRr_x*turn_zx + dRr_y*turn_zy + dRr_z*turn_zz
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1784,25 +1722,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t499 = -m_x*psi_y + m_y*psi_x
-                    t500 = m_x*psi_z - m_z*psi_x
-                    t501 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t502 = dm_x*psi_z
-                    t503 = dpsi_z*m_x
-                    t504 = -dm_z*psi_x - dpsi_x*m_z + t502 + t503
-                    t505 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t506 = e1*t505
-                    t507 = -m_y*psi_z + m_z*psi_y
-                    t508 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t499 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t500 + (0.5)*dpsi_z*m_y - e0*psi_y*t501 +
-                        e0*psi_z*t504 + e1*psi_z*t500*t505 - psi_y*t499*t506)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t499 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t507 + e0*psi_x*t501 - e0*psi_z*t508 + e1*psi_x*t499*t505 -
-                        psi_z*t506*t507 - 0.5*t502 - 0.5*t503)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t500 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t507 + (0.5)*dpsi_y*m_x - e0*psi_x*t504 +
-                        e0*psi_y*t508 + e1*psi_y*t505*t507 - psi_x*t500*t506)
+                    t453 = -m_x*psi_y + m_y*psi_x
+                    t454 = m_x*psi_z - m_z*psi_x
+                    t455 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t456 = dm_x*psi_z
+                    t457 = dpsi_z*m_x
+                    t458 = -dm_z*psi_x - dpsi_x*m_z + t456 + t457
+                    t459 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t460 = e1*t459
+                    t461 = -m_y*psi_z + m_z*psi_y
+                    t462 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t453 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t454 + (0.5)*dpsi_z*m_y - e0*psi_y*t455 +
+                        e0*psi_z*t458 + e1*psi_z*t454*t459 - psi_y*t453*t460)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t453 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t461 + e0*psi_x*t455 - e0*psi_z*t462 + e1*psi_x*t453*t459 -
+                        psi_z*t460*t461 - 0.5*t456 - 0.5*t457)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t454 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t461 + (0.5)*dpsi_y*m_x - e0*psi_x*t458 +
+                        e0*psi_y*t462 + e1*psi_y*t459*t461 - psi_x*t454*t460)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1812,33 +1750,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t509 = dpsi_y*wp_z
-                    t510 = dpsi_z*wp_y
-                    t511 = psi_x*wp_y - psi_y*wp_x
-                    t512 = e0*t511
-                    t513 = dpsi_x*wp_y
-                    t514 = dpsi_y*wp_x
-                    t515 = e0*(t513 - t514)
-                    t516 = -psi_x*wp_z + psi_z*wp_x
-                    t517 = dpsi_x*wp_z
-                    t518 = dpsi_z*wp_x - t517
-                    t519 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t520 = e1*t519
-                    t521 = t511*t520
-                    t522 = psi_y*wp_z - psi_z*wp_y
-                    t523 = t509 - t510
-                    rhs_x += (-alpha_r*(dpsi_y*t512 - dpsi_z*e0*t516 - e0*psi_z*t518 + psi_y*t515
-                        + psi_y*t521 - psi_z*t516*t520 + (0.5)*t509 - 0.5*t510))
-                    rhs_y += (-alpha_r*(-dpsi_x*t512 + dpsi_z*e0*t522 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t523 + e1*psi_z*t519*t522 - psi_x*t515 - psi_x*t521 - 0.5*t517))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t516 - dpsi_y*e0*t522 + e0*psi_x*t518 -
-                        e0*psi_y*t523 + psi_x*t516*t520 - psi_y*t520*t522 + (0.5)*t513 - 0.5*t514))
-                t524 = dW_x + rhs_x
-                t525 = dW_y + rhs_y
-                t526 = dW_z + rhs_z
-                dwp_x = Bxx*t524 + Byx*t525 + Bzx*t526
-                dwp_y = Bxy*t524 + Byy*t525 + Bzy*t526
-                dwp_z = Bxz*t524 + Byz*t525 + Bzz*t526
+                    t463 = dpsi_y*wp_z
+                    t464 = dpsi_z*wp_y
+                    t465 = psi_x*wp_y - psi_y*wp_x
+                    t466 = e0*t465
+                    t467 = dpsi_x*wp_y
+                    t468 = dpsi_y*wp_x
+                    t469 = e0*(t467 - t468)
+                    t470 = -psi_x*wp_z + psi_z*wp_x
+                    t471 = dpsi_x*wp_z
+                    t472 = dpsi_z*wp_x - t471
+                    t473 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t474 = e1*t473
+                    t475 = t465*t474
+                    t476 = psi_y*wp_z - psi_z*wp_y
+                    t477 = t463 - t464
+                    rhs_x += (-alpha_r*(dpsi_y*t466 - dpsi_z*e0*t470 - e0*psi_z*t472 + psi_y*t469
+                        + psi_y*t475 - psi_z*t470*t474 + (0.5)*t463 - 0.5*t464))
+                    rhs_y += (-alpha_r*(-dpsi_x*t466 + dpsi_z*e0*t476 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t477 + e1*psi_z*t473*t476 - psi_x*t469 - psi_x*t475 - 0.5*t471))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t470 - dpsi_y*e0*t476 + e0*psi_x*t472 -
+                        e0*psi_y*t477 + psi_x*t470*t474 - psi_y*t474*t476 + (0.5)*t467 - 0.5*t468))
+                t478 = dW_x + rhs_x
+                t479 = dW_y + rhs_y
+                t480 = dW_z + rhs_z
+                dwp_x = Bxx*t478 + Byx*t479 + Bzx*t480
+                dwp_y = Bxy*t478 + Byy*t479 + Bzy*t480
+                dwp_z = Bxz*t478 + Byz*t479 + Bzz*t480
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1865,58 +1803,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t527 = dm_y*psi_z
-                    t528 = dpsi_z*m_y
-                    t529 = -m_x*psi_y + m_y*psi_x
-                    t530 = dpsi_y*e0
-                    t531 = m_x*psi_z - m_z*psi_x
-                    t532 = dpsi_z*e0
-                    t533 = dm_x*psi_y
-                    t534 = dpsi_y*m_x
-                    t535 = dm_y*psi_x + dpsi_x*m_y - t533 - t534
-                    t536 = e0*psi_y
-                    t537 = dm_x*psi_z
-                    t538 = dpsi_z*m_x
-                    t539 = dm_z*psi_x
-                    t540 = dpsi_x*m_z
-                    t541 = t537 + t538 - t539 - t540
-                    t542 = e0*psi_z
-                    t543 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t544 = psi_y*t543
-                    t545 = psi_z*t543
-                    t546 = dpsi_y*wp_z
-                    t547 = dpsi_z*wp_y
-                    t548 = dwp_y*psi_z
-                    t549 = dwp_z*psi_y
-                    t550 = psi_x*wp_y - psi_y*wp_x
-                    t551 = -psi_x*wp_z + psi_z*wp_x
-                    t552 = dpsi_x*wp_y
-                    t553 = dwp_y*psi_x
-                    t554 = dpsi_y*wp_x
-                    t555 = dwp_x*psi_y
-                    t556 = t552 + t553 - t554 - t555
-                    t557 = dpsi_x*wp_z
-                    t558 = dwp_z*psi_x
-                    t559 = dpsi_z*wp_x + dwp_x*psi_z - t557 - t558
-                    t560 = -m_y*psi_z + m_z*psi_y
-                    t561 = dpsi_x*e0
-                    t562 = dm_z*psi_y + dpsi_y*m_z - t527 - t528
-                    t563 = e0*psi_x
-                    t564 = psi_x*t543
-                    t565 = psi_y*wp_z - psi_z*wp_y
-                    t566 = t546 - t547 - t548 + t549
-                    dg[j3] = (alpha_r*(dwp_x + t530*t550 - t532*t551 + t536*t556 - t542*t559 +
-                        t544*t550 - t545*t551 - 0.5*t546 + (0.5)*t547 + (0.5)*t548 - 0.5*t549) +
-                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t527 + (0.5)*t528 +
-                        t529*t530 + t529*t544 - t531*t532 - t531*t545 + t535*t536 - t541*t542)
-                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t532*t565
-                        + t542*t566 + t545*t565 - t550*t561 - t550*t564 - t556*t563 + (0.5)*t557 +
-                        (0.5)*t558) + dm_y - t529*t561 - t529*t564 + t532*t560 - t535*t563 -
-                        0.5*t537 - 0.5*t538 + (0.5)*t539 + (0.5)*t540 + t542*t562 + t545*t560)
-                    dg[j3 + 2] = (alpha_r*(dwp_z - t530*t565 - t536*t566 - t544*t565 + t551*t561 +
-                        t551*t564 - 0.5*t552 - 0.5*t553 + (0.5)*t554 + (0.5)*t555 + t559*t563) -
-                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t530*t560 + t531*t561 + t531*t564
-                        + (0.5)*t533 + (0.5)*t534 - t536*t562 + t541*t563 - t544*t560)
+                    t481 = dm_y*psi_z
+                    t482 = dpsi_z*m_y
+                    t483 = -m_x*psi_y + m_y*psi_x
+                    t484 = dpsi_y*e0
+                    t485 = m_x*psi_z - m_z*psi_x
+                    t486 = dpsi_z*e0
+                    t487 = dm_x*psi_y
+                    t488 = dpsi_y*m_x
+                    t489 = dm_y*psi_x + dpsi_x*m_y - t487 - t488
+                    t490 = e0*psi_y
+                    t491 = dm_x*psi_z
+                    t492 = dpsi_z*m_x
+                    t493 = dm_z*psi_x
+                    t494 = dpsi_x*m_z
+                    t495 = t491 + t492 - t493 - t494
+                    t496 = e0*psi_z
+                    t497 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t498 = psi_y*t497
+                    t499 = psi_z*t497
+                    t500 = dpsi_y*wp_z
+                    t501 = dpsi_z*wp_y
+                    t502 = dwp_y*psi_z
+                    t503 = dwp_z*psi_y
+                    t504 = psi_x*wp_y - psi_y*wp_x
+                    t505 = -psi_x*wp_z + psi_z*wp_x
+                    t506 = dpsi_x*wp_y
+                    t507 = dwp_y*psi_x
+                    t508 = dpsi_y*wp_x
+                    t509 = dwp_x*psi_y
+                    t510 = t506 + t507 - t508 - t509
+                    t511 = dpsi_x*wp_z
+                    t512 = dwp_z*psi_x
+                    t513 = dpsi_z*wp_x + dwp_x*psi_z - t511 - t512
+                    t514 = -m_y*psi_z + m_z*psi_y
+                    t515 = dpsi_x*e0
+                    t516 = dm_z*psi_y + dpsi_y*m_z - t481 - t482
+                    t517 = e0*psi_x
+                    t518 = psi_x*t497
+                    t519 = psi_y*wp_z - psi_z*wp_y
+                    t520 = t500 - t501 - t502 + t503
+                    dg[j3] = (alpha_r*(dwp_x + t484*t504 - t486*t505 + t490*t510 - t496*t513 +
+                        t498*t504 - t499*t505 - 0.5*t500 + (0.5)*t501 + (0.5)*t502 - 0.5*t503) +
+                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t481 + (0.5)*t482 +
+                        t483*t484 + t483*t498 - t485*t486 - t485*t499 + t489*t490 - t495*t496)
+                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t486*t519
+                        + t496*t520 + t499*t519 - t504*t515 - t504*t518 - t510*t517 + (0.5)*t511 +
+                        (0.5)*t512) + dm_y - t483*t515 - t483*t518 + t486*t514 - t489*t517 -
+                        0.5*t491 - 0.5*t492 + (0.5)*t493 + (0.5)*t494 + t496*t516 + t499*t514)
+                    dg[j3 + 2] = (alpha_r*(dwp_z - t484*t519 - t490*t520 - t498*t519 + t505*t515 +
+                        t505*t518 - 0.5*t506 - 0.5*t507 + (0.5)*t508 + (0.5)*t509 + t513*t517) -
+                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t484*t514 + t485*t515 + t485*t518
+                        + (0.5)*t487 + (0.5)*t488 - t490*t516 + t495*t517 - t498*t514)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

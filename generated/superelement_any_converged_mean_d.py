@@ -64,8 +64,8 @@ WORK_ROWS = 38
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (787, 168, 750, 2),
-              "column": (1161, 228, 2420, 2)}
+OPERATIONS = {"residual": (787, 168, 543, 2),
+              "column": (1161, 228, 1751, 2)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("columns", (1,), "columns of C: n of a damped body, else none"),
     Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
@@ -74,7 +74,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -303,58 +303,89 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
-        # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
-        rhs_x = rhs_y = rhs_z = 0.0
+        # rate: rates of the elastic rotations, the frame held
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            alpha_r = alpha_rs[j]
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t37 = -Om_x*psi_y + Om_y*psi_x
-            t38 = e0*ep_y
-            t39 = Om0_x*psi_z - Om0_z*psi_x
-            t40 = e0*ep_z
-            t41 = Om0_x*ep_z
-            t42 = -Om0_z*ep_x + t41
-            t43 = e0*psi_z
-            t44 = -Om0_x*psi_y + Om0_y*psi_x
-            t45 = Om_x*psi_z - Om_z*psi_x
-            t46 = -Om0_x*ep_y + Om0_y*ep_x
-            t47 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-            t48 = e0*psi_y
-            t49 = A_x*psi_z
-            t50 = Om_x*ep_z
-            t51 = -A_z*psi_x - Om_z*ep_x + t49 + t50
-            t52 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t53 = e1*t52
-            t54 = psi_y*t53
-            t55 = psi_z*t53
-            t56 = e0*ep_x
-            t57 = -Om_y*psi_z + Om_z*psi_y
-            t58 = e0*psi_x
-            t59 = -Om0_y*psi_z + Om0_z*psi_y
-            t60 = -Om0_y*ep_z + Om0_z*ep_y
-            t61 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-            t62 = psi_x*t53
-            rhs_x += (-alpha_r*(-A_x + (0.5)*A_y*psi_z - 0.5*A_z*psi_y + (0.5)*Om0_y*ep_z -
-                0.5*Om0_z*ep_y + (0.5)*Om_y*ep_z - 0.5*Om_z*ep_y + e0*ep_y*t44 + e0*ep_z*t45 +
-                e0*psi_y*t46 + e0*psi_z*t51 + e1*psi_y*t44*t52 + e1*psi_z*t45*t52 - t37*t38 -
-                t37*t54 - t39*t40 - t39*t55 - t42*t43 - t47*t48))
-            rhs_y += (-alpha_r*(-A_y + (0.5)*A_z*psi_x + (0.5)*Om0_z*ep_x + (0.5)*Om_z*ep_x +
-                e0*ep_x*t37 + e0*ep_z*t59 + e0*psi_x*t47 + e0*psi_z*t60 + e1*psi_x*t37*t52 +
-                e1*psi_z*t52*t59 - t40*t57 - 0.5*t41 - t43*t61 - t44*t56 - t44*t62 - t46*t58 -
-                0.5*t49 - 0.5*t50 - t55*t57))
-            rhs_z += (-alpha_r*((0.5)*A_x*psi_y - 0.5*A_y*psi_x - A_z + (0.5)*Om0_x*ep_y -
-                0.5*Om0_y*ep_x + (0.5)*Om_x*ep_y - 0.5*Om_y*ep_x + e0*ep_x*t39 + e0*ep_y*t57 +
-                e0*psi_x*t42 + e0*psi_y*t61 + e1*psi_x*t39*t52 + e1*psi_y*t52*t57 - t38*t59 -
-                t45*t56 - t45*t62 - t48*t60 - t51*t58 - t54*t59))
+            t37 = A_y*psi_z
+            t38 = Om0_y*ep_z
+            t39 = Om_y*ep_z
+            t40 = -Om_x*psi_y + Om_y*psi_x
+            t41 = e0*ep_y
+            t42 = Om0_x*psi_z - Om0_z*psi_x
+            t43 = e0*ep_z
+            t44 = Om0_x*ep_z
+            t45 = Om0_z*ep_x
+            t46 = t44 - t45
+            t47 = e0*psi_z
+            t48 = -Om0_x*psi_y + Om0_y*psi_x
+            t49 = Om_x*psi_z - Om_z*psi_x
+            t50 = Om0_x*ep_y
+            t51 = Om0_y*ep_x - t50
+            t52 = e0*psi_y
+            t53 = A_x*psi_y
+            t54 = Om_x*ep_y
+            t55 = A_y*psi_x + Om_y*ep_x - t53 - t54
+            t56 = A_x*psi_z
+            t57 = Om_x*ep_z
+            t58 = A_z*psi_x
+            t59 = Om_z*ep_x
+            t60 = t56 + t57 - t58 - t59
+            t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t62 = psi_y*t61
+            t63 = psi_z*t61
+            t64 = e0*ep_x
+            t65 = -Om_y*psi_z + Om_z*psi_y
+            t66 = e0*psi_x
+            t67 = -Om0_y*psi_z + Om0_z*psi_y
+            t68 = Om0_z*ep_y - t38
+            t69 = A_z*psi_y + Om_z*ep_y - t37 - t39
+            t70 = psi_x*t61
+            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t37 -
+                0.5*t38 - 0.5*t39 + t40*t41 + t40*t62 - t41*t48 + t42*t43 + t42*t63 - t43*t49 +
+                t46*t47 - t47*t60 - t48*t62 - t49*t63 - t51*t52 + t52*t55)
+            etad[j3 + 1] = (A_y - t40*t64 - t40*t70 + t43*t65 - t43*t67 + (0.5)*t44 - 0.5*t45 -
+                t47*t68 + t47*t69 + t48*t64 + t48*t70 + t51*t66 - t55*t66 + (0.5)*t56 + (0.5)*t57
+                - 0.5*t58 - 0.5*t59 + t63*t65 - t63*t67)
+            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x - t41*t65 +
+                t41*t67 - t42*t64 - t42*t70 - t46*t66 + t49*t64 + t49*t70 - 0.5*t50 + t52*t68 -
+                t52*t69 - 0.5*t53 - 0.5*t54 + t60*t66 - t62*t65 + t62*t67)
+        # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
+        rhs_x = rhs_y = rhs_z = 0.0
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + 3*j
+            alpha_r = alpha_rs[j]
+            epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
+            rhs_x += alpha_r*epd_x
+            rhs_y += alpha_r*epd_y
+            rhs_z += alpha_r*epd_z
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
+        # rate: rates of the elastic rotations
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + 3*j
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
+            e0 = e0s[j]
+            t71 = (0.5)*psi_z
+            t72 = e0*psi_x
+            t73 = psi_y*t72
+            t74 = (0.5)*psi_y
+            t75 = psi_z*t72
+            t76 = e0*psi_y*psi_y
+            t77 = e0*psi_z*psi_z - 1
+            t78 = (0.5)*psi_x
+            t79 = e0*psi_y*psi_z
+            t80 = e0*psi_x*psi_x
+            etad[j3] = Om0d_x*(t76 + t77) + Om0d_y*(-t71 - t73) + Om0d_z*(t74 - t75) + epd_x
+            etad[j3 + 1] = Om0d_x*(t71 - t73) + Om0d_y*(t77 + t80) + Om0d_z*(-t78 - t79) + epd_y
+            etad[j3 + 2] = Om0d_x*(-t74 - t75) + Om0d_y*(t78 - t79) + Om0d_z*(t76 + t80 - 1) + epd_z
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -363,75 +394,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t63 = X_y + u_y
-            t64 = X_z + u_z
-            t65 = X_x + u_x
+            t81 = X_y + u_y
+            t82 = X_z + u_z
+            t83 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t64 + Om0d_z*t63 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t82 + Om0d_z*t81 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t64 - Om0d_z*t65 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t82 - Om0d_z*t83 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t63 + Om0d_y*t65 - a0_z + acc_z)
-        # rate: rates of the elastic rotations
-        for j in range(N_ROTATIONS):
-            j3 = ROTATIONS + 3*j
-            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-            Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-            ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-            A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
-            e0 = e0s[j]
-            e1 = e1s[j]
-            t66 = A_y*psi_z
-            t67 = Om0_y*ep_z
-            t68 = Om0d_y*psi_z
-            t69 = Om_y*ep_z
-            t70 = -Om_x*psi_y + Om_y*psi_x
-            t71 = e0*ep_y
-            t72 = Om0_x*psi_z - Om0_z*psi_x
-            t73 = e0*ep_z
-            t74 = -Om0_x*psi_y + Om0_y*psi_x
-            t75 = Om_x*psi_z - Om_z*psi_x
-            t76 = A_x*psi_y
-            t77 = Om_x*ep_y
-            t78 = A_y*psi_x + Om_y*ep_x - t76 - t77
-            t79 = e0*psi_y
-            t80 = Om0_x*ep_z
-            t81 = Om0d_x*psi_z
-            t82 = Om0_z*ep_x
-            t83 = Om0d_z*psi_x
-            t84 = t80 + t81 - t82 - t83
-            t85 = e0*psi_z
-            t86 = Om0_x*ep_y
-            t87 = Om0d_x*psi_y
-            t88 = Om0_y*ep_x + Om0d_y*psi_x - t86 - t87
-            t89 = A_x*psi_z
-            t90 = Om_x*ep_z
-            t91 = A_z*psi_x
-            t92 = Om_z*ep_x
-            t93 = t89 + t90 - t91 - t92
-            t94 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t95 = e1*t94
-            t96 = psi_y*t95
-            t97 = psi_z*t95
-            t98 = e0*ep_x
-            t99 = -Om_y*psi_z + Om_z*psi_y
-            t100 = -Om0_y*psi_z + Om0_z*psi_y
-            t101 = e0*psi_x
-            t102 = A_z*psi_y + Om_z*ep_y - t66 - t69
-            t103 = Om0_z*ep_y + Om0d_z*psi_y - t67 - t68
-            t104 = psi_x*t95
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t66 - 0.5*t67 - 0.5*t68 - 0.5*t69 + t70*t71 + t70*t96 -
-                t71*t74 + t72*t73 + t72*t97 - t73*t75 - t74*t96 - t75*t97 + t78*t79 - t79*t88 +
-                t84*t85 - t85*t93)
-            etad[j3 + 1] = (A_y - Om0d_y - t100*t73 - t100*t97 - t101*t78 + t101*t88 + t102*t85 -
-                t103*t85 - t104*t70 + t104*t74 - t70*t98 + t73*t99 + t74*t98 + (0.5)*t80 +
-                (0.5)*t81 - 0.5*t82 - 0.5*t83 + (0.5)*t89 + (0.5)*t90 - 0.5*t91 - 0.5*t92 +
-                t97*t99)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t75 + e0*ep_y*t100 + e0*psi_x*t93 + e0*psi_y*t103 +
-                e1*psi_x*t75*t94 + e1*psi_y*t100*t94 - t101*t84 - t102*t79 - t104*t72 - t71*t99 -
-                t72*t98 - 0.5*t76 - 0.5*t77 - 0.5*t86 - 0.5*t87 - t96*t99)
+                Om0_y*vs_x - Om0d_x*t81 + Om0d_y*t83 - a0_z + acc_z)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -460,55 +431,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # angular velocity of the rigid part
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
-        t105 = -Om0_y*angle0_z + Om0_z*angle0_y
-        t106 = angle0_y*angle1_z - angle0_z*angle1_y
-        t107 = -Om0_x*angle0_y + Om0_y*angle0_x
-        t108 = Om0_x*angle0_z - Om0_z*angle0_x
-        t109 = angle0_x*angle1_y - angle0_y*angle1_x
-        t110 = -angle0_x*angle1_z + angle0_z*angle1_x
-        wc_x = (Om0_x + angle1_x - r1*t105 - r2*t106 + r2*(angle0_y*t107 - angle0_z*t108) +
-            r3*(angle0_y*t109 - angle0_z*t110))
-        wc_y = (Om0_y + angle1_y - r1*t108 - r2*t110 + r2*(-angle0_x*t107 + angle0_z*t105) +
-            r3*(-angle0_x*t109 + angle0_z*t106))
-        wc_z = (Om0_z + angle1_z - r1*t107 - r2*t109 + r2*(angle0_x*t108 - angle0_y*t105) +
-            r3*(angle0_x*t110 - angle0_y*t106))
+        t84 = -Om0_y*angle0_z + Om0_z*angle0_y
+        t85 = angle0_y*angle1_z - angle0_z*angle1_y
+        t86 = -Om0_x*angle0_y + Om0_y*angle0_x
+        t87 = Om0_x*angle0_z - Om0_z*angle0_x
+        t88 = angle0_x*angle1_y - angle0_y*angle1_x
+        t89 = -angle0_x*angle1_z + angle0_z*angle1_x
+        wc_x = (Om0_x + angle1_x - r1*t84 - r2*t85 + r2*(angle0_y*t86 - angle0_z*t87) +
+            r3*(angle0_y*t88 - angle0_z*t89))
+        wc_y = (Om0_y + angle1_y - r1*t87 - r2*t89 + r2*(-angle0_x*t86 + angle0_z*t84) +
+            r3*(-angle0_x*t88 + angle0_z*t85))
+        wc_z = (Om0_z + angle1_z - r1*t86 - r2*t88 + r2*(angle0_x*t87 - angle0_y*t84) +
+            r3*(angle0_x*t89 - angle0_y*t85))
         # its rate
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
         angle2_x, angle2_y, angle2_z = rigid2[3], rigid2[4], rigid2[5]
-        t111 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-        t112 = angle0_y*angle2_z - angle0_z*angle2_y
-        t113 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-        t114 = Om0d_x*angle0_z - Om0d_z*angle0_x
-        t115 = angle0_x*angle2_y - angle0_y*angle2_x
-        t116 = -angle0_x*angle2_z + angle0_z*angle2_x
-        t117 = angle0_x*angle1_y - angle0_y*angle1_x
-        t118 = -angle0_x*angle1_z + angle0_z*angle1_x
-        t119 = angle0_y*angle1_z - angle0_z*angle1_y
-        t120 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-        t121 = t120*(-r3 + 2*r4)
-        t122 = angle0_y*t117 - angle0_z*t118
-        t123 = t120*(-r4 + 3*r5)
-        t124 = Om0_x*angle0_z - Om0_z*angle0_x
-        t125 = -Om0_x*angle0_y + Om0_y*angle0_x
-        t126 = -Om0_y*angle0_z + Om0_z*angle0_y
-        t127 = Om0_y - r1*t124 + r2*(-angle0_x*t125 + angle0_z*t126)
-        t128 = angle0_x*t118 - angle0_y*t119
-        t129 = angle1_z - r2*t117 + r3*t128
-        t130 = -angle0_x*t117 + angle0_z*t119
-        t131 = angle1_y - r2*t118 + r3*t130
-        t132 = Om0_z - r1*t125 + r2*(angle0_x*t124 - angle0_y*t126)
-        t133 = angle1_x - r2*t119 + r3*t122
-        t134 = Om0_x - r1*t126 + r2*(angle0_y*t125 - angle0_z*t124)
-        wcd_x = (Om0d_x + angle2_x - r1*t111 - r2*t112 + r2*(angle0_y*t113 - angle0_z*t114) +
-            r3*(angle0_y*t115 - angle0_z*t116) + r3*(angle1_y*t117 - angle1_z*t118) - t119*t121 +
-            t122*t123 + t127*t129 - t131*t132)
-        wcd_y = (Om0d_y + angle2_y - r1*t114 - r2*t116 + r2*(-angle0_x*t113 + angle0_z*t111) +
-            r3*(-angle0_x*t115 + angle0_z*t112) + r3*(-angle1_x*t117 + angle1_z*t119) - t118*t121
-            + t123*t130 - t129*t134 + t132*t133)
-        wcd_z = (Om0d_z + angle2_z - r1*t113 - r2*t115 + r2*(angle0_x*t114 - angle0_y*t111) +
-            r3*(angle0_x*t116 - angle0_y*t112) + r3*(angle1_x*t118 - angle1_y*t119) - t117*t121 +
-            t123*t128 - t127*t133 + t131*t134)
+        t90 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+        t91 = angle0_y*angle2_z - angle0_z*angle2_y
+        t92 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+        t93 = Om0d_x*angle0_z - Om0d_z*angle0_x
+        t94 = angle0_x*angle2_y - angle0_y*angle2_x
+        t95 = -angle0_x*angle2_z + angle0_z*angle2_x
+        t96 = angle0_x*angle1_y - angle0_y*angle1_x
+        t97 = -angle0_x*angle1_z + angle0_z*angle1_x
+        t98 = angle0_y*angle1_z - angle0_z*angle1_y
+        t99 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+        t100 = t99*(-r3 + 2*r4)
+        t101 = angle0_y*t96 - angle0_z*t97
+        t102 = t99*(-r4 + 3*r5)
+        t103 = Om0_x*angle0_z - Om0_z*angle0_x
+        t104 = -Om0_x*angle0_y + Om0_y*angle0_x
+        t105 = -Om0_y*angle0_z + Om0_z*angle0_y
+        t106 = Om0_y - r1*t103 + r2*(-angle0_x*t104 + angle0_z*t105)
+        t107 = angle0_x*t97 - angle0_y*t98
+        t108 = angle1_z - r2*t96 + r3*t107
+        t109 = -angle0_x*t96 + angle0_z*t98
+        t110 = angle1_y - r2*t97 + r3*t109
+        t111 = Om0_z - r1*t104 + r2*(angle0_x*t103 - angle0_y*t105)
+        t112 = angle1_x - r2*t98 + r3*t101
+        t113 = Om0_x - r1*t105 + r2*(angle0_y*t104 - angle0_z*t103)
+        wcd_x = (Om0d_x + angle2_x - r1*t90 - r2*t91 + r2*(angle0_y*t92 - angle0_z*t93) +
+            r3*(angle0_y*t94 - angle0_z*t95) + r3*(angle1_y*t96 - angle1_z*t97) - t100*t98 +
+            t101*t102 + t106*t108 - t110*t111)
+        wcd_y = (Om0d_y + angle2_y - r1*t93 - r2*t95 + r2*(-angle0_x*t92 + angle0_z*t90) +
+            r3*(-angle0_x*t94 + angle0_z*t91) + r3*(-angle1_x*t96 + angle1_z*t98) - t100*t97 +
+            t102*t109 - t108*t113 + t111*t112)
+        wcd_z = (Om0d_z + angle2_z - r1*t92 - r2*t94 + r2*(angle0_x*t93 - angle0_y*t90) +
+            r3*(angle0_x*t95 - angle0_y*t91) + r3*(angle1_x*t97 - angle1_y*t98) - t100*t96 +
+            t102*t107 - t106*t112 + t110*t113)
         # rate of its momentum and of the moment of it
         first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
         first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -517,26 +488,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mass = masses[0]
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
         Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-        t135 = 2*first1_z
-        t136 = 2*Om0_z
-        t137 = first0_z + mc_z
-        t138 = first0_y + mc_y
-        t139 = first0_x + mc_x
-        t140 = Om0_x*t138 - Om0_y*t139
-        t141 = -Om0_x*t137 + Om0_z*t139
-        t142 = Om0_y*t137 - Om0_z*t138
-        t143 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-        t144 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-        t145 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-        Rt_x = (Om0_y*t135 + Om0_y*t140 - Om0_z*t141 + Om0d_y*t137 - Om0d_z*t138 - first1_y*t136 +
+        t114 = 2*first1_z
+        t115 = 2*Om0_z
+        t116 = first0_z + mc_z
+        t117 = first0_y + mc_y
+        t118 = first0_x + mc_x
+        t119 = Om0_x*t117 - Om0_y*t118
+        t120 = -Om0_x*t116 + Om0_z*t118
+        t121 = Om0_y*t116 - Om0_z*t117
+        t122 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+        t123 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+        t124 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+        Rt_x = (Om0_y*t114 + Om0_y*t119 - Om0_z*t120 + Om0d_y*t116 - Om0d_z*t117 - first1_y*t115 +
             first2_x + mass*(a0_x - gamma_x))
-        Rt_y = (-Om0_x*t135 - Om0_x*t140 + Om0_z*t142 - Om0d_x*t137 + Om0d_z*t139 + first1_x*t136
+        Rt_y = (-Om0_x*t114 - Om0_x*t119 + Om0_z*t121 - Om0d_x*t116 + Om0d_z*t118 + first1_x*t115
             + first2_y + mass*(a0_y - gamma_y))
-        Rt_z = (2*Om0_x*first1_y + Om0_x*t141 - 2*Om0_y*first1_x - Om0_y*t142 + Om0d_x*t138 -
-            Om0d_y*t139 + first2_z + mass*(a0_z - gamma_z))
-        Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t143*wc_y - t144*wc_z
-        Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t143*wc_x + t145*wc_z
-        Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t144*wc_x - t145*wc_y
+        Rt_z = (2*Om0_x*first1_y + Om0_x*t120 - 2*Om0_y*first1_x - Om0_y*t121 + Om0d_x*t117 -
+            Om0d_y*t118 + first2_z + mass*(a0_z - gamma_z))
+        Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t122*wc_y - t123*wc_z
+        Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t122*wc_x + t124*wc_z
+        Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t123*wc_x - t124*wc_y
         # moment on the frame, forces on the first moment and mean rotation
         first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -545,25 +516,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
         mass = masses[0]
         Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-        t146 = -Mc_y*angle0_z + Mc_z*angle0_y
-        t147 = 1/mass
-        t148 = first0_y + mc_y
-        t149 = first0_z + mc_z
-        t150 = -Mc_x*angle0_y + Mc_y*angle0_x
-        t151 = Mc_x*angle0_z - Mc_z*angle0_x
-        t152 = angle0_y*t150 - angle0_z*t151
-        t153 = first0_x + mc_x
-        t154 = -angle0_x*t150 + angle0_z*t146
-        t155 = angle0_x*t151 - angle0_y*t146
-        Rr_x = Mc_x + r1*t146 + r2*t152 + t147*(-Rt_y*t149 + Rt_z*t148)
-        Rr_y = Mc_y + r1*t151 + r2*t154 + t147*(Rt_x*t149 - Rt_z*t153)
-        Rr_z = Mc_z + r1*t150 + r2*t155 + t147*(-Rt_x*t148 + Rt_y*t153)
-        carried[0] = t147*(Rt_x - first2_x)
-        carried[1] = t147*(Rt_y - first2_y)
-        carried[2] = t147*(Rt_z - first2_z)
-        carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t146 + r3*t152
-        carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t151 + r3*t154
-        carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t150 + r3*t155
+        t125 = -Mc_y*angle0_z + Mc_z*angle0_y
+        t126 = 1/mass
+        t127 = first0_y + mc_y
+        t128 = first0_z + mc_z
+        t129 = -Mc_x*angle0_y + Mc_y*angle0_x
+        t130 = Mc_x*angle0_z - Mc_z*angle0_x
+        t131 = angle0_y*t129 - angle0_z*t130
+        t132 = first0_x + mc_x
+        t133 = -angle0_x*t129 + angle0_z*t125
+        t134 = angle0_x*t130 - angle0_y*t125
+        Rr_x = Mc_x + r1*t125 + r2*t131 + t126*(-Rt_y*t128 + Rt_z*t127)
+        Rr_y = Mc_y + r1*t130 + r2*t133 + t126*(Rt_x*t128 - Rt_z*t132)
+        Rr_z = Mc_z + r1*t129 + r2*t134 + t126*(-Rt_x*t127 + Rt_y*t132)
+        carried[0] = t126*(Rt_x - first2_x)
+        carried[1] = t126*(Rt_y - first2_y)
+        carried[2] = t126*(Rt_z - first2_z)
+        carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t125 + r3*t131
+        carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t130 + r3*t133
+        carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t129 + r3*t134
         # forces of the rigid part, conjugate to y
         add_block_times(rigid_columns, carried, s, n, 6, padded(n))
         # damping force, Cbar ydot
@@ -576,15 +547,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t156 = X_z + u_z
-            t157 = X_y + u_y
-            t158 = X_x + u_x
+            t135 = X_z + u_z
+            t136 = X_y + u_y
+            t137 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t156 - f_z*t157
-            W_y += -f_x*t156 + f_z*t158
-            W_z += f_x*t157 - f_y*t158
+            W_x += f_y*t135 - f_z*t136
+            W_y += -f_x*t135 + f_z*t137
+            W_z += f_x*t136 - f_y*t137
         # inertia and weight on the frame
         F_x += Rt_x
         F_y += Rt_y
@@ -598,21 +569,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t159 = -m_x*psi_y + m_y*psi_x
-            t160 = m_x*psi_z
-            t161 = -m_z*psi_x + t160
-            t162 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t159 + e0*psi_z*t161 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t159 - e0*psi_z*t162 - m_y + (0.5)*m_z*psi_x - 0.5*t160
-            W_z += -e0*psi_x*t161 + e0*psi_y*t162 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t138 = -m_x*psi_y + m_y*psi_x
+            t139 = m_x*psi_z
+            t140 = -m_z*psi_x + t139
+            t141 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t138 + e0*psi_z*t140 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t138 - e0*psi_z*t141 - m_y + (0.5)*m_z*psi_x - 0.5*t139
+            W_z += -e0*psi_x*t140 + e0*psi_y*t141 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t163 = W_x + rhs_x
-        t164 = W_y + rhs_y
-        t165 = W_z + rhs_z
-        wp_x = Bxx*t163 + Byx*t164 + Bzx*t165
-        wp_y = Bxy*t163 + Byy*t164 + Bzy*t165
-        wp_z = Bxz*t163 + Byz*t164 + Bzz*t165
+        t142 = W_x + rhs_x
+        t143 = W_y + rhs_y
+        t144 = W_z + rhs_z
+        wp_x = Bxx*t142 + Byx*t143 + Bzx*t144
+        wp_y = Bxy*t142 + Byy*t143 + Bzy*t144
+        wp_z = Bxz*t142 + Byz*t143 + Bzz*t144
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -635,30 +606,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t166 = m_y*psi_z
-            t167 = m_x*psi_y
-            t168 = m_y*psi_x - t167
-            t169 = e0*psi_y
-            t170 = m_x*psi_z
-            t171 = m_z*psi_x
-            t172 = t170 - t171
-            t173 = e0*psi_z
-            t174 = psi_y*wp_z
-            t175 = psi_z*wp_y
-            t176 = psi_x*wp_y
-            t177 = psi_y*wp_x
-            t178 = t176 - t177
-            t179 = psi_x*wp_z
-            t180 = psi_z*wp_x - t179
-            t181 = m_z*psi_y - t166
-            t182 = e0*psi_x
-            t183 = t174 - t175
-            g[j3] = (alpha_r*(t169*t178 - t173*t180 - 0.5*t174 + (0.5)*t175 + wp_x) + m_x -
-                0.5*m_z*psi_y + (0.5)*t166 + t168*t169 - t172*t173)
-            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t173*t183 - t178*t182 + (0.5)*t179 + wp_y) +
-                m_y - t168*t182 - 0.5*t170 + (0.5)*t171 + t173*t181)
-            g[j3 + 2] = (alpha_r*(-t169*t183 - 0.5*t176 + (0.5)*t177 + t180*t182 + wp_z) -
-                0.5*m_y*psi_x + m_z + (0.5)*t167 - t169*t181 + t172*t182)
+            t145 = m_y*psi_z
+            t146 = m_x*psi_y
+            t147 = m_y*psi_x - t146
+            t148 = e0*psi_y
+            t149 = m_x*psi_z
+            t150 = m_z*psi_x
+            t151 = t149 - t150
+            t152 = e0*psi_z
+            t153 = psi_y*wp_z
+            t154 = psi_z*wp_y
+            t155 = psi_x*wp_y
+            t156 = psi_y*wp_x
+            t157 = t155 - t156
+            t158 = psi_x*wp_z
+            t159 = psi_z*wp_x - t158
+            t160 = m_z*psi_y - t145
+            t161 = e0*psi_x
+            t162 = t153 - t154
+            g[j3] = (alpha_r*(t148*t157 - t152*t159 - 0.5*t153 + (0.5)*t154 + wp_x) + m_x -
+                0.5*m_z*psi_y + (0.5)*t145 + t147*t148 - t151*t152)
+            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t152*t162 - t157*t161 + (0.5)*t158 + wp_y) +
+                m_y - t147*t161 - 0.5*t149 + (0.5)*t150 + t152*t160)
+            g[j3 + 2] = (alpha_r*(-t148*t162 - 0.5*t155 + (0.5)*t156 + t159*t161 + wp_z) -
+                0.5*m_y*psi_x + m_z + (0.5)*t146 - t148*t160 + t151*t161)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -687,47 +658,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
             moving = squares[0]
             elastic = squares[1]
-            t184 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-            t185 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-            t186 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-            t187 = 1/mass
-            t188 = first0_y + mc_y
-            t189 = first0_x + mc_x
-            t190 = Om0_x*t188 - Om0_y*t189 + first1_z + mass*v0_z
-            t191 = first0_z + mc_z
-            t192 = -Om0_x*t191 + Om0_z*t189 + first1_y + mass*v0_y
-            t193 = Om0_y*t191 - Om0_z*t188 + first1_x + mass*v0_x
-            t194 = mass*x0_x
-            t195 = mass*x0_y
-            t196 = mass*x0_z
-            t197 = R0_xx*t193 + R0_xy*t192 + R0_xz*t190
-            t198 = R0_yx*t193 + R0_yy*t192 + R0_yz*t190
-            t199 = R0_zx*t193 + R0_zy*t192 + R0_zz*t190
-            t200 = angle0_y*t186 - angle0_z*t185
-            t201 = angle0_x*t185 - angle0_y*t184
-            t202 = -angle0_x*t186 + angle0_z*t184
-            t203 = (r1*t200 + r2*(angle0_y*t201 - angle0_z*t202) + t184 + t187*(t188*t190 -
-                t191*t192))
-            t204 = (r1*t202 + r2*(-angle0_x*t201 + angle0_z*t200) + t185 + t187*(-t189*t190 +
-                t191*t193))
-            t205 = (r1*t201 + r2*(angle0_x*t202 - angle0_y*t200) + t186 + t187*(-t188*t193 +
-                t189*t192))
+            t163 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+            t164 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+            t165 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+            t166 = 1/mass
+            t167 = first0_y + mc_y
+            t168 = first0_x + mc_x
+            t169 = Om0_x*t167 - Om0_y*t168 + first1_z + mass*v0_z
+            t170 = first0_z + mc_z
+            t171 = -Om0_x*t170 + Om0_z*t168 + first1_y + mass*v0_y
+            t172 = Om0_y*t170 - Om0_z*t167 + first1_x + mass*v0_x
+            t173 = mass*x0_x
+            t174 = mass*x0_y
+            t175 = mass*x0_z
+            t176 = R0_xx*t172 + R0_xy*t171 + R0_xz*t169
+            t177 = R0_yx*t172 + R0_yy*t171 + R0_yz*t169
+            t178 = R0_zx*t172 + R0_zy*t171 + R0_zz*t169
+            t179 = angle0_y*t165 - angle0_z*t164
+            t180 = angle0_x*t164 - angle0_y*t163
+            t181 = -angle0_x*t165 + angle0_z*t163
+            t182 = (r1*t179 + r2*(angle0_y*t180 - angle0_z*t181) + t163 + t166*(t167*t169 -
+                t170*t171))
+            t183 = (r1*t181 + r2*(-angle0_x*t180 + angle0_z*t179) + t164 + t166*(-t168*t169 +
+                t170*t172))
+            t184 = (r1*t180 + r2*(angle0_x*t181 - angle0_y*t179) + t165 + t166*(-t167*t172 +
+                t168*t171))
             kinetic = (-0.5*angle1_x*(Jc_xx*angle1_x + Jc_xy*angle1_y + Jc_xz*angle1_z) -
                 0.5*angle1_y*(Jc_xy*angle1_x + Jc_yy*angle1_y + Jc_yz*angle1_z) -
                 0.5*angle1_z*(Jc_xz*angle1_x + Jc_yz*angle1_y + Jc_zz*angle1_z) + (0.5)*moving +
-                (0.5)*t184*wc_x + (0.5)*t185*wc_y + (0.5)*t186*wc_z +
-                (0.5)*t187*(-first1_x*first1_x - first1_y*first1_y - first1_z*first1_z + t190*t190
-                + t192*t192 + t193*t193))
+                (0.5)*t163*wc_x + (0.5)*t164*wc_y + (0.5)*t165*wc_z +
+                (0.5)*t166*(-first1_x*first1_x - first1_y*first1_y - first1_z*first1_z + t169*t169
+                + t171*t171 + t172*t172))
             strain = (0.5)*elastic
-            potential = (-gamma_x*(R0_xx*t194 + R0_yx*t195 + R0_zx*t196 + t189) -
-                gamma_y*(R0_xy*t194 + R0_yy*t195 + R0_zy*t196 + t188) - gamma_z*(R0_xz*t194 +
-                R0_yz*t195 + R0_zz*t196 + t191))
-            P_x = t197
-            P_y = t198
-            P_z = t199
-            H_x = R0_xx*t203 + R0_xy*t204 + R0_xz*t205 - t198*x0_z + t199*x0_y
-            H_y = R0_yx*t203 + R0_yy*t204 + R0_yz*t205 + t197*x0_z - t199*x0_x
-            H_z = R0_zx*t203 + R0_zy*t204 + R0_zz*t205 - t197*x0_y + t198*x0_x
+            potential = (-gamma_x*(R0_xx*t173 + R0_yx*t174 + R0_zx*t175 + t168) -
+                gamma_y*(R0_xy*t173 + R0_yy*t174 + R0_zy*t175 + t167) - gamma_z*(R0_xz*t173 +
+                R0_yz*t174 + R0_zz*t175 + t170))
+            P_x = t176
+            P_y = t177
+            P_z = t178
+            H_x = R0_xx*t182 + R0_xy*t183 + R0_xz*t184 - t177*x0_z + t178*x0_y
+            H_y = R0_yx*t182 + R0_yy*t183 + R0_yz*t184 + t176*x0_z - t178*x0_x
+            H_z = R0_zx*t182 + R0_zy*t183 + R0_zz*t184 - t176*x0_y + t177*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -780,16 +751,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t206 = -dth_x*psi_y + dth_y*psi_x
-                    t207 = dth_x*psi_z
-                    t208 = -dth_z*psi_x + t207
-                    t209 = -dth_y*psi_z + dth_z*psi_y
+                    t185 = -dth_x*psi_y + dth_y*psi_x
+                    t186 = dth_x*psi_z
+                    t187 = -dth_z*psi_x + t186
+                    t188 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t206 + e0*psi_z*t208))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t206 - e0*psi_z*t209
-                        - 0.5*t207))
+                        e0*psi_y*t185 + e0*psi_z*t187))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t185 - e0*psi_z*t188
+                        - 0.5*t186))
                     rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z -
-                        e0*psi_x*t208 + e0*psi_y*t209))
+                        e0*psi_x*t187 + e0*psi_y*t188))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -799,43 +770,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t210 = X_y + u_y
-                    t211 = X_z + u_z
-                    t212 = X_x + u_x
-                    dy[i3] = -dth0_y*t211 + dth0_z*t210 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t211 - dth0_z*t212 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t210 + dth0_y*t212 - dx0_z + dx_z
+                    t189 = X_y + u_y
+                    t190 = X_z + u_z
+                    t191 = X_x + u_x
+                    dy[i3] = -dth0_y*t190 + dth0_z*t189 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t190 - dth0_z*t191 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t189 + dth0_y*t191 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t213 = dth0_y*psi_z
-                    t214 = dth_y*psi_z
-                    t215 = dth0_x*psi_y
-                    t216 = dth0_y*psi_x - t215
-                    t217 = e0*psi_y
-                    t218 = dth_x*psi_z
-                    t219 = dth_z*psi_x
-                    t220 = t218 - t219
-                    t221 = e0*psi_z
-                    t222 = dth_x*psi_y
-                    t223 = dth_y*psi_x - t222
-                    t224 = dth0_x*psi_z
-                    t225 = dth0_z*psi_x
-                    t226 = t224 - t225
-                    t227 = e0*psi_x
-                    t228 = dth_z*psi_y - t214
-                    t229 = dth0_z*psi_y - t213
+                    t192 = dth0_y*psi_z
+                    t193 = dth_y*psi_z
+                    t194 = dth0_x*psi_y
+                    t195 = dth0_y*psi_x - t194
+                    t196 = e0*psi_y
+                    t197 = dth_x*psi_z
+                    t198 = dth_z*psi_x
+                    t199 = t197 - t198
+                    t200 = e0*psi_z
+                    t201 = dth_x*psi_y
+                    t202 = dth_y*psi_x - t201
+                    t203 = dth0_x*psi_z
+                    t204 = dth0_z*psi_x
+                    t205 = t203 - t204
+                    t206 = e0*psi_x
+                    t207 = dth_z*psi_y - t193
+                    t208 = dth0_z*psi_y - t192
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t223 + e0*psi_z*t226 - 0.5*t213 - 0.5*t214 - t216*t217 -
-                        t220*t221)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t216*t227 + (0.5)*t218 - 0.5*t219 + t221*t228
-                        - t221*t229 - t223*t227 + (0.5)*t224 - 0.5*t225)
+                        e0*psi_y*t202 + e0*psi_z*t205 - 0.5*t192 - 0.5*t193 - t195*t196 -
+                        t199*t200)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t195*t206 + (0.5)*t197 - 0.5*t198 + t200*t207
+                        - t200*t208 - t202*t206 + (0.5)*t203 - 0.5*t204)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t220 + e0*psi_y*t229 - 0.5*t215 - t217*t228 - 0.5*t222 -
-                        t226*t227)
+                        e0*psi_x*t199 + e0*psi_y*t208 - 0.5*t194 - t196*t207 - 0.5*t201 -
+                        t205*t206)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -873,47 +844,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t230 = -Om_x*psi_y + Om_y*psi_x
-                    t231 = dpsi_y*e0
-                    t232 = Om0_x*psi_z - Om0_z*psi_x
-                    t233 = dpsi_z*e0
-                    t234 = Om0_x*dpsi_z
-                    t235 = -Om0_z*dpsi_x + t234
-                    t236 = e0*psi_z
-                    t237 = -Om0_x*psi_y + Om0_y*psi_x
-                    t238 = Om_x*psi_z - Om_z*psi_x
-                    t239 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t240 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t241 = e0*psi_y
-                    t242 = Om_x*dpsi_z
-                    t243 = dOm_x*psi_z
-                    t244 = -Om_z*dpsi_x - dOm_z*psi_x + t242 + t243
-                    t245 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t246 = e1*t245
-                    t247 = psi_y*t246
-                    t248 = psi_z*t246
-                    t249 = dpsi_x*e0
-                    t250 = -Om_y*psi_z + Om_z*psi_y
-                    t251 = e0*psi_x
-                    t252 = -Om0_y*psi_z + Om0_z*psi_y
-                    t253 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t254 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t255 = psi_x*t246
+                    t209 = -Om_x*psi_y + Om_y*psi_x
+                    t210 = dpsi_y*e0
+                    t211 = Om0_x*psi_z - Om0_z*psi_x
+                    t212 = dpsi_z*e0
+                    t213 = Om0_x*dpsi_z
+                    t214 = -Om0_z*dpsi_x + t213
+                    t215 = e0*psi_z
+                    t216 = -Om0_x*psi_y + Om0_y*psi_x
+                    t217 = Om_x*psi_z - Om_z*psi_x
+                    t218 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t219 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t220 = e0*psi_y
+                    t221 = Om_x*dpsi_z
+                    t222 = dOm_x*psi_z
+                    t223 = -Om_z*dpsi_x - dOm_z*psi_x + t221 + t222
+                    t224 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t225 = e1*t224
+                    t226 = psi_y*t225
+                    t227 = psi_z*t225
+                    t228 = dpsi_x*e0
+                    t229 = -Om_y*psi_z + Om_z*psi_y
+                    t230 = e0*psi_x
+                    t231 = -Om0_y*psi_z + Om0_z*psi_y
+                    t232 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t233 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t234 = psi_x*t225
                     rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
                         - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t237 + dpsi_z*e0*t238 + e0*psi_y*t239 + e0*psi_z*t244 +
-                        e1*psi_y*t237*t245 + e1*psi_z*t238*t245 - t230*t231 - t230*t247 -
-                        t232*t233 - t232*t248 - t235*t236 - t240*t241))
+                        dpsi_y*e0*t216 + dpsi_z*e0*t217 + e0*psi_y*t218 + e0*psi_z*t223 +
+                        e1*psi_y*t216*t224 + e1*psi_z*t217*t224 - t209*t210 - t209*t226 -
+                        t211*t212 - t211*t227 - t214*t215 - t219*t220))
                     rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t230 + dpsi_z*e0*t252 + e0*psi_x*t240 +
-                        e0*psi_z*t253 + e1*psi_x*t230*t245 + e1*psi_z*t245*t252 - t233*t250 -
-                        0.5*t234 - t236*t254 - t237*t249 - t237*t255 - t239*t251 - 0.5*t242 -
-                        0.5*t243 - t248*t250))
+                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t209 + dpsi_z*e0*t231 + e0*psi_x*t219 +
+                        e0*psi_z*t232 + e1*psi_x*t209*t224 + e1*psi_z*t224*t231 - t212*t229 -
+                        0.5*t213 - t215*t233 - t216*t228 - t216*t234 - t218*t230 - 0.5*t221 -
+                        0.5*t222 - t227*t229))
                     rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
                         - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t232 + dpsi_y*e0*t250 + e0*psi_x*t235 + e0*psi_y*t254 +
-                        e1*psi_x*t232*t245 + e1*psi_y*t245*t250 - t231*t252 - t238*t249 -
-                        t238*t255 - t241*t253 - t244*t251 - t247*t252))
+                        dpsi_x*e0*t211 + dpsi_y*e0*t229 + e0*psi_x*t214 + e0*psi_y*t233 +
+                        e1*psi_x*t211*t224 + e1*psi_y*t224*t229 - t210*t231 - t217*t228 -
+                        t217*t234 - t220*t232 - t223*t230 - t226*t231))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -946,13 +917,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t256 = X_y + u_y
-                    t257 = X_z + u_z
-                    t258 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t257 + dOm0_z*t256 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t257 - dOm0_z*t258 - dv0_y +
+                    t235 = X_y + u_y
+                    t236 = X_z + u_z
+                    t237 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t236 + dOm0_z*t235 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t236 - dOm0_z*t237 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t256 + dOm0_y*t258 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t235 + dOm0_y*t237 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -963,68 +934,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t259 = Om0_y*dpsi_z
-                    t260 = Om_y*dpsi_z
-                    t261 = dOm0_y*psi_z
-                    t262 = dOm_y*psi_z
-                    t263 = -Om0_x*psi_y + Om0_y*psi_x
-                    t264 = dpsi_y*e0
-                    t265 = Om_x*psi_z - Om_z*psi_x
-                    t266 = dpsi_z*e0
-                    t267 = -Om_x*psi_y + Om_y*psi_x
-                    t268 = Om0_x*psi_z - Om0_z*psi_x
-                    t269 = Om0_x*dpsi_y
-                    t270 = dOm0_x*psi_y
-                    t271 = Om0_y*dpsi_x + dOm0_y*psi_x - t269 - t270
-                    t272 = e0*psi_y
-                    t273 = Om_x*dpsi_z
-                    t274 = dOm_x*psi_z
-                    t275 = Om_z*dpsi_x
-                    t276 = dOm_z*psi_x
-                    t277 = t273 + t274 - t275 - t276
-                    t278 = e0*psi_z
-                    t279 = Om_x*dpsi_y
-                    t280 = dOm_x*psi_y
-                    t281 = Om_y*dpsi_x + dOm_y*psi_x - t279 - t280
-                    t282 = Om0_x*dpsi_z
-                    t283 = dOm0_x*psi_z
-                    t284 = Om0_z*dpsi_x
-                    t285 = dOm0_z*psi_x
-                    t286 = t282 + t283 - t284 - t285
-                    t287 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t288 = e1*t287
-                    t289 = psi_y*t288
-                    t290 = psi_z*t288
-                    t291 = dpsi_x*e0
-                    t292 = -Om_y*psi_z + Om_z*psi_y
-                    t293 = -Om0_y*psi_z + Om0_z*psi_y
-                    t294 = e0*psi_x
-                    t295 = Om_z*dpsi_y + dOm_z*psi_y - t260 - t262
-                    t296 = Om0_z*dpsi_y + dOm0_z*psi_y - t259 - t261
-                    t297 = psi_x*t288
+                    t238 = Om0_y*dpsi_z
+                    t239 = Om_y*dpsi_z
+                    t240 = dOm0_y*psi_z
+                    t241 = dOm_y*psi_z
+                    t242 = -Om0_x*psi_y + Om0_y*psi_x
+                    t243 = dpsi_y*e0
+                    t244 = Om_x*psi_z - Om_z*psi_x
+                    t245 = dpsi_z*e0
+                    t246 = -Om_x*psi_y + Om_y*psi_x
+                    t247 = Om0_x*psi_z - Om0_z*psi_x
+                    t248 = Om0_x*dpsi_y
+                    t249 = dOm0_x*psi_y
+                    t250 = Om0_y*dpsi_x + dOm0_y*psi_x - t248 - t249
+                    t251 = e0*psi_y
+                    t252 = Om_x*dpsi_z
+                    t253 = dOm_x*psi_z
+                    t254 = Om_z*dpsi_x
+                    t255 = dOm_z*psi_x
+                    t256 = t252 + t253 - t254 - t255
+                    t257 = e0*psi_z
+                    t258 = Om_x*dpsi_y
+                    t259 = dOm_x*psi_y
+                    t260 = Om_y*dpsi_x + dOm_y*psi_x - t258 - t259
+                    t261 = Om0_x*dpsi_z
+                    t262 = dOm0_x*psi_z
+                    t263 = Om0_z*dpsi_x
+                    t264 = dOm0_z*psi_x
+                    t265 = t261 + t262 - t263 - t264
+                    t266 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t267 = e1*t266
+                    t268 = psi_y*t267
+                    t269 = psi_z*t267
+                    t270 = dpsi_x*e0
+                    t271 = -Om_y*psi_z + Om_z*psi_y
+                    t272 = -Om0_y*psi_z + Om0_z*psi_y
+                    t273 = e0*psi_x
+                    t274 = Om_z*dpsi_y + dOm_z*psi_y - t239 - t241
+                    t275 = Om0_z*dpsi_y + dOm0_z*psi_y - t238 - t240
+                    t276 = psi_x*t267
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t267 +
-                        dpsi_z*e0*t268 + e0*psi_y*t281 + e0*psi_z*t286 + e1*psi_y*t267*t287 +
-                        e1*psi_z*t268*t287 - 0.5*t259 - 0.5*t260 - 0.5*t261 - 0.5*t262 - t263*t264
-                        - t263*t289 - t265*t266 - t265*t290 - t271*t272 - t277*t278)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t263*t291 + t263*t297 + t266*t292 -
-                        t266*t293 - t267*t291 - t267*t297 + t271*t294 + (0.5)*t273 + (0.5)*t274 -
-                        0.5*t275 - 0.5*t276 + t278*t295 - t278*t296 - t281*t294 + (0.5)*t282 +
-                        (0.5)*t283 - 0.5*t284 - 0.5*t285 + t290*t292 - t290*t293)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t246 +
+                        dpsi_z*e0*t247 + e0*psi_y*t260 + e0*psi_z*t265 + e1*psi_y*t246*t266 +
+                        e1*psi_z*t247*t266 - 0.5*t238 - 0.5*t239 - 0.5*t240 - 0.5*t241 - t242*t243
+                        - t242*t268 - t244*t245 - t244*t269 - t250*t251 - t256*t257)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t242*t270 + t242*t276 + t245*t271 -
+                        t245*t272 - t246*t270 - t246*t276 + t250*t273 + (0.5)*t252 + (0.5)*t253 -
+                        0.5*t254 - 0.5*t255 + t257*t274 - t257*t275 - t260*t273 + (0.5)*t261 +
+                        (0.5)*t262 - 0.5*t263 - 0.5*t264 + t269*t271 - t269*t272)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t265 + dpsi_y*e0*t293 +
-                        e0*psi_x*t277 + e0*psi_y*t296 + e1*psi_x*t265*t287 + e1*psi_y*t287*t293 -
-                        t264*t292 - t268*t291 - t268*t297 - 0.5*t269 - 0.5*t270 - t272*t295 -
-                        0.5*t279 - 0.5*t280 - t286*t294 - t289*t292)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t244 + dpsi_y*e0*t272 +
+                        e0*psi_x*t256 + e0*psi_y*t275 + e1*psi_x*t244*t266 + e1*psi_y*t266*t272 -
+                        t243*t271 - t247*t270 - t247*t276 - 0.5*t248 - 0.5*t249 - t251*t274 -
+                        0.5*t258 - 0.5*t259 - t265*t273 - t268*t271)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
-                # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
-                rhs_x = rhs_y = rhs_z = 0.0
+                # differential: rate: rates of the elastic rotations, the frame held
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
-                    alpha_r = alpha_rs[j]
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                     ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
@@ -1036,135 +1005,212 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t298 = (0.5)*dpsi_z
-                    t299 = e0*psi_y
-                    t300 = dpsi_y*e0
-                    t301 = 2*psi_x
-                    t302 = dpsi_x*t301
-                    t303 = 2*psi_y
-                    t304 = 2*psi_z
-                    t305 = dpsi_y*t303 + dpsi_z*t304 + t302
-                    t306 = e1*t305
-                    t307 = psi_y*t306
-                    t308 = dpsi_x*t299 + psi_x*t300 + psi_x*t307
-                    t309 = Om0d_y*alpha_r
-                    t310 = (0.5)*dpsi_y
-                    t311 = e0*psi_z
-                    t312 = dpsi_z*e0
-                    t313 = psi_z*t306
-                    t314 = dpsi_x*t311 + psi_x*t312 + psi_x*t313
-                    t315 = Om0d_z*alpha_r
-                    t316 = psi_z*psi_z*t306 + t304*t312
-                    t317 = psi_y*psi_y*t306 + t300*t303
-                    t318 = Om0d_x*alpha_r
-                    t319 = -Om_x*psi_y + Om_y*psi_x
-                    t320 = dep_y*e0
-                    t321 = Om0_x*psi_z - Om0_z*psi_x
-                    t322 = dep_z*e0
-                    t323 = Om0_x*ep_z - Om0_z*ep_x
-                    t324 = -Om0_x*psi_y + Om0_y*psi_x
-                    t325 = Om_x*psi_z - Om_z*psi_x
-                    t326 = -Om0_x*ep_y + Om0_y*ep_x
-                    t327 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t328 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t329 = e0*ep_y
-                    t330 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t331 = e0*ep_z
-                    t332 = Om0_x*dep_z
-                    t333 = dOm0_x*ep_z
-                    t334 = -Om0_z*dep_x - dOm0_z*ep_x + t332 + t333
-                    t335 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t336 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t337 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t338 = -Om0_x*dep_y + Om0_y*dep_x - dOm0_x*ep_y + dOm0_y*ep_x
-                    t339 = ep_x*t301 + ep_y*t303 + ep_z*t304
-                    t340 = e1*t339
-                    t341 = dpsi_y*t340
-                    t342 = dpsi_z*t340
-                    t343 = ep_y*t306
-                    t344 = ep_z*t306
-                    t345 = psi_y*t340
-                    t346 = psi_z*t340
-                    t347 = (-A_x*dpsi_y + A_y*dpsi_x - Om_x*dep_y + Om_y*dep_x - dA_x*psi_y +
-                        dA_y*psi_x - dOm_x*ep_y + dOm_y*ep_x)
-                    t348 = A_x*dpsi_z
-                    t349 = Om_x*dep_z
-                    t350 = dA_x*psi_z
-                    t351 = dOm_x*ep_z
-                    t352 = (-A_z*dpsi_x - Om_z*dep_x - dA_z*psi_x - dOm_z*ep_x + t348 + t349 +
-                        t350 + t351)
-                    t353 = (dep_x*t301 + dep_y*t303 + dep_z*t304 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                        2*dpsi_z*ep_z)
-                    t354 = e1*t353
-                    t355 = psi_z*t354
-                    t356 = e2*t305*t339
-                    t357 = psi_z*t356
-                    t358 = (0.5)*dpsi_x
-                    t359 = psi_y*t312 + psi_z*t300 + psi_z*t307
-                    t360 = e0*t302 + psi_x*psi_x*t306
-                    t361 = dep_x*e0
-                    t362 = -Om_y*psi_z + Om_z*psi_y
-                    t363 = dpsi_x*e0
-                    t364 = -Om0_y*psi_z + Om0_z*psi_y
-                    t365 = -Om0_y*ep_z + Om0_z*ep_y
-                    t366 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t367 = e0*ep_x
-                    t368 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t277 = A_y*dpsi_z
+                    t278 = Om0_y*dep_z
+                    t279 = Om_y*dep_z
+                    t280 = dA_y*psi_z
+                    t281 = dOm0_y*ep_z
+                    t282 = dOm_y*ep_z
+                    t283 = -Om_x*psi_y + Om_y*psi_x
+                    t284 = dep_y*e0
+                    t285 = Om0_x*psi_z - Om0_z*psi_x
+                    t286 = dep_z*e0
+                    t287 = Om0_x*ep_z - Om0_z*ep_x
+                    t288 = dpsi_z*e0
+                    t289 = -Om0_x*psi_y + Om0_y*psi_x
+                    t290 = Om_x*psi_z - Om_z*psi_x
+                    t291 = -Om0_x*ep_y + Om0_y*ep_x
+                    t292 = dpsi_y*e0
+                    t293 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t294 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t295 = e0*ep_y
+                    t296 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t297 = e0*ep_z
+                    t298 = Om0_x*dep_z
+                    t299 = dOm0_x*ep_z
+                    t300 = Om0_z*dep_x
+                    t301 = dOm0_z*ep_x
+                    t302 = t298 + t299 - t300 - t301
+                    t303 = e0*psi_z
+                    t304 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t305 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t306 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t307 = Om0_x*dep_y
+                    t308 = dOm0_x*ep_y
+                    t309 = Om0_y*dep_x + dOm0_y*ep_x - t307 - t308
+                    t310 = e0*psi_y
+                    t311 = 2*psi_x
+                    t312 = 2*psi_y
+                    t313 = 2*psi_z
+                    t314 = ep_x*t311 + ep_y*t312 + ep_z*t313
+                    t315 = e1*t314
+                    t316 = dpsi_y*t315
+                    t317 = dpsi_z*t315
+                    t318 = dpsi_x*t311 + dpsi_y*t312 + dpsi_z*t313
+                    t319 = e1*t318
+                    t320 = ep_y*t319
+                    t321 = ep_z*t319
+                    t322 = psi_z*t319
+                    t323 = psi_y*t319
+                    t324 = psi_y*t315
+                    t325 = psi_z*t315
+                    t326 = A_x*dpsi_y
+                    t327 = Om_x*dep_y
+                    t328 = dA_x*psi_y
+                    t329 = dOm_x*ep_y
+                    t330 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t326 - t327 - t328
+                        - t329)
+                    t331 = A_x*dpsi_z
+                    t332 = Om_x*dep_z
+                    t333 = dA_x*psi_z
+                    t334 = dOm_x*ep_z
+                    t335 = A_z*dpsi_x
+                    t336 = Om_z*dep_x
+                    t337 = dA_z*psi_x
+                    t338 = dOm_z*ep_x
+                    t339 = t331 + t332 + t333 + t334 - t335 - t336 - t337 - t338
+                    t340 = (e1*(dep_x*t311 + dep_y*t312 + dep_z*t313 + 2*dpsi_x*ep_x +
+                        2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
+                    t341 = psi_y*t283
+                    t342 = psi_z*t340
+                    t343 = t289*t340
+                    t344 = e2*t314*t318
+                    t345 = psi_z*t344
+                    t346 = t289*t344
+                    t347 = dep_x*e0
+                    t348 = -Om_y*psi_z + Om_z*psi_y
+                    t349 = dpsi_x*e0
+                    t350 = -Om0_y*psi_z + Om0_z*psi_y
+                    t351 = -Om0_y*ep_z + Om0_z*ep_y
+                    t352 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t353 = e0*ep_x
+                    t354 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t355 = e0*psi_x
+                    t356 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t357 = Om0_z*dep_y + dOm0_z*ep_y - t278 - t281
+                    t358 = dpsi_x*t315
+                    t359 = ep_x*t319
+                    t360 = psi_x*t319
+                    t361 = psi_x*t315
+                    t362 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t277 - t279 - t280
+                        - t282)
+                    t363 = psi_x*t340
+                    t364 = psi_x*t344
+                    t365 = psi_y*t340
+                    t366 = psi_y*t344
+                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
+                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t343 -
+                        psi_y*t346 - 0.5*t277 - 0.5*t278 - 0.5*t279 - 0.5*t280 - 0.5*t281 -
+                        0.5*t282 + t283*t284 + t283*t316 + t283*t320 - t284*t289 + t285*t286 +
+                        t285*t317 + t285*t321 + t285*t342 + t285*t345 - t286*t290 + t287*t288 +
+                        t287*t322 - t288*t304 - t289*t316 - t289*t320 - t290*t317 - t290*t321 -
+                        t290*t342 - t290*t345 - t291*t292 - t291*t323 + t292*t293 + t293*t323 +
+                        t294*t295 + t294*t324 - t295*t305 + t296*t297 + t296*t325 - t297*t306 +
+                        t302*t303 - t303*t339 - t304*t322 - t305*t324 - t306*t325 - t309*t310 +
+                        t310*t330 + t340*t341 + t341*t344)
+                    detad[j3 + 1] = (dA_y + psi_x*t343 + psi_x*t346 - t283*t347 - t283*t358 -
+                        t283*t359 - t283*t363 - t283*t364 + t286*t348 - t286*t350 - t288*t351 +
+                        t288*t352 + t289*t347 + t289*t358 + t289*t359 + t291*t349 + t291*t360 -
+                        t293*t349 - t293*t360 - t294*t353 - t294*t361 + t297*t354 - t297*t356 +
+                        (0.5)*t298 + (0.5)*t299 - 0.5*t300 - 0.5*t301 - t303*t357 + t303*t362 +
+                        t305*t353 + t305*t361 + t309*t355 + t317*t348 - t317*t350 + t321*t348 -
+                        t321*t350 - t322*t351 + t322*t352 + t325*t354 - t325*t356 - t330*t355 +
+                        (0.5)*t331 + (0.5)*t332 + (0.5)*t333 + (0.5)*t334 - 0.5*t335 - 0.5*t336 -
+                        0.5*t337 - 0.5*t338 + t342*t348 - t342*t350 + t345*t348 - t345*t350)
+                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
+                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t284*t348
+                        + t284*t350 - t285*t347 - t285*t358 - t285*t359 - t285*t363 - t285*t364 -
+                        t287*t349 - t287*t360 + t290*t347 + t290*t358 + t290*t359 + t290*t363 +
+                        t290*t364 + t292*t351 - t292*t352 - t295*t354 + t295*t356 - t296*t353 -
+                        t296*t361 - t302*t355 + t304*t349 + t304*t360 + t306*t353 + t306*t361 -
+                        0.5*t307 - 0.5*t308 + t310*t357 - t310*t362 - t316*t348 + t316*t350 -
+                        t320*t348 + t320*t350 + t323*t351 - t323*t352 - t324*t354 + t324*t356 -
+                        0.5*t326 - 0.5*t327 - 0.5*t328 - 0.5*t329 + t339*t355 - t348*t365 -
+                        t348*t366 + t350*t365 + t350*t366)
+                # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
+                rhs_x = rhs_y = rhs_z = 0.0
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + 3*j
+                    alpha_r = alpha_rs[j]
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
+                    depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
+                    e0 = e0s[j]
+                    e1 = e1s[j]
+                    t367 = (0.5)*dpsi_z
+                    t368 = dpsi_x*e0
                     t369 = e0*psi_x
-                    t370 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t371 = -Om0_y*dep_z + Om0_z*dep_y - dOm0_y*ep_z + dOm0_z*ep_y
-                    t372 = dpsi_x*t340
-                    t373 = ep_x*t306
-                    t374 = psi_x*t306
-                    t375 = psi_x*t340
-                    t376 = (-A_y*dpsi_z + A_z*dpsi_y - Om_y*dep_z + Om_z*dep_y - dA_y*psi_z +
-                        dA_z*psi_y - dOm_y*ep_z + dOm_z*ep_y)
-                    t377 = psi_x*t354
-                    t378 = psi_x*t356
-                    rhs_x += (-alpha_r*((0.5)*A_y*dpsi_z - A_z*t310 + (0.5)*Om0_y*dep_z -
-                        0.5*Om0_z*dep_y + (0.5)*Om_y*dep_z - 0.5*Om_z*dep_y - dA_x +
-                        (0.5)*dA_y*psi_z - 0.5*dA_z*psi_y + (0.5)*dOm0_y*ep_z - 0.5*dOm0_z*ep_y +
-                        (0.5)*dOm_y*ep_z - 0.5*dOm_z*ep_y + dep_y*e0*t324 + dep_z*e0*t325 +
-                        dpsi_y*e0*t326 + dpsi_y*e1*t324*t339 + dpsi_z*e0*t335 +
-                        dpsi_z*e1*t325*t339 + e0*ep_y*t336 + e0*ep_z*t337 + e0*psi_y*t338 +
-                        e0*psi_z*t352 + e1*ep_y*t305*t324 + e1*ep_z*t305*t325 + e1*psi_y*t305*t326
-                        + e1*psi_y*t324*t353 + e1*psi_y*t336*t339 + e1*psi_z*t305*t335 +
-                        e1*psi_z*t325*t353 + e1*psi_z*t337*t339 + e2*psi_y*t305*t324*t339 +
-                        e2*psi_z*t305*t325*t339 - psi_y*t319*t354 - psi_y*t319*t356 - t299*t347 -
-                        t300*t327 - t307*t327 - t311*t334 - t312*t323 - t313*t323 - t319*t320 -
-                        t319*t341 - t319*t343 - t321*t322 - t321*t342 - t321*t344 - t321*t355 -
-                        t321*t357 - t328*t329 - t328*t345 - t330*t331 - t330*t346) - t309*(t298 +
-                        t308) - t315*(-t310 + t314) - t318*(-t316 - t317))
-                    rhs_y += (-alpha_r*((0.5)*A_z*dpsi_x + (0.5)*Om0_z*dep_x + (0.5)*Om_z*dep_x -
-                        dA_y + (0.5)*dA_z*psi_x + (0.5)*dOm0_z*ep_x + (0.5)*dOm_z*ep_x +
-                        dep_x*e0*t319 + dep_z*e0*t364 + dpsi_x*e0*t327 + dpsi_x*e1*t319*t339 +
-                        dpsi_z*e0*t365 + dpsi_z*e1*t339*t364 + e0*ep_x*t328 + e0*ep_z*t370 +
-                        e0*psi_x*t347 + e0*psi_z*t371 + e1*ep_x*t305*t319 + e1*ep_z*t305*t364 +
-                        e1*psi_x*t305*t327 + e1*psi_x*t319*t353 + e1*psi_x*t328*t339 +
-                        e1*psi_z*t305*t365 + e1*psi_z*t339*t370 + e1*psi_z*t353*t364 +
-                        e2*psi_x*t305*t319*t339 + e2*psi_z*t305*t339*t364 - t311*t376 - t312*t366
-                        - t313*t366 - t322*t362 - t324*t361 - t324*t372 - t324*t373 - t324*t377 -
-                        t324*t378 - t326*t363 - t326*t374 - t331*t368 - 0.5*t332 - 0.5*t333 -
-                        t336*t367 - t336*t375 - t338*t369 - t342*t362 - t344*t362 - t346*t368 -
-                        0.5*t348 - 0.5*t349 - 0.5*t350 - 0.5*t351 - t355*t362 - t357*t362) -
-                        t309*(-t316 - t360) - t315*(t358 + t359) - t318*(-t298 + t308))
-                    rhs_z += (-alpha_r*((0.5)*A_x*dpsi_y - 0.5*A_y*dpsi_x + (0.5)*Om0_x*dep_y -
-                        0.5*Om0_y*dep_x + (0.5)*Om_x*dep_y - 0.5*Om_y*dep_x + (0.5)*dA_x*psi_y -
-                        0.5*dA_y*psi_x - dA_z + (0.5)*dOm0_x*ep_y - 0.5*dOm0_y*ep_x +
-                        (0.5)*dOm_x*ep_y - 0.5*dOm_y*ep_x + dep_x*e0*t321 + dep_y*e0*t362 +
-                        dpsi_x*e0*t323 + dpsi_x*e1*t321*t339 + dpsi_y*e0*t366 +
-                        dpsi_y*e1*t339*t362 + e0*ep_x*t330 + e0*ep_y*t368 + e0*psi_x*t334 +
-                        e0*psi_y*t376 + e1*ep_x*t305*t321 + e1*ep_y*t305*t362 + e1*psi_x*t305*t323
-                        + e1*psi_x*t321*t353 + e1*psi_x*t330*t339 + e1*psi_y*t305*t366 +
-                        e1*psi_y*t339*t368 + e1*psi_y*t353*t362 + e2*psi_x*t305*t321*t339 +
-                        e2*psi_y*t305*t339*t362 - psi_y*t354*t364 - psi_y*t356*t364 - t299*t371 -
-                        t300*t365 - t307*t365 - t320*t364 - t325*t361 - t325*t372 - t325*t373 -
-                        t325*t377 - t325*t378 - t329*t370 - t335*t363 - t335*t374 - t337*t367 -
-                        t337*t375 - t341*t364 - t343*t364 - t345*t370 - t352*t369) - t309*(-t358 +
-                        t359) - t315*(-t317 - t360) - t318*(t310 + t314))
+                    t370 = 2*dpsi_x*psi_x
+                    t371 = 2*dpsi_y*psi_y
+                    t372 = 2*dpsi_z*psi_z
+                    t373 = e1*(t370 + t371 + t372)
+                    t374 = psi_x*t373
+                    t375 = dpsi_y*t369 + psi_y*t368 + psi_y*t374
+                    t376 = Om0d_y*alpha_r
+                    t377 = (0.5)*dpsi_y
+                    t378 = dpsi_z*t369 + psi_z*t368 + psi_z*t374
+                    t379 = Om0d_z*alpha_r
+                    t380 = e0*t372 + psi_z*psi_z*t373
+                    t381 = e0*t371 + psi_y*psi_y*t373
+                    t382 = Om0d_x*alpha_r
+                    t383 = (0.5)*dpsi_x
+                    t384 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t373
+                    t385 = e0*t370 + psi_x*psi_x*t373
+                    rhs_x += (alpha_r*depd_x - t376*(t367 + t375) - t379*(-t377 + t378) -
+                        t382*(-t380 - t381))
+                    rhs_y += (alpha_r*depd_y - t376*(-t380 - t385) - t379*(t383 + t384) -
+                        t382*(-t367 + t375))
+                    rhs_z += (alpha_r*depd_z - t376*(-t383 + t384) - t379*(-t381 - t385) -
+                        t382*(t377 + t378))
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
+                # differential: rate: rates of the elastic rotations
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + 3*j
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
+                    depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
+                    e0 = e0s[j]
+                    e1 = e1s[j]
+                    t386 = (0.5)*psi_z
+                    t387 = e0*psi_x
+                    t388 = psi_y*t387
+                    t389 = (0.5)*psi_y
+                    t390 = psi_z*t387
+                    t391 = psi_y*psi_y
+                    t392 = e0*t391
+                    t393 = psi_z*psi_z
+                    t394 = e0*t393 - 1
+                    t395 = (0.5)*dpsi_z
+                    t396 = dpsi_x*e0
+                    t397 = 2*dpsi_x*psi_x
+                    t398 = 2*dpsi_y*psi_y
+                    t399 = 2*dpsi_z*psi_z
+                    t400 = e1*(t397 + t398 + t399)
+                    t401 = psi_x*t400
+                    t402 = dpsi_y*t387 + psi_y*t396 + psi_y*t401
+                    t403 = (0.5)*dpsi_y
+                    t404 = dpsi_z*t387 + psi_z*t396 + psi_z*t401
+                    t405 = e0*t399 + t393*t400
+                    t406 = e0*t398 + t391*t400
+                    t407 = (0.5)*psi_x
+                    t408 = e0*psi_z
+                    t409 = psi_y*t408
+                    t410 = psi_x*psi_x
+                    t411 = e0*t410
+                    t412 = (0.5)*dpsi_x
+                    t413 = dpsi_y*t408 + dpsi_z*e0*psi_y + psi_y*psi_z*t400
+                    t414 = e0*t397 + t400*t410
+                    detad[j3] = (Om0d_x*(t405 + t406) + Om0d_y*(-t395 - t402) + Om0d_z*(t403 -
+                        t404) + dOm0d_x*(t392 + t394) + dOm0d_y*(-t386 - t388) + dOm0d_z*(t389 -
+                        t390) + depd_x)
+                    detad[j3 + 1] = (Om0d_x*(t395 - t402) + Om0d_y*(t405 + t414) + Om0d_z*(-t412 -
+                        t413) + dOm0d_x*(t386 - t388) + dOm0d_y*(t394 + t411) + dOm0d_z*(-t407 -
+                        t409) + depd_y)
+                    detad[j3 + 2] = (Om0d_x*(-t403 - t404) + Om0d_y*(t412 - t413) + Om0d_z*(t406 +
+                        t414) + dOm0d_x*(-t389 - t390) + dOm0d_y*(t407 - t409) + dOm0d_z*(t392 +
+                        t411 - 1) + depd_z)
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1176,173 +1222,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t379 = X_y + u_y
-                    t380 = X_z + u_z
-                    t381 = X_x + u_x
+                    t415 = X_y + u_y
+                    t416 = X_z + u_z
+                    t417 = X_x + u_x
                     detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
                         Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
                         dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t380 + dOm0d_z*t379 - da0_x + dacc_x)
+                        dOm0d_y*t416 + dOm0d_z*t415 - da0_x + dacc_x)
                     detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                         Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                         dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t380 - dOm0d_z*t381 - da0_y + dacc_y)
+                        dOm0d_x*t416 - dOm0d_z*t417 - da0_y + dacc_y)
                     detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                         Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                         dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t379 + dOm0d_y*t381 - da0_z + dacc_z)
-                # differential: rate: rates of the elastic rotations
-                for j in range(N_ROTATIONS):
-                    j3 = ROTATIONS + 3*j
-                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-                    Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-                    ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-                    A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
-                    dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
-                    dA_x, dA_y, dA_z = dae[j3], dae[j3 + 1], dae[j3 + 2]
-                    dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                    dep_x, dep_y, dep_z = deta[j3], deta[j3 + 1], deta[j3 + 2]
-                    e0 = e0s[j]
-                    e1 = e1s[j]
-                    e2 = e2s[j]
-                    t382 = A_y*dpsi_z
-                    t383 = Om0_y*dep_z
-                    t384 = Om0d_y*dpsi_z
-                    t385 = Om_y*dep_z
-                    t386 = dA_y*psi_z
-                    t387 = dOm0_y*ep_z
-                    t388 = dOm0d_y*psi_z
-                    t389 = dOm_y*ep_z
-                    t390 = -Om0_x*psi_y + Om0_y*psi_x
-                    t391 = dep_y*e0
-                    t392 = Om_x*psi_z - Om_z*psi_x
-                    t393 = dep_z*e0
-                    t394 = -Om_x*psi_y + Om_y*psi_x
-                    t395 = Om0_x*psi_z - Om0_z*psi_x
-                    t396 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t397 = dpsi_y*e0
-                    t398 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t399 = dpsi_z*e0
-                    t400 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t401 = e0*ep_y
-                    t402 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t403 = e0*ep_z
-                    t404 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t405 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t406 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t407 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t408 = 2*psi_x
-                    t409 = 2*psi_y
-                    t410 = 2*psi_z
-                    t411 = ep_x*t408 + ep_y*t409 + ep_z*t410
-                    t412 = e1*t411
-                    t413 = dpsi_y*t412
-                    t414 = dpsi_z*t412
-                    t415 = dpsi_x*t408 + dpsi_y*t409 + dpsi_z*t410
-                    t416 = e1*t415
-                    t417 = ep_y*t416
-                    t418 = ep_z*t416
-                    t419 = psi_y*t416
-                    t420 = psi_y*t412
-                    t421 = psi_z*t416
-                    t422 = psi_z*t412
-                    t423 = Om0_x*dep_y
-                    t424 = Om0d_x*dpsi_y
-                    t425 = dOm0_x*ep_y
-                    t426 = dOm0d_x*psi_y
-                    t427 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t423 -
-                        t424 - t425 - t426)
-                    t428 = e0*psi_y
-                    t429 = A_x*dpsi_z
-                    t430 = Om_x*dep_z
-                    t431 = dA_x*psi_z
-                    t432 = dOm_x*ep_z
-                    t433 = A_z*dpsi_x
-                    t434 = Om_z*dep_x
-                    t435 = dA_z*psi_x
-                    t436 = dOm_z*ep_x
-                    t437 = t429 + t430 + t431 + t432 - t433 - t434 - t435 - t436
-                    t438 = e0*psi_z
-                    t439 = A_x*dpsi_y
-                    t440 = Om_x*dep_y
-                    t441 = dA_x*psi_y
-                    t442 = dOm_x*ep_y
-                    t443 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t439 - t440 - t441
-                        - t442)
-                    t444 = Om0_x*dep_z
-                    t445 = Om0d_x*dpsi_z
-                    t446 = dOm0_x*ep_z
-                    t447 = dOm0d_x*psi_z
-                    t448 = Om0_z*dep_x
-                    t449 = Om0d_z*dpsi_x
-                    t450 = dOm0_z*ep_x
-                    t451 = dOm0d_z*psi_x
-                    t452 = t444 + t445 + t446 + t447 - t448 - t449 - t450 - t451
-                    t453 = (dep_x*t408 + dep_y*t409 + dep_z*t410 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                        2*dpsi_z*ep_z)
-                    t454 = e1*t453
-                    t455 = t390*t454
-                    t456 = psi_z*t454
-                    t457 = e2*t411*t415
-                    t458 = t390*t457
-                    t459 = psi_z*t457
-                    t460 = dep_x*e0
-                    t461 = -Om_y*psi_z + Om_z*psi_y
-                    t462 = -Om0_y*psi_z + Om0_z*psi_y
-                    t463 = dpsi_x*e0
-                    t464 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t465 = e0*ep_x
-                    t466 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t467 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t468 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t469 = dpsi_x*t412
-                    t470 = ep_x*t416
-                    t471 = psi_x*t416
-                    t472 = psi_x*t412
-                    t473 = e0*psi_x
-                    t474 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t382 - t385 - t386
-                        - t389)
-                    t475 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t383 -
-                        t384 - t387 - t388)
-                    t476 = psi_x*t454
-                    t477 = psi_x*t457
-                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
-                        (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t394 + dep_z*e0*t395 +
-                        dpsi_y*e0*t404 + dpsi_y*e1*t394*t411 + dpsi_z*e0*t405 +
-                        dpsi_z*e1*t395*t411 + e0*ep_y*t406 + e0*ep_z*t407 + e0*psi_y*t443 +
-                        e0*psi_z*t452 + e1*ep_y*t394*t415 + e1*ep_z*t395*t415 + e1*psi_y*t394*t453
-                        + e1*psi_y*t404*t415 + e1*psi_y*t406*t411 + e1*psi_z*t395*t453 +
-                        e1*psi_z*t405*t415 + e1*psi_z*t407*t411 + e2*psi_y*t394*t411*t415 +
-                        e2*psi_z*t395*t411*t415 - psi_y*t455 - psi_y*t458 - 0.5*t382 - 0.5*t383 -
-                        0.5*t384 - 0.5*t385 - 0.5*t386 - 0.5*t387 - 0.5*t388 - 0.5*t389 -
-                        t390*t391 - t390*t413 - t390*t417 - t392*t393 - t392*t414 - t392*t418 -
-                        t392*t456 - t392*t459 - t396*t397 - t396*t419 - t398*t399 - t398*t421 -
-                        t400*t401 - t400*t420 - t402*t403 - t402*t422 - t427*t428 - t437*t438)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t455 + psi_x*t458 + t390*t460 +
-                        t390*t469 + t390*t470 + t393*t461 - t393*t462 - t394*t460 - t394*t469 -
-                        t394*t470 - t394*t476 - t394*t477 + t396*t463 + t396*t471 + t399*t464 -
-                        t399*t467 + t400*t465 + t400*t472 + t403*t466 - t403*t468 - t404*t463 -
-                        t404*t471 - t406*t465 - t406*t472 + t414*t461 - t414*t462 + t418*t461 -
-                        t418*t462 + t421*t464 - t421*t467 + t422*t466 - t422*t468 + t427*t473 +
-                        (0.5)*t429 + (0.5)*t430 + (0.5)*t431 + (0.5)*t432 - 0.5*t433 - 0.5*t434 -
-                        0.5*t435 - 0.5*t436 + t438*t474 - t438*t475 - t443*t473 + (0.5)*t444 +
-                        (0.5)*t445 + (0.5)*t446 + (0.5)*t447 - 0.5*t448 - 0.5*t449 - 0.5*t450 -
-                        0.5*t451 + t456*t461 - t456*t462 + t459*t461 - t459*t462)
-                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
-                        (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t392 +
-                        dep_y*e0*t462 + dpsi_x*e0*t398 + dpsi_x*e1*t392*t411 + dpsi_y*e0*t467 +
-                        dpsi_y*e1*t411*t462 + e0*ep_x*t402 + e0*ep_y*t468 + e0*psi_x*t437 +
-                        e0*psi_y*t475 + e1*ep_x*t392*t415 + e1*ep_y*t415*t462 + e1*psi_x*t392*t453
-                        + e1*psi_x*t398*t415 + e1*psi_x*t402*t411 + e1*psi_y*t411*t468 +
-                        e1*psi_y*t415*t467 + e1*psi_y*t453*t462 + e2*psi_x*t392*t411*t415 +
-                        e2*psi_y*t411*t415*t462 - psi_y*t454*t461 - psi_y*t457*t461 - t391*t461 -
-                        t395*t460 - t395*t469 - t395*t470 - t395*t476 - t395*t477 - t397*t464 -
-                        t401*t466 - t405*t463 - t405*t471 - t407*t465 - t407*t472 - t413*t461 -
-                        t417*t461 - t419*t464 - t420*t466 - 0.5*t423 - 0.5*t424 - 0.5*t425 -
-                        0.5*t426 - t428*t474 - 0.5*t439 - 0.5*t440 - 0.5*t441 - 0.5*t442 -
-                        t452*t473)
+                        dOm0d_x*t415 + dOm0d_y*t417 - da0_z + dacc_z)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1368,41 +1262,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
-                t478 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-                t479 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
+                t418 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+                t419 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
                     angle1_z*dangle0_y)
-                t480 = angle0_y*angle1_z - angle0_z*angle1_y
-                t481 = (0.5)*r3
-                t482 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t483 = t482*(r4 - t481)
-                t484 = -Om0_y*angle0_z + Om0_z*angle0_y
-                t485 = t482*(-0.5*r2 + t481)
-                t486 = -Om0_x*angle0_y + Om0_y*angle0_x
-                t487 = Om0_x*angle0_z - Om0_z*angle0_x
-                t488 = angle0_x*angle1_y - angle0_y*angle1_x
-                t489 = -angle0_x*angle1_z + angle0_z*angle1_x
-                t490 = t482*(-0.5*r4 + (1.5)*r5)
-                t491 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-                t492 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-                t493 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
+                t420 = angle0_y*angle1_z - angle0_z*angle1_y
+                t421 = (0.5)*r3
+                t422 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t423 = t422*(r4 - t421)
+                t424 = -Om0_y*angle0_z + Om0_z*angle0_y
+                t425 = t422*(-0.5*r2 + t421)
+                t426 = -Om0_x*angle0_y + Om0_y*angle0_x
+                t427 = Om0_x*angle0_z - Om0_z*angle0_x
+                t428 = angle0_x*angle1_y - angle0_y*angle1_x
+                t429 = -angle0_x*angle1_z + angle0_z*angle1_x
+                t430 = t422*(-0.5*r4 + (1.5)*r5)
+                t431 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+                t432 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+                t433 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
                     angle1_y*dangle0_x)
-                t494 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+                t434 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                     angle1_z*dangle0_x)
-                dwc_x = (dOm0_x + dangle1_x - r1*t478 - r2*t479 + r2*(angle0_y*t491 -
-                    angle0_z*t492 + dangle0_y*t486 - dangle0_z*t487) + r3*(angle0_y*t493 -
-                    angle0_z*t494 + dangle0_y*t488 - dangle0_z*t489) - t480*t483 +
-                    t483*(angle0_y*t486 - angle0_z*t487) - t484*t485 + t490*(angle0_y*t488 -
-                    angle0_z*t489))
-                dwc_y = (dOm0_y + dangle1_y - r1*t492 - r2*t494 + r2*(-angle0_x*t491 +
-                    angle0_z*t478 - dangle0_x*t486 + dangle0_z*t484) + r3*(-angle0_x*t493 +
-                    angle0_z*t479 - dangle0_x*t488 + dangle0_z*t480) - t483*t489 +
-                    t483*(-angle0_x*t486 + angle0_z*t484) - t485*t487 + t490*(-angle0_x*t488 +
-                    angle0_z*t480))
-                dwc_z = (dOm0_z + dangle1_z - r1*t491 - r2*t493 + r2*(angle0_x*t492 -
-                    angle0_y*t478 + dangle0_x*t487 - dangle0_y*t484) + r3*(angle0_x*t494 -
-                    angle0_y*t479 + dangle0_x*t489 - dangle0_y*t480) - t483*t488 +
-                    t483*(angle0_x*t487 - angle0_y*t484) - t485*t486 + t490*(angle0_x*t489 -
-                    angle0_y*t480))
+                dwc_x = (dOm0_x + dangle1_x - r1*t418 - r2*t419 + r2*(angle0_y*t431 -
+                    angle0_z*t432 + dangle0_y*t426 - dangle0_z*t427) + r3*(angle0_y*t433 -
+                    angle0_z*t434 + dangle0_y*t428 - dangle0_z*t429) - t420*t423 +
+                    t423*(angle0_y*t426 - angle0_z*t427) - t424*t425 + t430*(angle0_y*t428 -
+                    angle0_z*t429))
+                dwc_y = (dOm0_y + dangle1_y - r1*t432 - r2*t434 + r2*(-angle0_x*t431 +
+                    angle0_z*t418 - dangle0_x*t426 + dangle0_z*t424) + r3*(-angle0_x*t433 +
+                    angle0_z*t419 - dangle0_x*t428 + dangle0_z*t420) - t423*t429 +
+                    t423*(-angle0_x*t426 + angle0_z*t424) - t425*t427 + t430*(-angle0_x*t428 +
+                    angle0_z*t420))
+                dwc_z = (dOm0_z + dangle1_z - r1*t431 - r2*t433 + r2*(angle0_x*t432 -
+                    angle0_y*t418 + dangle0_x*t427 - dangle0_y*t424) + r3*(angle0_x*t434 -
+                    angle0_y*t419 + dangle0_x*t429 - dangle0_y*t420) - t423*t428 +
+                    t423*(angle0_x*t427 - angle0_y*t424) - t425*t426 + t430*(angle0_x*t429 -
+                    angle0_y*t420))
                 # differential: its rate
                 angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
                 angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
@@ -1410,102 +1304,102 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
                 dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-                t495 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
-                t496 = (angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z +
+                t435 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
+                t436 = (angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z +
                     angle2_z*dangle0_y)
-                t497 = angle0_y*angle2_z - angle0_z*angle2_y
-                t498 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t499 = (0.5)*r3
-                t500 = t498*(r4 - t499)
-                t501 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-                t502 = -0.5*r2 + t499
-                t503 = t498*t502
-                t504 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
+                t437 = angle0_y*angle2_z - angle0_z*angle2_y
+                t438 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t439 = (0.5)*r3
+                t440 = t438*(r4 - t439)
+                t441 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+                t442 = -0.5*r2 + t439
+                t443 = t438*t442
+                t444 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
                     angle1_z*dangle0_y)
-                t505 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-                t506 = -r3 + 2*r4
-                t507 = t505*t506
-                t508 = angle0_y*angle1_z - angle0_z*angle1_y
-                t509 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
+                t445 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+                t446 = -r3 + 2*r4
+                t447 = t445*t446
+                t448 = angle0_y*angle1_z - angle0_z*angle1_y
+                t449 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
                     angle1_x*dangle0_x + angle1_y*dangle0_y + angle1_z*dangle0_z)
-                t510 = t506*t509
-                t511 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-                t512 = Om0d_x*angle0_z - Om0d_z*angle0_x
-                t513 = angle0_x*angle2_y - angle0_y*angle2_x
-                t514 = -angle0_x*angle2_z + angle0_z*angle2_x
-                t515 = t498*(-0.5*r4 + (1.5)*r5)
-                t516 = angle0_x*angle1_y - angle0_y*angle1_x
-                t517 = -angle0_x*angle1_z + angle0_z*angle1_x
-                t518 = angle0_y*t516 - angle0_z*t517
-                t519 = -r4 + 3*r5
-                t520 = t509*t519
-                t521 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
-                t522 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
-                t523 = (angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y +
+                t450 = t446*t449
+                t451 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+                t452 = Om0d_x*angle0_z - Om0d_z*angle0_x
+                t453 = angle0_x*angle2_y - angle0_y*angle2_x
+                t454 = -angle0_x*angle2_z + angle0_z*angle2_x
+                t455 = t438*(-0.5*r4 + (1.5)*r5)
+                t456 = angle0_x*angle1_y - angle0_y*angle1_x
+                t457 = -angle0_x*angle1_z + angle0_z*angle1_x
+                t458 = angle0_y*t456 - angle0_z*t457
+                t459 = -r4 + 3*r5
+                t460 = t449*t459
+                t461 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
+                t462 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
+                t463 = (angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y +
                     angle2_y*dangle0_x)
-                t524 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
+                t464 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
                     angle2_z*dangle0_x)
-                t525 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
+                t465 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
                     angle1_y*dangle0_x)
-                t526 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+                t466 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                     angle1_z*dangle0_x)
-                t527 = -0.5*r5 + 2*r6
-                t528 = t505*(2*t498*t527 - t515)
-                t529 = angle0_y*t525 - angle0_z*t526 + dangle0_y*t516 - dangle0_z*t517
-                t530 = t505*t519
-                t531 = t505*(-t498*t527 + 3*t498*(-0.5*r6 + (2.5)*r7))
-                t532 = Om0_x*angle0_z - Om0_z*angle0_x
-                t533 = -Om0_x*angle0_y + Om0_y*angle0_x
-                t534 = -Om0_y*angle0_z + Om0_z*angle0_y
-                t535 = -angle0_x*t533 + angle0_z*t534
-                t536 = Om0_y - r1*t532 + r2*t535
-                t537 = angle0_x*t517 - angle0_y*t508
-                t538 = angle0_x*t526 - angle0_y*t504 + dangle0_x*t517 - dangle0_y*t508
-                t539 = dangle1_z - r2*t525 + r3*t538 - t500*t516 + t515*t537
-                t540 = angle1_z - r2*t516 + r3*t537
-                t541 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-                t542 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-                t543 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-                t544 = (dOm0_y - r1*t541 + r2*(-angle0_x*t542 + angle0_z*t543 - dangle0_x*t533 +
-                    dangle0_z*t534) + t500*t535 - t503*t532)
-                t545 = angle0_x*t532 - angle0_y*t534
-                t546 = Om0_z - r1*t533 + r2*t545
-                t547 = -angle0_x*t516 + angle0_z*t508
-                t548 = -angle0_x*t525 + angle0_z*t504 - dangle0_x*t516 + dangle0_z*t508
-                t549 = dangle1_y - r2*t526 + r3*t548 - t500*t517 + t515*t547
-                t550 = angle1_y - r2*t517 + r3*t547
-                t551 = (dOm0_z - r1*t542 + r2*(angle0_x*t541 - angle0_y*t543 + dangle0_x*t532 -
-                    dangle0_y*t534) - t498*t502*t533 + t500*t545)
-                t552 = dangle1_x - r2*t504 + r3*t529 - t500*t508 + t515*t518
-                t553 = angle1_x - r2*t508 + r3*t518
-                t554 = angle0_y*t533 - angle0_z*t532
-                t555 = Om0_x - r1*t534 + r2*t554
-                t556 = (dOm0_x - r1*t543 + r2*(angle0_y*t542 - angle0_z*t541 + dangle0_y*t533 -
-                    dangle0_z*t532) - t498*t502*t534 + t500*t554)
-                dwcd_x = (dOm0d_x + dangle2_x - r1*t495 - r2*t496 + r2*(angle0_y*t521 -
-                    angle0_z*t522 + dangle0_y*t511 - dangle0_z*t512) + r3*(angle0_y*t523 -
-                    angle0_z*t524 + dangle0_y*t513 - dangle0_z*t514) + r3*(angle1_y*t525 -
-                    angle1_z*t526 + dangle1_y*t516 - dangle1_z*t517) - t497*t500 +
-                    t500*(angle0_y*t511 - angle0_z*t512) - t501*t503 - t504*t507 - t508*t510 -
-                    t508*t528 + t515*(angle0_y*t513 - angle0_z*t514) + t515*(angle1_y*t516 -
-                    angle1_z*t517) + t518*t520 + t518*t531 + t529*t530 + t536*t539 + t540*t544 -
-                    t546*t549 - t550*t551)
-                dwcd_y = (dOm0d_y + dangle2_y - r1*t522 - r2*t524 + r2*(-angle0_x*t521 +
-                    angle0_z*t495 - dangle0_x*t511 + dangle0_z*t501) + r3*(-angle0_x*t523 +
-                    angle0_z*t496 - dangle0_x*t513 + dangle0_z*t497) + r3*(-angle1_x*t525 +
-                    angle1_z*t504 - dangle1_x*t516 + dangle1_z*t508) - t500*t514 +
-                    t500*(-angle0_x*t511 + angle0_z*t501) - t503*t512 - t507*t526 - t510*t517 +
-                    t515*(-angle0_x*t513 + angle0_z*t497) + t515*(-angle1_x*t516 + angle1_z*t508)
-                    - t517*t528 + t520*t547 + t530*t548 + t531*t547 - t539*t555 - t540*t556 +
-                    t546*t552 + t551*t553)
-                dwcd_z = (dOm0d_z + dangle2_z - r1*t521 - r2*t523 + r2*(angle0_x*t522 -
-                    angle0_y*t495 + dangle0_x*t512 - dangle0_y*t501) + r3*(angle0_x*t524 -
-                    angle0_y*t496 + dangle0_x*t514 - dangle0_y*t497) + r3*(angle1_x*t526 -
-                    angle1_y*t504 + dangle1_x*t517 - dangle1_y*t508) - t500*t513 +
-                    t500*(angle0_x*t512 - angle0_y*t501) - t503*t511 - t507*t525 - t510*t516 +
-                    t515*(angle0_x*t514 - angle0_y*t497) + t515*(angle1_x*t517 - angle1_y*t508) -
-                    t516*t528 + t520*t537 + t530*t538 + t531*t537 - t536*t552 - t544*t553 +
-                    t549*t555 + t550*t556)
+                t467 = -0.5*r5 + 2*r6
+                t468 = t445*(2*t438*t467 - t455)
+                t469 = angle0_y*t465 - angle0_z*t466 + dangle0_y*t456 - dangle0_z*t457
+                t470 = t445*t459
+                t471 = t445*(-t438*t467 + 3*t438*(-0.5*r6 + (2.5)*r7))
+                t472 = Om0_x*angle0_z - Om0_z*angle0_x
+                t473 = -Om0_x*angle0_y + Om0_y*angle0_x
+                t474 = -Om0_y*angle0_z + Om0_z*angle0_y
+                t475 = -angle0_x*t473 + angle0_z*t474
+                t476 = Om0_y - r1*t472 + r2*t475
+                t477 = angle0_x*t457 - angle0_y*t448
+                t478 = angle0_x*t466 - angle0_y*t444 + dangle0_x*t457 - dangle0_y*t448
+                t479 = dangle1_z - r2*t465 + r3*t478 - t440*t456 + t455*t477
+                t480 = angle1_z - r2*t456 + r3*t477
+                t481 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+                t482 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+                t483 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+                t484 = (dOm0_y - r1*t481 + r2*(-angle0_x*t482 + angle0_z*t483 - dangle0_x*t473 +
+                    dangle0_z*t474) + t440*t475 - t443*t472)
+                t485 = angle0_x*t472 - angle0_y*t474
+                t486 = Om0_z - r1*t473 + r2*t485
+                t487 = -angle0_x*t456 + angle0_z*t448
+                t488 = -angle0_x*t465 + angle0_z*t444 - dangle0_x*t456 + dangle0_z*t448
+                t489 = dangle1_y - r2*t466 + r3*t488 - t440*t457 + t455*t487
+                t490 = angle1_y - r2*t457 + r3*t487
+                t491 = (dOm0_z - r1*t482 + r2*(angle0_x*t481 - angle0_y*t483 + dangle0_x*t472 -
+                    dangle0_y*t474) - t438*t442*t473 + t440*t485)
+                t492 = dangle1_x - r2*t444 + r3*t469 - t440*t448 + t455*t458
+                t493 = angle1_x - r2*t448 + r3*t458
+                t494 = angle0_y*t473 - angle0_z*t472
+                t495 = Om0_x - r1*t474 + r2*t494
+                t496 = (dOm0_x - r1*t483 + r2*(angle0_y*t482 - angle0_z*t481 + dangle0_y*t473 -
+                    dangle0_z*t472) - t438*t442*t474 + t440*t494)
+                dwcd_x = (dOm0d_x + dangle2_x - r1*t435 - r2*t436 + r2*(angle0_y*t461 -
+                    angle0_z*t462 + dangle0_y*t451 - dangle0_z*t452) + r3*(angle0_y*t463 -
+                    angle0_z*t464 + dangle0_y*t453 - dangle0_z*t454) + r3*(angle1_y*t465 -
+                    angle1_z*t466 + dangle1_y*t456 - dangle1_z*t457) - t437*t440 +
+                    t440*(angle0_y*t451 - angle0_z*t452) - t441*t443 - t444*t447 - t448*t450 -
+                    t448*t468 + t455*(angle0_y*t453 - angle0_z*t454) + t455*(angle1_y*t456 -
+                    angle1_z*t457) + t458*t460 + t458*t471 + t469*t470 + t476*t479 + t480*t484 -
+                    t486*t489 - t490*t491)
+                dwcd_y = (dOm0d_y + dangle2_y - r1*t462 - r2*t464 + r2*(-angle0_x*t461 +
+                    angle0_z*t435 - dangle0_x*t451 + dangle0_z*t441) + r3*(-angle0_x*t463 +
+                    angle0_z*t436 - dangle0_x*t453 + dangle0_z*t437) + r3*(-angle1_x*t465 +
+                    angle1_z*t444 - dangle1_x*t456 + dangle1_z*t448) - t440*t454 +
+                    t440*(-angle0_x*t451 + angle0_z*t441) - t443*t452 - t447*t466 - t450*t457 +
+                    t455*(-angle0_x*t453 + angle0_z*t437) + t455*(-angle1_x*t456 + angle1_z*t448)
+                    - t457*t468 + t460*t487 + t470*t488 + t471*t487 - t479*t495 - t480*t496 +
+                    t486*t492 + t491*t493)
+                dwcd_z = (dOm0d_z + dangle2_z - r1*t461 - r2*t463 + r2*(angle0_x*t462 -
+                    angle0_y*t435 + dangle0_x*t452 - dangle0_y*t441) + r3*(angle0_x*t464 -
+                    angle0_y*t436 + dangle0_x*t454 - dangle0_y*t437) + r3*(angle1_x*t466 -
+                    angle1_y*t444 + dangle1_x*t457 - dangle1_y*t448) - t440*t453 +
+                    t440*(angle0_x*t452 - angle0_y*t441) - t443*t451 - t447*t465 - t450*t456 +
+                    t455*(angle0_x*t454 - angle0_y*t437) + t455*(angle1_x*t457 - angle1_y*t448) -
+                    t456*t468 + t460*t477 + t470*t478 + t471*t477 - t476*t492 - t484*t493 +
+                    t489*t495 + t490*t496)
                 # differential: rate of its momentum and of the moment of it
                 first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
                 first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -1516,43 +1410,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dfirst0_x, dfirst0_y, dfirst0_z = drigid0[0], drigid0[1], drigid0[2]
                 dfirst1_x, dfirst1_y, dfirst1_z = drigid1[0], drigid1[1], drigid1[2]
                 dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
-                t557 = 2*dfirst1_z
-                t558 = 2*Om0_z
-                t559 = 2*first1_z
-                t560 = 2*dOm0_z
-                t561 = first0_z + mc_z
-                t562 = first0_y + mc_y
-                t563 = first0_x + mc_x
-                t564 = Om0_x*t562 - Om0_y*t563
-                t565 = -Om0_x*t561 + Om0_z*t563
-                t566 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t562 - dOm0_y*t563
-                t567 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t561 + dOm0_z*t563
-                t568 = Om0_y*t561 - Om0_z*t562
-                t569 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t561 - dOm0_z*t562
-                t570 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-                t571 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
-                t572 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-                t573 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
-                t574 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-                t575 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
-                dRt_x = (Om0_y*t557 + Om0_y*t566 - Om0_z*t567 + Om0d_y*dfirst0_z -
-                    Om0d_z*dfirst0_y + dOm0_y*t559 + dOm0_y*t564 - dOm0_z*t565 + dOm0d_y*t561 -
-                    dOm0d_z*t562 - dfirst1_y*t558 + dfirst2_x - first1_y*t560 + mass*(da0_x -
+                t497 = 2*dfirst1_z
+                t498 = 2*Om0_z
+                t499 = 2*first1_z
+                t500 = 2*dOm0_z
+                t501 = first0_z + mc_z
+                t502 = first0_y + mc_y
+                t503 = first0_x + mc_x
+                t504 = Om0_x*t502 - Om0_y*t503
+                t505 = -Om0_x*t501 + Om0_z*t503
+                t506 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t502 - dOm0_y*t503
+                t507 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t501 + dOm0_z*t503
+                t508 = Om0_y*t501 - Om0_z*t502
+                t509 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t501 - dOm0_z*t502
+                t510 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+                t511 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
+                t512 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+                t513 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
+                t514 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+                t515 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
+                dRt_x = (Om0_y*t497 + Om0_y*t506 - Om0_z*t507 + Om0d_y*dfirst0_z -
+                    Om0d_z*dfirst0_y + dOm0_y*t499 + dOm0_y*t504 - dOm0_z*t505 + dOm0d_y*t501 -
+                    dOm0d_z*t502 - dfirst1_y*t498 + dfirst2_x - first1_y*t500 + mass*(da0_x -
                     dgamma_x))
-                dRt_y = (-Om0_x*t557 - Om0_x*t566 + Om0_z*t569 - Om0d_x*dfirst0_z +
-                    Om0d_z*dfirst0_x - dOm0_x*t559 - dOm0_x*t564 + dOm0_z*t568 - dOm0d_x*t561 +
-                    dOm0d_z*t563 + dfirst1_x*t558 + dfirst2_y + first1_x*t560 + mass*(da0_y -
+                dRt_y = (-Om0_x*t497 - Om0_x*t506 + Om0_z*t509 - Om0d_x*dfirst0_z +
+                    Om0d_z*dfirst0_x - dOm0_x*t499 - dOm0_x*t504 + dOm0_z*t508 - dOm0d_x*t501 +
+                    dOm0d_z*t503 + dfirst1_x*t498 + dfirst2_y + first1_x*t500 + mass*(da0_y -
                     dgamma_y))
-                dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t567 - 2*Om0_y*dfirst1_x - Om0_y*t569 +
-                    Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t565 -
-                    2*dOm0_y*first1_x - dOm0_y*t568 + dOm0d_x*t562 - dOm0d_y*t563 + dfirst2_z +
+                dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t507 - 2*Om0_y*dfirst1_x - Om0_y*t509 +
+                    Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t505 -
+                    2*dOm0_y*first1_x - dOm0_y*t508 + dOm0d_x*t502 - dOm0d_y*t503 + dfirst2_z +
                     mass*(da0_z - dgamma_z))
-                dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t570 - dwc_z*t572 +
-                    t571*wc_y - t573*wc_z)
-                dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t570 + dwc_z*t574 -
-                    t571*wc_x + t575*wc_z)
-                dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t572 - dwc_y*t574 +
-                    t573*wc_x - t575*wc_y)
+                dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t510 - dwc_z*t512 +
+                    t511*wc_y - t513*wc_z)
+                dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t510 + dwc_z*t514 -
+                    t511*wc_x + t515*wc_z)
+                dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t512 - dwc_y*t514 +
+                    t513*wc_x - t515*wc_y)
                 # differential: moment on the frame, forces on the first moment and mean rotation
                 first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
                 angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -1563,42 +1457,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
                 dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-                t576 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
-                t577 = 1/mass
-                t578 = first0_y + mc_y
-                t579 = first0_z + mc_z
-                t580 = -Mc_y*angle0_z + Mc_z*angle0_y
-                t581 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t582 = (0.5)*r3
-                t583 = t581*(-0.5*r2 + t582)
-                t584 = -Mc_x*angle0_y + Mc_y*angle0_x
-                t585 = Mc_x*angle0_z - Mc_z*angle0_x
-                t586 = angle0_y*t584 - angle0_z*t585
-                t587 = t581*(r4 - t582)
-                t588 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
-                t589 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
-                t590 = angle0_y*t588 - angle0_z*t589 + dangle0_y*t584 - dangle0_z*t585
-                t591 = first0_x + mc_x
-                t592 = -angle0_x*t584 + angle0_z*t580
-                t593 = -angle0_x*t588 + angle0_z*t576 - dangle0_x*t584 + dangle0_z*t580
-                t594 = angle0_x*t585 - angle0_y*t580
-                t595 = angle0_x*t589 - angle0_y*t576 + dangle0_x*t585 - dangle0_y*t580
-                t596 = t581*(-0.5*r4 + (1.5)*r5)
-                dRr_x = (dMc_x + r1*t576 + r2*t590 + t577*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
-                    dRt_y*t579 + dRt_z*t578) + t580*t583 + t586*t587)
-                dRr_y = (dMc_y + r1*t589 + r2*t593 + t577*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
-                    dRt_x*t579 - dRt_z*t591) + t583*t585 + t587*t592)
-                dRr_z = (dMc_z + r1*t588 + r2*t595 + t577*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
-                    dRt_x*t578 + dRt_y*t591) + t583*t584 + t587*t594)
-                dcarried[0] = t577*(dRt_x - dfirst2_x)
-                dcarried[1] = t577*(dRt_y - dfirst2_y)
-                dcarried[2] = t577*(dRt_z - dfirst2_z)
+                t516 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
+                t517 = 1/mass
+                t518 = first0_y + mc_y
+                t519 = first0_z + mc_z
+                t520 = -Mc_y*angle0_z + Mc_z*angle0_y
+                t521 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t522 = (0.5)*r3
+                t523 = t521*(-0.5*r2 + t522)
+                t524 = -Mc_x*angle0_y + Mc_y*angle0_x
+                t525 = Mc_x*angle0_z - Mc_z*angle0_x
+                t526 = angle0_y*t524 - angle0_z*t525
+                t527 = t521*(r4 - t522)
+                t528 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
+                t529 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
+                t530 = angle0_y*t528 - angle0_z*t529 + dangle0_y*t524 - dangle0_z*t525
+                t531 = first0_x + mc_x
+                t532 = -angle0_x*t524 + angle0_z*t520
+                t533 = -angle0_x*t528 + angle0_z*t516 - dangle0_x*t524 + dangle0_z*t520
+                t534 = angle0_x*t525 - angle0_y*t520
+                t535 = angle0_x*t529 - angle0_y*t516 + dangle0_x*t525 - dangle0_y*t520
+                t536 = t521*(-0.5*r4 + (1.5)*r5)
+                dRr_x = (dMc_x + r1*t516 + r2*t530 + t517*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
+                    dRt_y*t519 + dRt_z*t518) + t520*t523 + t526*t527)
+                dRr_y = (dMc_y + r1*t529 + r2*t533 + t517*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
+                    dRt_x*t519 - dRt_z*t531) + t523*t525 + t527*t532)
+                dRr_z = (dMc_z + r1*t528 + r2*t535 + t517*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
+                    dRt_x*t518 + dRt_y*t531) + t523*t524 + t527*t534)
+                dcarried[0] = t517*(dRt_x - dfirst2_x)
+                dcarried[1] = t517*(dRt_y - dfirst2_y)
+                dcarried[2] = t517*(dRt_z - dfirst2_z)
                 dcarried[3] = (-Jc_xx*dangle2_x - Jc_xy*dangle2_y - Jc_xz*dangle2_z + dMc_x +
-                    r2*t576 + r3*t590 + t580*t587 + t586*t596)
+                    r2*t516 + r3*t530 + t520*t527 + t526*t536)
                 dcarried[4] = (-Jc_xy*dangle2_x - Jc_yy*dangle2_y - Jc_yz*dangle2_z + dMc_y +
-                    r2*t589 + r3*t593 + t585*t587 + t592*t596)
+                    r2*t529 + r3*t533 + t525*t527 + t532*t536)
                 dcarried[5] = (-Jc_xz*dangle2_x - Jc_yz*dangle2_y - Jc_zz*dangle2_z + dMc_z +
-                    r2*t588 + r3*t595 + t584*t587 + t594*t596)
+                    r2*t528 + r3*t535 + t524*t527 + t534*t536)
                 # forces of the rigid part, conjugate to y
                 add_block_times(rigid_columns, dcarried, ds, n, 6, padded(n))
                 # damping force, Cbar ydot
@@ -1613,15 +1507,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t597 = X_z + u_z
-                    t598 = X_y + u_y
-                    t599 = X_x + u_x
+                    t537 = X_z + u_z
+                    t538 = X_y + u_y
+                    t539 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t597 - df_z*t598 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t597 + df_z*t599 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t598 - df_y*t599 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t537 - df_z*t538 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t537 + df_z*t539 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t538 - df_y*t539 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 dF_x += dRt_x
                 dF_y += dRt_y
@@ -1638,25 +1532,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t600 = -m_x*psi_y + m_y*psi_x
-                    t601 = m_x*psi_z - m_z*psi_x
-                    t602 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t603 = dm_x*psi_z
-                    t604 = dpsi_z*m_x
-                    t605 = -dm_z*psi_x - dpsi_x*m_z + t603 + t604
-                    t606 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t607 = e1*t606
-                    t608 = -m_y*psi_z + m_z*psi_y
-                    t609 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t600 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t601 + (0.5)*dpsi_z*m_y - e0*psi_y*t602 +
-                        e0*psi_z*t605 + e1*psi_z*t601*t606 - psi_y*t600*t607)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t600 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t608 + e0*psi_x*t602 - e0*psi_z*t609 + e1*psi_x*t600*t606 -
-                        psi_z*t607*t608 - 0.5*t603 - 0.5*t604)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t601 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t608 + (0.5)*dpsi_y*m_x - e0*psi_x*t605 +
-                        e0*psi_y*t609 + e1*psi_y*t606*t608 - psi_x*t601*t607)
+                    t540 = -m_x*psi_y + m_y*psi_x
+                    t541 = m_x*psi_z - m_z*psi_x
+                    t542 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t543 = dm_x*psi_z
+                    t544 = dpsi_z*m_x
+                    t545 = -dm_z*psi_x - dpsi_x*m_z + t543 + t544
+                    t546 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t547 = e1*t546
+                    t548 = -m_y*psi_z + m_z*psi_y
+                    t549 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t540 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t541 + (0.5)*dpsi_z*m_y - e0*psi_y*t542 +
+                        e0*psi_z*t545 + e1*psi_z*t541*t546 - psi_y*t540*t547)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t540 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t548 + e0*psi_x*t542 - e0*psi_z*t549 + e1*psi_x*t540*t546 -
+                        psi_z*t547*t548 - 0.5*t543 - 0.5*t544)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t541 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t548 + (0.5)*dpsi_y*m_x - e0*psi_x*t545 +
+                        e0*psi_y*t549 + e1*psi_y*t546*t548 - psi_x*t541*t547)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1666,33 +1560,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t610 = dpsi_y*wp_z
-                    t611 = dpsi_z*wp_y
-                    t612 = psi_x*wp_y - psi_y*wp_x
-                    t613 = e0*t612
-                    t614 = dpsi_x*wp_y
-                    t615 = dpsi_y*wp_x
-                    t616 = e0*(t614 - t615)
-                    t617 = -psi_x*wp_z + psi_z*wp_x
-                    t618 = dpsi_x*wp_z
-                    t619 = dpsi_z*wp_x - t618
-                    t620 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t621 = e1*t620
-                    t622 = t612*t621
-                    t623 = psi_y*wp_z - psi_z*wp_y
-                    t624 = t610 - t611
-                    rhs_x += (-alpha_r*(dpsi_y*t613 - dpsi_z*e0*t617 - e0*psi_z*t619 + psi_y*t616
-                        + psi_y*t622 - psi_z*t617*t621 + (0.5)*t610 - 0.5*t611))
-                    rhs_y += (-alpha_r*(-dpsi_x*t613 + dpsi_z*e0*t623 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t624 + e1*psi_z*t620*t623 - psi_x*t616 - psi_x*t622 - 0.5*t618))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t617 - dpsi_y*e0*t623 + e0*psi_x*t619 -
-                        e0*psi_y*t624 + psi_x*t617*t621 - psi_y*t621*t623 + (0.5)*t614 - 0.5*t615))
-                t625 = dW_x + rhs_x
-                t626 = dW_y + rhs_y
-                t627 = dW_z + rhs_z
-                dwp_x = Bxx*t625 + Byx*t626 + Bzx*t627
-                dwp_y = Bxy*t625 + Byy*t626 + Bzy*t627
-                dwp_z = Bxz*t625 + Byz*t626 + Bzz*t627
+                    t550 = dpsi_y*wp_z
+                    t551 = dpsi_z*wp_y
+                    t552 = psi_x*wp_y - psi_y*wp_x
+                    t553 = e0*t552
+                    t554 = dpsi_x*wp_y
+                    t555 = dpsi_y*wp_x
+                    t556 = e0*(t554 - t555)
+                    t557 = -psi_x*wp_z + psi_z*wp_x
+                    t558 = dpsi_x*wp_z
+                    t559 = dpsi_z*wp_x - t558
+                    t560 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t561 = e1*t560
+                    t562 = t552*t561
+                    t563 = psi_y*wp_z - psi_z*wp_y
+                    t564 = t550 - t551
+                    rhs_x += (-alpha_r*(dpsi_y*t553 - dpsi_z*e0*t557 - e0*psi_z*t559 + psi_y*t556
+                        + psi_y*t562 - psi_z*t557*t561 + (0.5)*t550 - 0.5*t551))
+                    rhs_y += (-alpha_r*(-dpsi_x*t553 + dpsi_z*e0*t563 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t564 + e1*psi_z*t560*t563 - psi_x*t556 - psi_x*t562 - 0.5*t558))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t557 - dpsi_y*e0*t563 + e0*psi_x*t559 -
+                        e0*psi_y*t564 + psi_x*t557*t561 - psi_y*t561*t563 + (0.5)*t554 - 0.5*t555))
+                t565 = dW_x + rhs_x
+                t566 = dW_y + rhs_y
+                t567 = dW_z + rhs_z
+                dwp_x = Bxx*t565 + Byx*t566 + Bzx*t567
+                dwp_y = Bxy*t565 + Byy*t566 + Bzy*t567
+                dwp_z = Bxz*t565 + Byz*t566 + Bzz*t567
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1719,58 +1613,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t628 = dm_y*psi_z
-                    t629 = dpsi_z*m_y
-                    t630 = -m_x*psi_y + m_y*psi_x
-                    t631 = dpsi_y*e0
-                    t632 = m_x*psi_z - m_z*psi_x
-                    t633 = dpsi_z*e0
-                    t634 = dm_x*psi_y
-                    t635 = dpsi_y*m_x
-                    t636 = dm_y*psi_x + dpsi_x*m_y - t634 - t635
-                    t637 = e0*psi_y
-                    t638 = dm_x*psi_z
-                    t639 = dpsi_z*m_x
-                    t640 = dm_z*psi_x
-                    t641 = dpsi_x*m_z
-                    t642 = t638 + t639 - t640 - t641
-                    t643 = e0*psi_z
-                    t644 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t645 = psi_y*t644
-                    t646 = psi_z*t644
-                    t647 = dpsi_y*wp_z
-                    t648 = dpsi_z*wp_y
-                    t649 = dwp_y*psi_z
-                    t650 = dwp_z*psi_y
-                    t651 = psi_x*wp_y - psi_y*wp_x
-                    t652 = -psi_x*wp_z + psi_z*wp_x
-                    t653 = dpsi_x*wp_y
-                    t654 = dwp_y*psi_x
-                    t655 = dpsi_y*wp_x
-                    t656 = dwp_x*psi_y
-                    t657 = t653 + t654 - t655 - t656
-                    t658 = dpsi_x*wp_z
-                    t659 = dwp_z*psi_x
-                    t660 = dpsi_z*wp_x + dwp_x*psi_z - t658 - t659
-                    t661 = -m_y*psi_z + m_z*psi_y
-                    t662 = dpsi_x*e0
-                    t663 = dm_z*psi_y + dpsi_y*m_z - t628 - t629
-                    t664 = e0*psi_x
-                    t665 = psi_x*t644
-                    t666 = psi_y*wp_z - psi_z*wp_y
-                    t667 = t647 - t648 - t649 + t650
-                    dg[j3] = (alpha_r*(dwp_x + t631*t651 - t633*t652 + t637*t657 - t643*t660 +
-                        t645*t651 - t646*t652 - 0.5*t647 + (0.5)*t648 + (0.5)*t649 - 0.5*t650) +
-                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t628 + (0.5)*t629 +
-                        t630*t631 + t630*t645 - t632*t633 - t632*t646 + t636*t637 - t642*t643)
-                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t633*t666
-                        + t643*t667 + t646*t666 - t651*t662 - t651*t665 - t657*t664 + (0.5)*t658 +
-                        (0.5)*t659) + dm_y - t630*t662 - t630*t665 + t633*t661 - t636*t664 -
-                        0.5*t638 - 0.5*t639 + (0.5)*t640 + (0.5)*t641 + t643*t663 + t646*t661)
-                    dg[j3 + 2] = (alpha_r*(dwp_z - t631*t666 - t637*t667 - t645*t666 + t652*t662 +
-                        t652*t665 - 0.5*t653 - 0.5*t654 + (0.5)*t655 + (0.5)*t656 + t660*t664) -
-                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t631*t661 + t632*t662 + t632*t665
-                        + (0.5)*t634 + (0.5)*t635 - t637*t663 + t642*t664 - t645*t661)
+                    t568 = dm_y*psi_z
+                    t569 = dpsi_z*m_y
+                    t570 = -m_x*psi_y + m_y*psi_x
+                    t571 = dpsi_y*e0
+                    t572 = m_x*psi_z - m_z*psi_x
+                    t573 = dpsi_z*e0
+                    t574 = dm_x*psi_y
+                    t575 = dpsi_y*m_x
+                    t576 = dm_y*psi_x + dpsi_x*m_y - t574 - t575
+                    t577 = e0*psi_y
+                    t578 = dm_x*psi_z
+                    t579 = dpsi_z*m_x
+                    t580 = dm_z*psi_x
+                    t581 = dpsi_x*m_z
+                    t582 = t578 + t579 - t580 - t581
+                    t583 = e0*psi_z
+                    t584 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t585 = psi_y*t584
+                    t586 = psi_z*t584
+                    t587 = dpsi_y*wp_z
+                    t588 = dpsi_z*wp_y
+                    t589 = dwp_y*psi_z
+                    t590 = dwp_z*psi_y
+                    t591 = psi_x*wp_y - psi_y*wp_x
+                    t592 = -psi_x*wp_z + psi_z*wp_x
+                    t593 = dpsi_x*wp_y
+                    t594 = dwp_y*psi_x
+                    t595 = dpsi_y*wp_x
+                    t596 = dwp_x*psi_y
+                    t597 = t593 + t594 - t595 - t596
+                    t598 = dpsi_x*wp_z
+                    t599 = dwp_z*psi_x
+                    t600 = dpsi_z*wp_x + dwp_x*psi_z - t598 - t599
+                    t601 = -m_y*psi_z + m_z*psi_y
+                    t602 = dpsi_x*e0
+                    t603 = dm_z*psi_y + dpsi_y*m_z - t568 - t569
+                    t604 = e0*psi_x
+                    t605 = psi_x*t584
+                    t606 = psi_y*wp_z - psi_z*wp_y
+                    t607 = t587 - t588 - t589 + t590
+                    dg[j3] = (alpha_r*(dwp_x + t571*t591 - t573*t592 + t577*t597 - t583*t600 +
+                        t585*t591 - t586*t592 - 0.5*t587 + (0.5)*t588 + (0.5)*t589 - 0.5*t590) +
+                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t568 + (0.5)*t569 +
+                        t570*t571 + t570*t585 - t572*t573 - t572*t586 + t576*t577 - t582*t583)
+                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t573*t606
+                        + t583*t607 + t586*t606 - t591*t602 - t591*t605 - t597*t604 + (0.5)*t598 +
+                        (0.5)*t599) + dm_y - t570*t602 - t570*t605 + t573*t601 - t576*t604 -
+                        0.5*t578 - 0.5*t579 + (0.5)*t580 + (0.5)*t581 + t583*t603 + t586*t601)
+                    dg[j3 + 2] = (alpha_r*(dwp_z - t571*t606 - t577*t607 - t585*t606 + t592*t602 +
+                        t592*t605 - 0.5*t593 - 0.5*t594 + (0.5)*t595 + (0.5)*t596 + t600*t604) -
+                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t571*t601 + t572*t602 + t572*t605
+                        + (0.5)*t574 + (0.5)*t575 - t577*t603 + t582*t604 - t585*t601)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

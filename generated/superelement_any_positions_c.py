@@ -14,12 +14,11 @@ from sebody.kernels.dense import (
     add_block_times,
     add_rows_times,
     block_times,
+    clear,
     columns_times,
-    gather,
     inverse_3,
     rows_times,
     scale,
-    scatter,
 )
 from sebody.kernels.frame_search import best_fit
 from sebody.kernels.layout import (
@@ -46,6 +45,14 @@ from sebody.kernels.layout import (
     TANGENT,
     Part,
 )
+from sebody.kernels.packed_products import (
+    add_packed,
+    add_packed_times,
+    from_free,
+    packed_room,
+    packed_times,
+    to_free,
+)
 from sebody.kernels.pipeline import kernel_function
 from sebody.kernels.rotations import (
     inverse_tangent_coefficients,
@@ -63,30 +70,33 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 117
+WORK_ROWS = 119
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (668, 303, 410, 18),
-              "column": (75, 456, 1229, 3)}
+OPERATIONS = {"residual": (743, 263, 410, 2),
+              "column": (150, 381, 1229, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
-    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
-    Part("kept", ("free",), "local coordinates that determine the others in the frame"),
+    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
+    Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
+    Part("axes", ("bound_free", "bound"),
+         "boundary coordinates that determine the others", columns=True),
+    Part("axes_back", ("bound", "bound_free"), "its transpose", columns=True),
+    Part("order", ("free",), "where these and the modes are among themselves"),
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
     Part("moment_rows", ("lines", "N"), "their transpose", columns=True),
-    Part("quadratics", ("N", "quadratic"),
-         "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
-    Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
-    Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
-    Part("Cz", ("free", "damped"), "reduced damping", columns=True),
-    Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
+    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
+    Part("of_rate", ("rated", "N", "N"), "K_k^T - K_k, K_k^T", packed=True),
+    Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
+    Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
+    Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
-    Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
+    Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -110,58 +120,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     eta = at(work, 8*row)
     etad = at(work, 9*row)
     gamma = at(work, 10*row)
-    z = at(work, 11*row)
-    zd = at(work, 12*row)
-    zdd = at(work, 13*row)
-    line0 = at(work, 14*row)
-    line1 = at(work, 15*row)
-    line2 = at(work, 16*row)
-    product0 = at(work, 17*row)
-    product1 = at(work, 18*row)
-    product2 = at(work, 19*row)
-    by_moment_columns = at(work, 20*row)
-    by_products = at(work, 21*row)
-    local = at(work, 22*row)
-    along = at(work, 23*row)
-    twice = at(work, 24*row)
-    by_E = at(work, 25*row)
-    by_Gy = at(work, 26*row)
-    s = at(work, 27*row)
-    h = at(work, 28*row)
-    moved = at(work, 29*row)
-    squares = at(work, 30*row)
-    dqe = at(work, 31*row)
-    dve = at(work, 32*row)
-    dae = at(work, 33*row)
-    e2s = at(work, 34*row)
-    by_place = at(work, 35*row)
-    by_rate = at(work, 36*row)
-    ones = at(work, 37*row)
-    by_followers = at(work, 38*row)
-    of_E = at(work, 39*row)
-    of_Gy = at(work, 40*row)
-    dy = at(work, 41*row)
-    dz = at(work, 42*row)
-    dlocal = at(work, 43*row)
-    dyd = at(work, 44*row)
-    dacc = at(work, 45*row)
-    deta = at(work, 46*row)
-    detad = at(work, 47*row)
-    dgamma = at(work, 48*row)
-    dzd = at(work, 49*row)
-    dzdd = at(work, 50*row)
-    ds = at(work, 51*row)
-    dh = at(work, 52*row)
-    dg = at(work, 53*row)
-    Zq = at(work, 54*row)
-    Zd = at(work, 66*row)
-    products = at(work, 78*row)
-    Za = at(work, 93*row)
-    more = at(work, 105*row)
-    Gy = at(work, (117 + 0*(n + 18))*row)
-    Lz = at(work, (117 + 1*(n + 18))*row)
-    Lv = at(work, (117 + 2*(n + 18))*row)
-    La = at(work, (117 + 3*(n + 18))*row)
+    unordered = at(work, 11*row)
+    z = at(work, 12*row)
+    zd = at(work, 13*row)
+    zdd = at(work, 14*row)
+    line0 = at(work, 15*row)
+    line1 = at(work, 16*row)
+    line2 = at(work, 17*row)
+    product0 = at(work, 18*row)
+    product1 = at(work, 19*row)
+    product3 = at(work, 20*row)
+    product2 = at(work, 21*row)
+    by_moment_columns = at(work, 22*row)
+    by_products = at(work, 23*row)
+    local = at(work, 24*row)
+    along = at(work, 25*row)
+    twice = at(work, 26*row)
+    by_E = at(work, 27*row)
+    by_Gy = at(work, 28*row)
+    s = at(work, 29*row)
+    h = at(work, 30*row)
+    moved = at(work, 31*row)
+    squares = at(work, 32*row)
+    dqe = at(work, 33*row)
+    dve = at(work, 34*row)
+    dae = at(work, 35*row)
+    e2s = at(work, 36*row)
+    by_place = at(work, 37*row)
+    by_rate = at(work, 38*row)
+    ones = at(work, 39*row)
+    by_followers = at(work, 40*row)
+    of_E = at(work, 41*row)
+    of_Gy = at(work, 42*row)
+    dy = at(work, 43*row)
+    dz = at(work, 44*row)
+    dlocal = at(work, 45*row)
+    dyd = at(work, 46*row)
+    dacc = at(work, 47*row)
+    deta = at(work, 48*row)
+    detad = at(work, 49*row)
+    dgamma = at(work, 50*row)
+    dzd = at(work, 51*row)
+    dzdd = at(work, 52*row)
+    ds = at(work, 53*row)
+    dh = at(work, 54*row)
+    dg = at(work, 55*row)
+    Zq = at(work, 56*row)
+    Zd = at(work, 68*row)
+    products = at(work, 80*row)
+    Za = at(work, 95*row)
+    more = at(work, 107*row)
+    Gy = at(work, (119 + 0*(n + 18))*row)
+    Lz = at(work, (119 + 1*(n + 18))*row)
+    Lv = at(work, (119 + 2*(n + 18))*row)
+    La = at(work, (119 + 3*(n + 18))*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
@@ -180,23 +192,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         masses = at(full, 1)
         sizes = at(masses, 1)
         slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])
-        free = n - 6
-        N = free + slaved
-        quadratic, slaving = 12*N, slaved*free
+        free, bound, bound_free = n - 6, MODES, MODES - 6
+        N, stretching = free + slaved, resultants + 1
         hn, hN, deep = padded(free), padded(N), padded(N + 6)
-        kept = at(sizes, 3)
-        c0 = at(kept, free)
+        turn = at(sizes, 3)
+        axes = at(turn, 9)
+        axes_back = at(axes, bound*padded(bound_free))
+        order = at(axes_back, bound_free*padded(bound))
+        c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
         moment_rows = at(moment_columns, 12*padded(N))
-        quadratics = at(moment_rows, N*padded(12))
-        Mz = at(quadratics, quadratic*padded(N))
-        Sz = at(Mz, N*padded(N))
-        Cz = at(Sz, free*padded(free))
-        followers = at(Cz, damped*padded(free))
-        lam = at(followers, slaving*padded(free))
+        of_place = at(moment_rows, N*padded(12))
+        of_rate = at(of_place, packed_room(9, N, N))
+        Mz = at(of_rate, packed_room(6, N, N))
+        Cz = at(Mz, packed_room(1, N, N))
+        followers = at(Cz, packed_room(damped, free, free))
+        lam = at(followers, packed_room(slaved, free, free))
         E = at(lam, resultants)
-        Ghat = at(E, resultants*padded(free))
+        stretched = at(E, resultants*padded(free))
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -363,24 +377,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
+        # rate: rates of the elastic displacements, the frame held
+        for i in range(N_POSITIONS):
+            i3 = 3*i
+            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
+            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+            etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
+                Om0_z*vs_y - a0_x + acc_x)
+            etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
+                Om0_z*vs_x - a0_y + acc_y)
+            etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
+                Om0_y*vs_x - a0_z + acc_z)
         # rate: sum w_j X_j x (rate of r_j) = 0
         rhs_x = rhs_y = rhs_z = 0.0
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            t35 = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x + Om0_y*vs_x -
-                a0_z + acc_z)
-            t36 = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x -
-                a0_y + acc_y)
-            t37 = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y -
-                a0_x + acc_x)
-            rhs_x += -fit*(X_y*t35 - X_z*t36)
-            rhs_y += -fit*(-X_x*t35 + X_z*t37)
-            rhs_z += -fit*(X_x*t36 - X_y*t37)
+            eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
+            t35 = eud_z*fit
+            rhs_x += -X_y*t35 + X_z*eud_y*fit
+            rhs_y += X_x*t35 - X_z*eud_x*fit
+            rhs_z += -X_x*eud_y*fit + X_y*eud_x*fit
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -389,18 +408,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            t38 = X_y + u_y
-            t39 = X_z + u_z
-            t40 = X_x + u_x
-            etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t39 + Om0d_z*t38 - a0_x + acc_x)
-            etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t39 - Om0d_z*t40 - a0_y + acc_y)
-            etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t38 + Om0d_y*t40 - a0_z + acc_z)
+            eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
+            t36 = X_y + u_y
+            t37 = X_z + u_z
+            t38 = X_x + u_x
+            etad[i3] = -Om0d_y*t37 + Om0d_z*t36 + eud_x
+            etad[i3 + 1] = Om0d_x*t37 - Om0d_z*t38 + eud_y
+            etad[i3 + 2] = -Om0d_x*t36 + Om0d_y*t38 + eud_z
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -410,56 +424,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t41 = A_y*psi_z
-            t42 = Om0_y*ep_z
-            t43 = Om0d_y*psi_z
-            t44 = Om_y*ep_z
-            t45 = -Om_x*psi_y + Om_y*psi_x
-            t46 = e0*ep_y
-            t47 = Om0_x*psi_z - Om0_z*psi_x
-            t48 = e0*ep_z
-            t49 = -Om0_x*psi_y + Om0_y*psi_x
-            t50 = Om_x*psi_z - Om_z*psi_x
-            t51 = A_x*psi_y
-            t52 = Om_x*ep_y
-            t53 = A_y*psi_x + Om_y*ep_x - t51 - t52
-            t54 = e0*psi_y
-            t55 = Om0_x*ep_z
-            t56 = Om0d_x*psi_z
-            t57 = Om0_z*ep_x
-            t58 = Om0d_z*psi_x
-            t59 = t55 + t56 - t57 - t58
-            t60 = e0*psi_z
-            t61 = Om0_x*ep_y
-            t62 = Om0d_x*psi_y
-            t63 = Om0_y*ep_x + Om0d_y*psi_x - t61 - t62
-            t64 = A_x*psi_z
-            t65 = Om_x*ep_z
-            t66 = A_z*psi_x
-            t67 = Om_z*ep_x
-            t68 = t64 + t65 - t66 - t67
-            t69 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t70 = e1*t69
-            t71 = psi_y*t70
-            t72 = psi_z*t70
-            t73 = e0*ep_x
-            t74 = -Om_y*psi_z + Om_z*psi_y
-            t75 = -Om0_y*psi_z + Om0_z*psi_y
-            t76 = e0*psi_x
-            t77 = A_z*psi_y + Om_z*ep_y - t41 - t44
-            t78 = Om0_z*ep_y + Om0d_z*psi_y - t42 - t43
-            t79 = psi_x*t70
+            t39 = A_y*psi_z
+            t40 = Om0_y*ep_z
+            t41 = Om0d_y*psi_z
+            t42 = Om_y*ep_z
+            t43 = -Om_x*psi_y + Om_y*psi_x
+            t44 = e0*ep_y
+            t45 = Om0_x*psi_z - Om0_z*psi_x
+            t46 = e0*ep_z
+            t47 = -Om0_x*psi_y + Om0_y*psi_x
+            t48 = Om_x*psi_z - Om_z*psi_x
+            t49 = A_x*psi_y
+            t50 = Om_x*ep_y
+            t51 = A_y*psi_x + Om_y*ep_x - t49 - t50
+            t52 = e0*psi_y
+            t53 = Om0_x*ep_z
+            t54 = Om0d_x*psi_z
+            t55 = Om0_z*ep_x
+            t56 = Om0d_z*psi_x
+            t57 = t53 + t54 - t55 - t56
+            t58 = e0*psi_z
+            t59 = Om0_x*ep_y
+            t60 = Om0d_x*psi_y
+            t61 = Om0_y*ep_x + Om0d_y*psi_x - t59 - t60
+            t62 = A_x*psi_z
+            t63 = Om_x*ep_z
+            t64 = A_z*psi_x
+            t65 = Om_z*ep_x
+            t66 = t62 + t63 - t64 - t65
+            t67 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
+            t68 = e1*t67
+            t69 = psi_y*t68
+            t70 = psi_z*t68
+            t71 = e0*ep_x
+            t72 = -Om_y*psi_z + Om_z*psi_y
+            t73 = -Om0_y*psi_z + Om0_z*psi_y
+            t74 = e0*psi_x
+            t75 = A_z*psi_y + Om_z*ep_y - t39 - t42
+            t76 = Om0_z*ep_y + Om0d_z*psi_y - t40 - t41
+            t77 = psi_x*t68
             etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t41 - 0.5*t42 - 0.5*t43 - 0.5*t44 + t45*t46 + t45*t71 -
-                t46*t49 + t47*t48 + t47*t72 - t48*t50 - t49*t71 - t50*t72 + t53*t54 - t54*t63 +
-                t59*t60 - t60*t68)
-            etad[j3 + 1] = (A_y - Om0d_y - t45*t73 - t45*t79 + t48*t74 - t48*t75 + t49*t73 +
-                t49*t79 - t53*t76 + (0.5)*t55 + (0.5)*t56 - 0.5*t57 - 0.5*t58 + t60*t77 - t60*t78
-                + t63*t76 + (0.5)*t64 + (0.5)*t65 - 0.5*t66 - 0.5*t67 + t72*t74 - t72*t75)
+                (0.5)*Om_z*ep_y - 0.5*t39 - 0.5*t40 - 0.5*t41 - 0.5*t42 + t43*t44 + t43*t69 -
+                t44*t47 + t45*t46 + t45*t70 - t46*t48 - t47*t69 - t48*t70 + t51*t52 - t52*t61 +
+                t57*t58 - t58*t66)
+            etad[j3 + 1] = (A_y - Om0d_y - t43*t71 - t43*t77 + t46*t72 - t46*t73 + t47*t71 +
+                t47*t77 - t51*t74 + (0.5)*t53 + (0.5)*t54 - 0.5*t55 - 0.5*t56 + t58*t75 - t58*t76
+                + t61*t74 + (0.5)*t62 + (0.5)*t63 - 0.5*t64 - 0.5*t65 + t70*t72 - t70*t73)
             etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t50 + e0*ep_y*t75 + e0*psi_x*t68 + e0*psi_y*t78 +
-                e1*psi_x*t50*t69 + e1*psi_y*t69*t75 - t46*t74 - t47*t73 - t47*t79 - 0.5*t51 -
-                0.5*t52 - t54*t77 - t59*t76 - 0.5*t61 - 0.5*t62 - t71*t74)
+                + (0.5)*Om_y*ep_x + e0*ep_x*t48 + e0*ep_y*t73 + e0*psi_x*t66 + e0*psi_y*t76 +
+                e1*psi_x*t48*t67 + e1*psi_y*t67*t73 - t44*t72 - t45*t71 - t45*t77 - 0.5*t49 -
+                0.5*t50 - t52*t75 - t57*t74 - 0.5*t59 - 0.5*t60 - t69*t72)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -470,15 +484,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
         gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
         # coordinates that determine the others, of y
-        gather(y, kept, z, free, hN)
+        to_free(y, axes, order, unordered, z, bound, bound_free, free, hN)
         # coordinates that determine the others, of eta
-        gather(eta, kept, zd, free, hN)
+        to_free(eta, axes, order, unordered, zd, bound, bound_free, free, hN)
         # coordinates that determine the others, of etad
-        gather(etad, kept, zdd, free, hN)
+        to_free(etad, axes, order, unordered, zdd, bound, bound_free, free, hN)
         # Q_b z, all b
-        block_times(followers, z, Zq, slaved*hn, free, slaved*hn)
+        packed_times(followers, z, Zq, slaved*hn)
         # Q_b zd, all b
-        block_times(followers, zd, Zd, slaved*hn, free, slaved*hn)
+        packed_times(followers, zd, Zd, slaved*hn)
         # eta_b = y . Q_b y / 2
         rows_times(Zq, z, at(z, free), free, slaved, hn)
         # half of it
@@ -496,13 +510,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # first moments and couplings of zdd
         columns_times(moment_rows, zdd, line2, 12, N)
         # J2_kl z and K_k^T z
-        block_times(quadratics, z, products, 9*hN, N, 12*hN)
-        # K_k^T zdot and (K_k^T - K_k) zdot
-        block_times(at(quadratics, 6*hN), zd, at(products, 9*hN), 6*hN, N, 12*hN)
+        packed_times(of_place, z, products, 9*hN)
+        # (K_k^T - K_k) zdot and K_k^T zdot
+        packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 6, hN)
         # quadratic parts, by zd
-        rows_times(products, zd, product1, N, 12, hN)
+        rows_times(products, zd, product1, N, 9, hN)
+        # quadratic parts, by zd
+        rows_times(at(products, 12*hN), zd, product3, N, 3, hN)
         # quadratic parts, by zdd
         rows_times(at(products, 6*hN), zdd, product2, N, 3, hN)
         # integrals over the body
@@ -522,7 +538,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         jzd_xx, jzd_yy, jzd_zz, jzd_xy, jzd_xz, jzd_yz = (product1[0], product1[1], product1[2],
             product1[3], product1[4], product1[5])
         uzd_x, uzd_y, uzd_z = product1[6], product1[7], product1[8]
-        vzd_x, vzd_y, vzd_z = product1[9], product1[10], product1[11]
+        vzd_x, vzd_y, vzd_z = product3[0], product3[1], product3[2]
         uzdd_x, uzdd_y, uzdd_z = product2[0], product2[1], product2[2]
         sum_c_x = S1z0_x + c0_x
         sum_c_y = S1z0_y + c0_y
@@ -554,64 +570,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         sum_coupled_x = vzd_x
         sum_coupled_y = vzd_y
         sum_coupled_z = vzd_z
-        # motion of the frame as a factor of local tangents
+        # motion of the frame in axes of the body, a factor of local tangents
+        turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+            turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        zdd[N] = a0_x - gamma_x
-        zdd[N + 1] = a0_y - gamma_y
-        zdd[N + 2] = a0_z - gamma_z
-        zdd[N + 3] = Om0d_x
-        zdd[N + 4] = Om0d_y
-        zdd[N + 5] = Om0d_z
-        zd[N] = Om0_x
-        zd[N + 1] = Om0_y
-        zd[N + 2] = Om0_z
+        t78 = a0_x - gamma_x
+        t79 = a0_y - gamma_y
+        t80 = a0_z - gamma_z
+        zdd[N] = t78*turn_xx + t79*turn_yx + t80*turn_zx
+        zdd[N + 1] = t78*turn_xy + t79*turn_yy + t80*turn_zy
+        zdd[N + 2] = t78*turn_xz + t79*turn_yz + t80*turn_zz
+        zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
+        zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
+        zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
+        zd[N] = Om0_x*turn_xx + Om0_y*turn_yx + Om0_z*turn_zx
+        zd[N + 1] = Om0_x*turn_xy + Om0_y*turn_yy + Om0_z*turn_zy
+        zd[N + 2] = Om0_x*turn_xz + Om0_y*turn_yz + Om0_z*turn_zz
         # factors of the force on a coordinate
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
-        t80 = Om0_x*Om0_x
-        t81 = Om0_y*Om0_y
-        t82 = Om0_z*Om0_z
-        t83 = Om0_x*Om0_y
-        t84 = Om0_x*Om0_z
-        t85 = Om0_y*Om0_z
+        turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+        spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
+        t81 = spin_x*spin_x
+        t82 = spin_y*spin_y
+        t83 = spin_z*spin_z
+        t84 = spin_x*spin_y
+        t85 = spin_x*spin_z
+        t86 = spin_y*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
-        by_moment_columns[3] = Om0d_x
-        by_moment_columns[4] = Om0d_y
-        by_moment_columns[5] = Om0d_z
-        by_moment_columns[6] = -0.5*t80
-        by_moment_columns[7] = -0.5*t81
-        by_moment_columns[8] = -0.5*t82
-        by_moment_columns[9] = -t83
-        by_moment_columns[10] = -t84
-        by_moment_columns[11] = -t85
-        by_products[0] = -t80
-        by_products[1] = -t81
-        by_products[2] = -t82
-        by_products[3] = -2*t83
-        by_products[4] = -2*t84
-        by_products[5] = -2*t85
-        by_products[6] = Om0d_x
-        by_products[7] = Om0d_y
-        by_products[8] = Om0d_z
-        by_products[9] = 0
-        by_products[10] = 0
-        by_products[11] = 0
-        by_products[12] = Om0_x
-        by_products[13] = Om0_y
-        by_products[14] = Om0_z
+        by_moment_columns[3] = turning_x
+        by_moment_columns[4] = turning_y
+        by_moment_columns[5] = turning_z
+        by_moment_columns[6] = -0.5*t81
+        by_moment_columns[7] = -0.5*t82
+        by_moment_columns[8] = -0.5*t83
+        by_moment_columns[9] = -t84
+        by_moment_columns[10] = -t85
+        by_moment_columns[11] = -t86
+        by_products[0] = -t81
+        by_products[1] = -t82
+        by_products[2] = -t83
+        by_products[3] = -2*t84
+        by_products[4] = -2*t85
+        by_products[5] = -2*t86
+        by_products[6] = turning_x
+        by_products[7] = turning_y
+        by_products[8] = turning_z
+        by_products[9] = spin_x
+        by_products[10] = spin_y
+        by_products[11] = spin_z
         # force on the coordinates: first moments, couplings, inertia at rest
         columns_times(moment_columns, by_moment_columns, local, N, 12)
         # of the deformed body
-        add_block_times(products, by_products, local, N, 15, hN)
+        add_block_times(products, by_products, local, N, 12, hN)
         # inertia force of deformation, Mbar zddot
-        add_block_times(Mz, zdd, local, N, N, hN)
-        # elastic force, Sbar y
-        add_block_times(Sz, z, local, free, free, hn)
+        add_packed_times(Mz, zdd, local)
         # damping force, Cbar ydot
-        add_block_times(Cz, zd, local, free, damped, hn)
-        # Ghat_e y, all e
-        block_times(Ghat, z, Gy, resultants*hn, free, resultants*hn)
+        add_packed_times(Cz, zd, local)
+        # Ghat_e y of all e, and Sbar y
+        packed_times(stretched, z, Gy, stretching*hn)
         # E_e . y
         rows_times(E, z, along, free, resultants, hn)
         # y . Ghat_e y
@@ -622,45 +640,52 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t86 = (0.5)*twice_e
-            t87 = 1/lam_e
-            by_E[e] = t86
-            by_Gy[e] = along_e + t86*t87
-            stiffened += t86*(along_e + (0.25)*t87*twice_e)
-        # their forces
+            t87 = (0.5)*twice_e
+            t88 = 1/lam_e
+            by_E[e] = t87
+            by_Gy[e] = along_e + t87*t88
+            stiffened += t87*(along_e + (0.25)*t88*twice_e)
+        # and of Sbar y
+        by_Gy[resultants] = 1
+        # forces of the resultants
         add_block_times(E, by_E, local, free, resultants, hn)
-        # and those of the geometric stiffness
-        add_block_times(Gy, by_Gy, local, free, resultants, hn)
+        # and those of the geometric stiffness, with Sbar y
+        add_block_times(Gy, by_Gy, local, free, stretching, hn)
         # forces on eta, pulled back
         add_block_times(Zq, at(local, free), local, free, slaved, hn)
-        # force and moment on the frame
+        # force and moment on the frame, in axes of the body
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
+        turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+        spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
         mass = masses[0]
-        t88 = 2*sum_cd_z
-        t89 = 2*Om0_z
-        t90 = Om0_x*sum_c_y - Om0_y*sum_c_x
-        t91 = -Om0_x*sum_c_z + Om0_z*sum_c_x
-        t92 = Om0_y*sum_c_z - Om0_z*sum_c_y
-        t93 = Om0_x*sum_J_xz + Om0_y*sum_J_yz + Om0_z*sum_J_zz
-        t94 = Om0_x*sum_J_xy + Om0_y*sum_J_yy + Om0_z*sum_J_yz
-        t95 = Om0_x*sum_J_xx + Om0_y*sum_J_xy + Om0_z*sum_J_xz
-        local[N] = (Om0_y*t88 + Om0_y*t90 - Om0_z*t91 + Om0d_y*sum_c_z - Om0d_z*sum_c_y +
-            felt_x*mass - sum_cd_y*t89 + sum_cdd_x)
-        local[N + 1] = (-Om0_x*t88 - Om0_x*t90 + Om0_z*t92 - Om0d_x*sum_c_z + Om0d_z*sum_c_x +
-            felt_y*mass + sum_cd_x*t89 + sum_cdd_y)
-        local[N + 2] = (2*Om0_x*sum_cd_y + Om0_x*t91 - 2*Om0_y*sum_cd_x - Om0_y*t92 +
-            Om0d_x*sum_c_y - Om0d_y*sum_c_x + felt_z*mass + sum_cdd_z)
-        local[N + 3] = (Om0_x*sum_Jd_xx + Om0_y*sum_Jd_xy + Om0_y*sum_spun_z + Om0_y*t93 +
-            Om0_z*sum_Jd_xz - Om0_z*sum_spun_y - Om0_z*t94 + Om0d_x*sum_J_xx + Om0d_y*sum_J_xy +
-            Om0d_z*sum_J_xz - felt_y*sum_c_z + felt_z*sum_c_y + sum_accelerated_x + sum_coupled_x)
-        local[N + 4] = (Om0_x*sum_Jd_xy - Om0_x*sum_spun_z - Om0_x*t93 + Om0_y*sum_Jd_yy +
-            Om0_z*sum_Jd_yz + Om0_z*sum_spun_x + Om0_z*t95 + Om0d_x*sum_J_xy + Om0d_y*sum_J_yy +
-            Om0d_z*sum_J_yz + felt_x*sum_c_z - felt_z*sum_c_x + sum_accelerated_y + sum_coupled_y)
-        local[N + 5] = (Om0_x*sum_Jd_xz + Om0_x*sum_spun_y + Om0_x*t94 + Om0_y*sum_Jd_yz -
-            Om0_y*sum_spun_x - Om0_y*t95 + Om0_z*sum_Jd_zz + Om0d_x*sum_J_xz + Om0d_y*sum_J_yz +
-            Om0d_z*sum_J_zz - felt_x*sum_c_y + felt_y*sum_c_x + sum_accelerated_z + sum_coupled_z)
+        t89 = 2*sum_cd_z
+        t90 = 2*spin_z
+        t91 = spin_x*sum_c_y - spin_y*sum_c_x
+        t92 = -spin_x*sum_c_z + spin_z*sum_c_x
+        t93 = spin_y*sum_c_z - spin_z*sum_c_y
+        t94 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+        t95 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+        t96 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+        local[N] = (felt_x*mass + spin_y*t89 + spin_y*t91 - spin_z*t92 - sum_c_y*turning_z +
+            sum_c_z*turning_y - sum_cd_y*t90 + sum_cdd_x)
+        local[N + 1] = (felt_y*mass - spin_x*t89 - spin_x*t91 + spin_z*t93 + sum_c_x*turning_z -
+            sum_c_z*turning_x + sum_cd_x*t90 + sum_cdd_y)
+        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t92 - 2*spin_y*sum_cd_x -
+            spin_y*t93 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+        local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy +
+            spin_y*sum_spun_z + spin_y*t94 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t95 +
+            sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z + sum_accelerated_x +
+            sum_coupled_x)
+        local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z -
+            spin_x*t94 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t96 +
+            sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z + sum_accelerated_y +
+            sum_coupled_y)
+        local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz + spin_x*sum_spun_y +
+            spin_x*t95 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t96 + spin_z*sum_Jd_zz +
+            sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z + sum_accelerated_z +
+            sum_coupled_z)
         # forces conjugate to y
-        scatter(local, kept, s, free, n)
+        from_free(local, axes_back, order, unordered, s, bound, bound_free, free)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -669,53 +694,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t96 = X_z + u_z
-            t97 = X_y + u_y
-            t98 = X_x + u_x
+            t97 = X_z + u_z
+            t98 = X_y + u_y
+            t99 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t96 - f_z*t97
-            W_y += -f_x*t96 + f_z*t98
-            W_z += f_x*t97 - f_y*t98
+            W_x += f_y*t97 - f_z*t98
+            W_y += -f_x*t97 + f_z*t99
+            W_z += f_x*t98 - f_y*t99
         # inertia and weight on the frame
+        turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+            turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         Rt_x, Rt_y, Rt_z = local[N], local[N + 1], local[N + 2]
         Rr_x, Rr_y, Rr_z = local[N + 3], local[N + 4], local[N + 5]
-        F_x += Rt_x
-        F_y += Rt_y
-        F_z += Rt_z
-        W_x += Rr_x
-        W_y += Rr_y
-        W_z += Rr_z
+        F_x += Rt_x*turn_xx + Rt_y*turn_xy + Rt_z*turn_xz
+        F_y += Rt_x*turn_yx + Rt_y*turn_yy + Rt_z*turn_yz
+        F_z += Rt_x*turn_zx + Rt_y*turn_zy + Rt_z*turn_zz
+        W_x += Rr_x*turn_xx + Rr_y*turn_xy + Rr_z*turn_xz
+        W_y += Rr_x*turn_yx + Rr_y*turn_yy + Rr_z*turn_yz
+        W_z += Rr_x*turn_zx + Rr_y*turn_zy + Rr_z*turn_zz
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t99 = -m_x*psi_y + m_y*psi_x
-            t100 = m_x*psi_z
-            t101 = -m_z*psi_x + t100
-            t102 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t99 + e0*psi_z*t101 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t99 - e0*psi_z*t102 - m_y + (0.5)*m_z*psi_x - 0.5*t100
-            W_z += -e0*psi_x*t101 + e0*psi_y*t102 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t100 = -m_x*psi_y + m_y*psi_x
+            t101 = m_x*psi_z
+            t102 = -m_z*psi_x + t101
+            t103 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t100 + e0*psi_z*t102 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t100 - e0*psi_z*t103 - m_y + (0.5)*m_z*psi_x - 0.5*t101
+            W_z += -e0*psi_x*t102 + e0*psi_y*t103 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t103 = W_x + rhs_x
-        t104 = W_y + rhs_y
-        t105 = W_z + rhs_z
-        wp_x = Bxx*t103 + Byx*t104 + Bzx*t105
-        wp_y = Bxy*t103 + Byy*t104 + Bzy*t105
-        wp_z = Bxz*t103 + Byz*t104 + Bzz*t105
+        t104 = W_x + rhs_x
+        t105 = W_y + rhs_y
+        t106 = W_z + rhs_z
+        wp_x = Bxx*t104 + Byx*t105 + Bzx*t106
+        wp_y = Bxy*t104 + Byy*t105 + Bzy*t106
+        wp_z = Bxz*t104 + Byz*t105 + Bzz*t106
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t106 = fit*wp_z
-            F_x += -X_y*t106 + X_z*fit*wp_y
-            F_y += X_x*t106 - X_z*fit*wp_x
+            t107 = fit*wp_z
+            F_x += -X_y*t107 + X_z*fit*wp_y
+            F_y += X_x*t107 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -724,10 +751,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t107 = fit*wp_z
-            t108 = X_z*fit
-            h[i3] = F_x*alpha + X_y*t107 + f_x - t108*wp_y
-            h[i3 + 1] = F_y*alpha - X_x*t107 + f_y + t108*wp_x
+            t108 = fit*wp_z
+            t109 = X_z*fit
+            h[i3] = F_x*alpha + X_y*t108 + f_x - t109*wp_y
+            h[i3 + 1] = F_y*alpha - X_x*t108 + f_y + t109*wp_x
             h[i3 + 2] = F_z*alpha + X_x*fit*wp_y - X_y*fit*wp_x + f_z
         # force on the nodes
         for i in range(N_POSITIONS):
@@ -742,70 +769,81 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t109 = m_y*psi_z
-            t110 = m_x*psi_y
-            t111 = e0*(m_y*psi_x - t110)
-            t112 = m_x*psi_z
-            t113 = m_z*psi_x
-            t114 = t112 - t113
-            t115 = e0*psi_z
-            t116 = m_z*psi_y - t109
-            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t111 + (0.5)*t109 - t114*t115
-            g[j3 + 1] = m_y - psi_x*t111 - 0.5*t112 + (0.5)*t113 + t115*t116
-            g[j3 + 2] = e0*psi_x*t114 - e0*psi_y*t116 - 0.5*m_y*psi_x + m_z + (0.5)*t110
+            t110 = m_y*psi_z
+            t111 = m_x*psi_y
+            t112 = e0*(m_y*psi_x - t111)
+            t113 = m_x*psi_z
+            t114 = m_z*psi_x
+            t115 = t113 - t114
+            t116 = e0*psi_z
+            t117 = m_z*psi_y - t110
+            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t112 + (0.5)*t110 - t115*t116
+            g[j3 + 1] = m_y - psi_x*t112 - 0.5*t113 + (0.5)*t114 + t116*t117
+            g[j3 + 2] = e0*psi_x*t115 - e0*psi_y*t117 - 0.5*m_y*psi_x + m_z + (0.5)*t111
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
             g[k] = fm
         if task == ENERGY:
             # momentum of deformation, Mbar zdot
-            block_times(Mz, zd, moved, N, N, hN)
+            packed_times(Mz, zd, moved, 1*hN)
             # twice its energy
-            rows_times(moved, zd, squares, N, 1, hN)
-            # elastic force, Sbar y
-            block_times(Sz, z, moved, free, free, hn)
-            # twice its energy
-            rows_times(moved, z, at(squares, 1), free, 1, hn)
+            rows_times(moved, zd, at(squares, 0), N, 1, hN)
+            # twice that of Sbar y
+            rows_times(at(Gy, resultants*hn), z, at(squares, 1), free, 1, hn)
             # damping force, Cbar ydot
-            block_times(Cz, zd, moved, free, damped, hn)
+            packed_times(Cz, zd, moved, 1*hN)
             # its power
             rows_times(moved, zd, at(squares, 2), free, 1, hn)
             # energies, momentum and its moment about the origin
+            turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             moving = squares[0]
             elastic = squares[1]
-            t117 = Om0_y*sum_c_z - Om0_z*sum_c_y + sum_cd_x
-            t118 = -Om0_x*sum_c_z + Om0_z*sum_c_x + sum_cd_y
-            t119 = Om0_x*sum_c_y - Om0_y*sum_c_x + sum_cd_z
-            t120 = Om0_x*sum_J_xx + Om0_y*sum_J_xy + Om0_z*sum_J_xz
-            t121 = Om0_x*sum_J_xy + Om0_y*sum_J_yy + Om0_z*sum_J_yz
-            t122 = Om0_x*sum_J_xz + Om0_y*sum_J_yz + Om0_z*sum_J_zz
-            t123 = mass*x0_x
-            t124 = mass*x0_y
-            t125 = mass*x0_z
-            t126 = mass*v0_x + t117
-            t127 = mass*v0_y + t118
-            t128 = mass*v0_z + t119
-            t129 = R0_xx*t126 + R0_xy*t127 + R0_xz*t128
-            t130 = R0_yx*t126 + R0_yy*t127 + R0_yz*t128
-            t131 = R0_zx*t126 + R0_zy*t127 + R0_zz*t128
-            t132 = sum_c_y*v0_z - sum_c_z*v0_y + sum_spun_x + t120
-            t133 = -sum_c_x*v0_z + sum_c_z*v0_x + sum_spun_y + t121
-            t134 = sum_c_x*v0_y - sum_c_y*v0_x + sum_spun_z + t122
-            kinetic = (Om0_x*sum_spun_x + (0.5)*Om0_x*t120 + Om0_y*sum_spun_y + (0.5)*Om0_y*t121 +
-                Om0_z*sum_spun_z + (0.5)*Om0_z*t122 + (0.5)*mass*(v0_x*v0_x + v0_y*v0_y +
-                v0_z*v0_z) + (0.5)*moving + t117*v0_x + t118*v0_y + t119*v0_z)
+            t118 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            t119 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t120 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t121 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
+            t122 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
+            t123 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
+            t124 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
+            t125 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
+            t126 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
+            t127 = mass*x0_x
+            t128 = mass*x0_y
+            t129 = mass*x0_z
+            t130 = mass*t126 + t125
+            t131 = mass*t124 + t123
+            t132 = mass*t122 + t121
+            t133 = t130*turn_xx + t131*turn_xy + t132*turn_xz
+            t134 = t130*turn_yx + t131*turn_yy + t132*turn_yz
+            t135 = t130*turn_zx + t131*turn_zy + t132*turn_zz
+            t136 = R0_xx*t133 + R0_xy*t134 + R0_xz*t135
+            t137 = R0_yx*t133 + R0_yy*t134 + R0_yz*t135
+            t138 = R0_zx*t133 + R0_zy*t134 + R0_zz*t135
+            t139 = sum_c_y*t122 - sum_c_z*t124 + sum_spun_x + t118
+            t140 = -sum_c_x*t122 + sum_c_z*t126 + sum_spun_y + t119
+            t141 = sum_c_x*t124 - sum_c_y*t126 + sum_spun_z + t120
+            t142 = t139*turn_xx + t140*turn_xy + t141*turn_xz
+            t143 = t139*turn_yx + t140*turn_yy + t141*turn_yz
+            t144 = t139*turn_zx + t140*turn_zy + t141*turn_zz
+            kinetic = ((0.5)*mass*(t122*t122 + t124*t124 + t126*t126) + (0.5)*moving +
+                spin_x*sum_spun_x + (0.5)*spin_x*t118 + spin_y*sum_spun_y + (0.5)*spin_y*t119 +
+                spin_z*sum_spun_z + (0.5)*spin_z*t120 + t121*t122 + t123*t124 + t125*t126)
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(R0_xx*t123 + R0_yx*t124 + R0_zx*t125 + sum_c_x) -
-                gamma_y*(R0_xy*t123 + R0_yy*t124 + R0_zy*t125 + sum_c_y) - gamma_z*(R0_xz*t123 +
-                R0_yz*t124 + R0_zz*t125 + sum_c_z))
-            P_x = t129
-            P_y = t130
-            P_z = t131
-            H_x = R0_xx*t132 + R0_xy*t133 + R0_xz*t134 - t130*x0_z + t131*x0_y
-            H_y = R0_yx*t132 + R0_yy*t133 + R0_yz*t134 + t129*x0_z - t131*x0_x
-            H_z = R0_zx*t132 + R0_zy*t133 + R0_zz*t134 - t129*x0_y + t130*x0_x
+            potential = (-gamma_x*(R0_xx*t127 + R0_yx*t128 + R0_zx*t129 + sum_c_x*turn_xx +
+                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t127 + R0_yy*t128 + R0_zy*t129
+                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t127 +
+                R0_yz*t128 + R0_zz*t129 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
+            P_x = t136
+            P_y = t137
+            P_z = t138
+            H_x = R0_xx*t142 + R0_xy*t143 + R0_xz*t144 - t137*x0_z + t138*x0_y
+            H_y = R0_yx*t142 + R0_yy*t143 + R0_yz*t144 + t136*x0_z - t138*x0_x
+            H_z = R0_zx*t142 + R0_zy*t143 + R0_zz*t144 - t136*x0_y + t137*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -822,62 +860,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             # Q_b zdd, all b
-            block_times(followers, zdd, Za, slaved*hn, free, slaved*hn)
+            packed_times(followers, zdd, Za, slaved*hn)
             # second derivative of the coefficients of T^-1
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 e2s[j] = (inverse_tangent_second(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2]
                     * y[j3 + 2]))
             # J2_kl zdot
-            block_times(quadratics, zd, more, 6*hN, N, 12*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            block_times(at(quadratics, 6*hN), zdd, at(more, 6*hN), 6*hN, N, 12*hN)
+            packed_times(of_place, zd, more, 9*hN)
+            # (K_k^T - K_k) zddot and K_k^T zddot
+            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
             # factors of the local tangents
-            t135 = 2*Om0_x*c_geo
-            by_place[0] = -Om0_x*Om0_x*c_geo
-            by_place[1] = -Om0_y*Om0_y*c_geo
-            by_place[2] = -Om0_z*Om0_z*c_geo
-            by_place[3] = -Om0_y*t135
-            by_place[4] = -Om0_z*t135
-            by_place[5] = -2*Om0_y*Om0_z*c_geo
-            by_place[6] = Om0d_x*c_geo
-            by_place[7] = Om0d_y*c_geo
-            by_place[8] = Om0d_z*c_geo
-            by_place[9] = 0
-            by_place[10] = 0
-            by_place[11] = 0
-            by_rate[0] = 0
-            by_rate[1] = 0
-            by_rate[2] = 0
+            turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
+            t145 = 2*c_geo*spin_x
+            by_place[0] = -c_geo*spin_x*spin_x
+            by_place[1] = -c_geo*spin_y*spin_y
+            by_place[2] = -c_geo*spin_z*spin_z
+            by_place[3] = -spin_y*t145
+            by_place[4] = -spin_z*t145
+            by_place[5] = -2*c_geo*spin_y*spin_z
+            by_place[6] = c_geo*turning_x
+            by_place[7] = c_geo*turning_y
+            by_place[8] = c_geo*turning_z
+            by_rate[0] = spin_x
+            by_rate[1] = spin_y
+            by_rate[2] = spin_z
             by_rate[3] = 0
             by_rate[4] = 0
             by_rate[5] = 0
-            by_rate[6] = 0
-            by_rate[7] = 0
-            by_rate[8] = 0
-            by_rate[9] = Om0_x
-            by_rate[10] = Om0_y
-            by_rate[11] = Om0_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
                 on_eta = local[free + b]
                 by_followers[b] = c_geo*on_eta
-            # local tangents: columns of the coordinates
-            for j in range(N):
-                # by z
-                block_times(at(quadratics, j*12*hN), by_place, at(Lz, j*deep), N, 12, hN)
-                # by zdot
-                block_times(at(quadratics, j*12*hN), by_rate, at(Lv, j*deep), N, 12, hN)
-                # by zddot
-                block_times(at(Mz, j*hN), ones, at(La, j*deep), N, 1, hN)
-            # elastic and slaved parts
+            # local tangents
+            clear(Lz, N*deep)
+            # local tangents
+            clear(Lv, N*deep)
+            # local tangents
+            clear(La, N*deep)
+            # by z: J2_kl and K_k^T
+            add_packed(of_place, by_place, Lz, deep)
+            # forces on eta
+            add_packed(followers, by_followers, Lz, deep)
+            # by zdot: K_k^T - K_k
+            add_packed(of_rate, by_rate, Lv, deep)
+            # structural damping
+            add_packed(Cz, ones, Lv, deep)
+            # by zddot
+            add_packed(Mz, ones, La, deep)
+            # stiffness and geometric stiffness
+            add_packed(stretched, by_Gy, Lz, deep)
+            # changes of the resultants
             for j in range(free):
-                # stiffness
-                add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
-                # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep),
-                                free, slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]
@@ -885,20 +921,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gy_j = Gy[e*hn + j]
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
-                # change of the resultants
+                # their forces
                 add_block_times(E, of_E, at(Lz, j*deep), free, resultants, hn)
                 # the same
                 add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
-                # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free,
-                                resultants, hn)
-            # structural damping
-            for j in range(damped):
-                # a column
-                add_block_times(at(Cz, j*hn), ones, at(Lv, j*deep), free, 1, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
+                turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
+                spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
                 row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
@@ -911,71 +942,75 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i], products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i], products[8*hN
                     + i])
-                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                row_w_x, row_w_y, row_w_z = (products[9*hN + i], products[10*hN + i],
                     products[11*hN + i])
-                row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
+                row_v_x, row_v_y, row_v_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[1*hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
-                t136 = Om0_x*row_S1_y
-                t137 = Om0_y*row_S1_x
-                t138 = t136 - t137
-                t139 = Om0_x*row_S1_z
-                t140 = Om0_z*row_S1_x - t139
-                t141 = Om0_y*row_S1_z
-                t142 = Om0_z*row_S1_y
-                t143 = t141 - t142
-                t144 = 2*Om0_x
-                t145 = 2*Om0_y
-                t146 = 2*Om0_z
-                t147 = -row_w_z
-                t148 = row_v_z + t147
-                t149 = row_h_xx + 2*row_j_xx
-                t150 = row_h_xy + 2*row_j_xy
-                t151 = row_h_xz + 2*row_j_xz
-                t152 = -row_w_y
-                t153 = row_v_y + t152
-                t154 = row_h_yz + 2*row_j_yz
-                t155 = row_h_zz + 2*row_j_zz
-                t156 = Om0_x*t151 + Om0_y*t154 + Om0_z*t155
-                t157 = row_h_yy + 2*row_j_yy
-                t158 = Om0_x*t150 + Om0_y*t157 + Om0_z*t154
-                t159 = -row_w_x
-                t160 = row_v_x + t159
-                t161 = Om0_x*t149 + Om0_y*t150 + Om0_z*t151
-                t162 = row_g_z + row_u_z
-                t163 = row_g_y + row_u_y
-                t164 = row_g_x + row_u_x
-                Lz[i*deep + N] = c_geo*(Om0_y*t138 - Om0_z*t140 + Om0d_y*row_S1_z - Om0d_z*row_S1_y)
-                Lz[i*deep + N + 1] = (c_geo*(-Om0_x*t138 + Om0_z*t143 - Om0d_x*row_S1_z +
-                    Om0d_z*row_S1_x))
-                Lz[i*deep + N + 2] = (c_geo*(Om0_x*t140 - Om0_y*t143 + Om0d_x*row_S1_y -
-                    Om0d_y*row_S1_x))
-                Lz[i*deep + N + 3] = (c_geo*(Om0_y*t148 + Om0_y*t156 - Om0_z*t153 - Om0_z*t158 +
-                    Om0d_x*t149 + Om0d_y*t150 + Om0d_z*t151 - felt_y*row_S1_z + felt_z*row_S1_y +
-                    row_jd_xx*t144 + row_jd_xy*t145 + row_jd_xz*t146 + row_ua_x - row_wa_x))
-                Lz[i*deep + N + 4] = (c_geo*(-Om0_x*t148 - Om0_x*t156 + Om0_z*t160 + Om0_z*t161 +
-                    Om0d_x*t150 + Om0d_y*t157 + Om0d_z*t154 + felt_x*row_S1_z - felt_z*row_S1_x +
-                    row_jd_xy*t144 + row_jd_yy*t145 + row_jd_yz*t146 + row_ua_y - row_wa_y))
-                Lz[i*deep + N + 5] = (c_geo*(Om0_x*t153 + Om0_x*t158 - Om0_y*t160 - Om0_y*t161 +
-                    Om0d_x*t151 + Om0d_y*t154 + Om0d_z*t155 - felt_x*row_S1_y + felt_y*row_S1_x +
-                    row_jd_xz*t144 + row_jd_yz*t145 + row_jd_zz*t146 + row_ua_z - row_wa_z))
-                Lv[i*deep + N] = 2*t141 - 2*t142
-                Lv[i*deep + N + 1] = 2*Om0_z*row_S1_x - 2*t139
-                Lv[i*deep + N + 2] = 2*t136 - 2*t137
-                Lv[i*deep + N + 3] = Om0_y*t162 - Om0_z*t163 + 2*row_v_x + t159 + t161
-                Lv[i*deep + N + 4] = -Om0_x*t162 + Om0_z*t164 + 2*row_v_y + t152 + t158
-                Lv[i*deep + N + 5] = Om0_x*t163 - Om0_y*t164 + 2*row_v_z + t147 + t156
+                row_wa_x, row_wa_y, row_wa_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
+                row_ua_x, row_ua_y, row_ua_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                t146 = row_S1_x*spin_z
+                t147 = row_S1_z*spin_x
+                t148 = t146 - t147
+                t149 = row_S1_x*spin_y
+                t150 = row_S1_y*spin_x - t149
+                t151 = row_S1_y*spin_z
+                t152 = row_S1_z*spin_y - t151
+                t153 = 2*spin_x
+                t154 = 2*spin_y
+                t155 = 2*spin_z
+                t156 = -row_w_z
+                t157 = row_v_z + t156
+                t158 = row_h_xx + 2*row_j_xx
+                t159 = row_h_xy + 2*row_j_xy
+                t160 = row_h_xz + 2*row_j_xz
+                t161 = -row_w_y
+                t162 = row_v_y + t161
+                t163 = row_h_yz + 2*row_j_yz
+                t164 = row_h_zz + 2*row_j_zz
+                t165 = spin_x*t160 + spin_y*t163 + spin_z*t164
+                t166 = row_h_yy + 2*row_j_yy
+                t167 = spin_x*t159 + spin_y*t166 + spin_z*t163
+                t168 = -row_w_x
+                t169 = row_v_x + t168
+                t170 = spin_x*t158 + spin_y*t159 + spin_z*t160
+                t171 = row_g_z + row_u_z
+                t172 = row_g_y + row_u_y
+                t173 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t150 -
+                    spin_z*t148))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t150
+                    + spin_z*t152))
+                Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
+                    spin_x*t148 - spin_y*t152))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t153 +
+                    row_jd_xy*t154 + row_jd_xz*t155 + row_ua_x - row_wa_x + spin_y*t157 +
+                    spin_y*t165 - spin_z*t162 - spin_z*t167 + t158*turning_x + t159*turning_y +
+                    t160*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t153 +
+                    row_jd_yy*t154 + row_jd_yz*t155 + row_ua_y - row_wa_y - spin_x*t157 -
+                    spin_x*t165 + spin_z*t169 + spin_z*t170 + t159*turning_x + t163*turning_z +
+                    t166*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t153 +
+                    row_jd_yz*t154 + row_jd_zz*t155 + row_ua_z - row_wa_z + spin_x*t162 +
+                    spin_x*t167 - spin_y*t169 - spin_y*t170 + t160*turning_x + t163*turning_y +
+                    t164*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t151
+                Lv[i*deep + N + 1] = 2*t146 - 2*t147
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t149
+                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t171 - spin_z*t172 + t168 + t170
+                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t171 + spin_z*t173 + t161 + t167
+                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t172 - spin_y*t173 + t156 + t165
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t164
-                La[i*deep + N + 4] = t163
-                La[i*deep + N + 5] = t162
+                La[i*deep + N + 3] = t173
+                La[i*deep + N + 4] = t172
+                La[i*deep + N + 5] = t171
             # local tangents: motion of the frame
             for i in range(N):
+                spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
                 row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
@@ -988,16 +1023,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i], products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i], products[8*hN
                     + i])
-                row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
-                    products[14*hN + i])
-                t165 = row_h_xy + 2*row_j_xy
-                t166 = row_h_xz + 2*row_j_xz
-                t167 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = -Om0_x*(row_h_xx + 2*row_j_xx) - Om0_y*t165 - Om0_z*t166 + row_w_x
-                Lv[(N + 1)*deep + i] = (-Om0_x*t165 - Om0_y*(row_h_yy + 2*row_j_yy) - Om0_z*t167 +
-                    row_w_y)
-                Lv[(N + 2)*deep + i] = (-Om0_x*t166 - Om0_y*t167 - Om0_z*(row_h_zz + 2*row_j_zz) +
-                    row_w_z)
+                row_w_x, row_w_y, row_w_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
+                t174 = row_h_xy + 2*row_j_xy
+                t175 = row_h_xz + 2*row_j_xz
+                t176 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t174 -
+                    spin_z*t175)
+                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t174 - spin_y*(row_h_yy + 2*row_j_yy) -
+                    spin_z*t176)
+                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t175 - spin_y*t176 - spin_z*(row_h_zz +
+                    2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -1005,80 +1041,81 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 La[(N + 4)*deep + i] = row_g_y + row_u_y
                 La[(N + 5)*deep + i] = row_g_z + row_u_z
             # local tangents: force on the frame by its motion
+            spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t168 = Om0_y*sum_c_y
-            t169 = Om0_z*sum_c_z
-            t170 = 2*sum_cd_z
-            t171 = Om0_x*sum_c_y
-            t172 = 2*sum_cd_y
-            t173 = Om0_z*sum_c_x
-            t174 = Om0_y*sum_J_xz
-            t175 = Om0_z*sum_J_xy
-            t176 = Om0_y*sum_J_yz
-            t177 = Om0_x*sum_J_xz
-            t178 = Om0_z*sum_J_zz + sum_spun_z
-            t179 = Om0_z*sum_J_yz
-            t180 = Om0_x*sum_J_xy
-            t181 = Om0_y*sum_J_yy + sum_spun_y
-            t182 = Om0_x*sum_c_x
-            t183 = 2*sum_cd_x
-            t184 = Om0_y*sum_c_z
-            t185 = Om0_x*sum_J_yz
-            t186 = Om0_z*sum_J_xz
-            t187 = Om0_y*sum_J_xy
-            t188 = Om0_x*sum_J_xx + sum_spun_x
-            t189 = -sum_c_y
-            t190 = -sum_c_z
-            t191 = -sum_c_x
-            Lv[N*deep + N] = t168 + t169
-            Lv[N*deep + N + 1] = Om0_y*sum_c_x - t170 - 2*t171
-            Lv[N*deep + N + 2] = -2*Om0_x*sum_c_z + t172 + t173
-            Lv[N*deep + N + 3] = sum_Jd_xx + t174 - t175
-            Lv[N*deep + N + 4] = Om0_z*sum_J_xx + sum_Jd_xy - t176 - 2*t177 - t178
-            Lv[N*deep + N + 5] = -Om0_y*sum_J_xx + sum_Jd_xz + t179 + 2*t180 + t181
-            Lv[(N + 1)*deep + N] = -2*Om0_y*sum_c_x + t170 + t171
-            Lv[(N + 1)*deep + N + 1] = t169 + t182
-            Lv[(N + 1)*deep + N + 2] = Om0_z*sum_c_y - t183 - 2*t184
-            Lv[(N + 1)*deep + N + 3] = -Om0_z*sum_J_yy + sum_Jd_xy + 2*t176 + t177 + t178
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t175 - t185
-            Lv[(N + 1)*deep + N + 5] = Om0_x*sum_J_yy + sum_Jd_yz - t186 - 2*t187 - t188
-            Lv[(N + 2)*deep + N] = Om0_x*sum_c_z - t172 - 2*t173
-            Lv[(N + 2)*deep + N + 1] = -2*Om0_z*sum_c_y + t183 + t184
-            Lv[(N + 2)*deep + N + 2] = t168 + t182
-            Lv[(N + 2)*deep + N + 3] = Om0_y*sum_J_zz + sum_Jd_xz - 2*t179 - t180 - t181
-            Lv[(N + 2)*deep + N + 4] = -Om0_x*sum_J_zz + sum_Jd_yz + 2*t186 + t187 + t188
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t174 + t185
+            t177 = spin_y*sum_c_y
+            t178 = spin_z*sum_c_z
+            t179 = 2*sum_cd_z
+            t180 = spin_x*sum_c_y
+            t181 = 2*sum_cd_y
+            t182 = spin_z*sum_c_x
+            t183 = spin_y*sum_J_xz
+            t184 = spin_z*sum_J_xy
+            t185 = spin_y*sum_J_yz
+            t186 = spin_x*sum_J_xz
+            t187 = spin_z*sum_J_zz + sum_spun_z
+            t188 = spin_z*sum_J_yz
+            t189 = spin_x*sum_J_xy
+            t190 = spin_y*sum_J_yy + sum_spun_y
+            t191 = spin_x*sum_c_x
+            t192 = 2*sum_cd_x
+            t193 = spin_y*sum_c_z
+            t194 = spin_x*sum_J_yz
+            t195 = spin_z*sum_J_xz
+            t196 = spin_y*sum_J_xy
+            t197 = spin_x*sum_J_xx + sum_spun_x
+            t198 = -sum_c_y
+            t199 = -sum_c_z
+            t200 = -sum_c_x
+            Lv[N*deep + N] = t177 + t178
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t179 - 2*t180
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t181 + t182
+            Lv[N*deep + N + 3] = sum_Jd_xx + t183 - t184
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t185 - 2*t186 - t187
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t188 + 2*t189 + t190
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t179 + t180
+            Lv[(N + 1)*deep + N + 1] = t178 + t191
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t192 - 2*t193
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t185 + t186 + t187
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t184 - t194
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t195 - 2*t196 - t197
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t181 - 2*t182
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t192 + t193
+            Lv[(N + 2)*deep + N + 2] = t177 + t191
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t188 - t189 - t190
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t195 + t196 + t197
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t183 + t194
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0
             La[N*deep + N + 2] = 0
             La[N*deep + N + 3] = 0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t189
+            La[N*deep + N + 5] = t198
             La[(N + 1)*deep + N] = 0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0
-            La[(N + 1)*deep + N + 3] = t190
+            La[(N + 1)*deep + N + 3] = t199
             La[(N + 1)*deep + N + 4] = 0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0
             La[(N + 2)*deep + N + 1] = 0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t191
+            La[(N + 2)*deep + N + 4] = t200
             La[(N + 2)*deep + N + 5] = 0
             La[(N + 3)*deep + N] = 0
-            La[(N + 3)*deep + N + 1] = t190
+            La[(N + 3)*deep + N + 1] = t199
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0
-            La[(N + 4)*deep + N + 2] = t191
+            La[(N + 4)*deep + N + 2] = t200
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t189
+            La[(N + 5)*deep + N] = t198
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1115,12 +1152,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t192 = -dx0_z + dx_z
-                    t193 = -dx0_y + dx_y
-                    t194 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t192 - X_z*t193)
-                    rhs_y += -fit*(-X_x*t192 + X_z*t194)
-                    rhs_z += -fit*(X_x*t193 - X_y*t194)
+                    t201 = -dx0_z + dx_z
+                    t202 = -dx0_y + dx_y
+                    t203 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t201 - X_z*t202)
+                    rhs_y += -fit*(-X_x*t201 + X_z*t203)
+                    rhs_z += -fit*(X_x*t202 - X_y*t203)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1130,49 +1167,49 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t195 = X_y + u_y
-                    t196 = X_z + u_z
-                    t197 = X_x + u_x
-                    dy[i3] = -dth0_y*t196 + dth0_z*t195 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t196 - dth0_z*t197 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t195 + dth0_y*t197 - dx0_z + dx_z
+                    t204 = X_y + u_y
+                    t205 = X_z + u_z
+                    t206 = X_x + u_x
+                    dy[i3] = -dth0_y*t205 + dth0_z*t204 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t205 - dth0_z*t206 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t204 + dth0_y*t206 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t198 = dth0_y*psi_z
-                    t199 = dth_y*psi_z
-                    t200 = dth0_x*psi_y
-                    t201 = dth0_y*psi_x - t200
-                    t202 = e0*psi_y
-                    t203 = dth_x*psi_z
-                    t204 = dth_z*psi_x
-                    t205 = t203 - t204
-                    t206 = e0*psi_z
-                    t207 = dth_x*psi_y
-                    t208 = dth_y*psi_x - t207
-                    t209 = dth0_x*psi_z
-                    t210 = dth0_z*psi_x
-                    t211 = t209 - t210
-                    t212 = e0*psi_x
-                    t213 = dth_z*psi_y - t199
-                    t214 = dth0_z*psi_y - t198
+                    t207 = dth0_y*psi_z
+                    t208 = dth_y*psi_z
+                    t209 = dth0_x*psi_y
+                    t210 = dth0_y*psi_x - t209
+                    t211 = e0*psi_y
+                    t212 = dth_x*psi_z
+                    t213 = dth_z*psi_x
+                    t214 = t212 - t213
+                    t215 = e0*psi_z
+                    t216 = dth_x*psi_y
+                    t217 = dth_y*psi_x - t216
+                    t218 = dth0_x*psi_z
+                    t219 = dth0_z*psi_x
+                    t220 = t218 - t219
+                    t221 = e0*psi_x
+                    t222 = dth_z*psi_y - t208
+                    t223 = dth0_z*psi_y - t207
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t208 + e0*psi_z*t211 - 0.5*t198 - 0.5*t199 - t201*t202 -
-                        t205*t206)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t201*t212 + (0.5)*t203 - 0.5*t204 + t206*t213
-                        - t206*t214 - t208*t212 + (0.5)*t209 - 0.5*t210)
+                        e0*psi_y*t217 + e0*psi_z*t220 - 0.5*t207 - 0.5*t208 - t210*t211 -
+                        t214*t215)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t210*t221 + (0.5)*t212 - 0.5*t213 + t215*t222
+                        - t215*t223 - t217*t221 + (0.5)*t218 - 0.5*t219)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t205 + e0*psi_y*t214 - 0.5*t200 - t202*t213 - 0.5*t207 -
-                        t211*t212)
+                        e0*psi_x*t214 + e0*psi_y*t223 - 0.5*t209 - t211*t222 - 0.5*t216 -
+                        t220*t221)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
                 # coordinates that determine the others, of dy
-                gather(dy, kept, dz, free, hN)
+                to_free(dy, axes, order, unordered, dz, bound, bound_free, free, hN)
                 # differential: eta_b
                 rows_times(Zq, dz, at(dz, free), free, slaved, hn)
                 # differential of the local forces by dz
@@ -1214,12 +1251,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t215 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t216 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t217 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t215 - X_z*t216)
-                    rhs_y += -fit*(-X_x*t215 + X_z*t217)
-                    rhs_z += -fit*(X_x*t216 - X_y*t217)
+                    t224 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t225 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t226 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t224 - X_z*t225)
+                    rhs_y += -fit*(-X_x*t224 + X_z*t226)
+                    rhs_z += -fit*(X_x*t225 - X_y*t226)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1252,13 +1289,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t218 = X_y + u_y
-                    t219 = X_z + u_z
-                    t220 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t219 + dOm0_z*t218 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t219 - dOm0_z*t220 - dv0_y +
+                    t227 = X_y + u_y
+                    t228 = X_z + u_z
+                    t229 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t228 + dOm0_z*t227 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t228 - dOm0_z*t229 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t218 + dOm0_y*t220 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t227 + dOm0_y*t229 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1269,99 +1306,103 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t221 = Om0_y*dpsi_z
-                    t222 = Om_y*dpsi_z
-                    t223 = dOm0_y*psi_z
-                    t224 = dOm_y*psi_z
-                    t225 = -Om0_x*psi_y + Om0_y*psi_x
-                    t226 = dpsi_y*e0
-                    t227 = Om_x*psi_z - Om_z*psi_x
-                    t228 = dpsi_z*e0
-                    t229 = -Om_x*psi_y + Om_y*psi_x
-                    t230 = Om0_x*psi_z - Om0_z*psi_x
-                    t231 = Om0_x*dpsi_y
-                    t232 = dOm0_x*psi_y
-                    t233 = Om0_y*dpsi_x + dOm0_y*psi_x - t231 - t232
-                    t234 = e0*psi_y
-                    t235 = Om_x*dpsi_z
-                    t236 = dOm_x*psi_z
-                    t237 = Om_z*dpsi_x
-                    t238 = dOm_z*psi_x
-                    t239 = t235 + t236 - t237 - t238
-                    t240 = e0*psi_z
-                    t241 = Om_x*dpsi_y
-                    t242 = dOm_x*psi_y
-                    t243 = Om_y*dpsi_x + dOm_y*psi_x - t241 - t242
-                    t244 = Om0_x*dpsi_z
-                    t245 = dOm0_x*psi_z
-                    t246 = Om0_z*dpsi_x
-                    t247 = dOm0_z*psi_x
+                    t230 = Om0_y*dpsi_z
+                    t231 = Om_y*dpsi_z
+                    t232 = dOm0_y*psi_z
+                    t233 = dOm_y*psi_z
+                    t234 = -Om0_x*psi_y + Om0_y*psi_x
+                    t235 = dpsi_y*e0
+                    t236 = Om_x*psi_z - Om_z*psi_x
+                    t237 = dpsi_z*e0
+                    t238 = -Om_x*psi_y + Om_y*psi_x
+                    t239 = Om0_x*psi_z - Om0_z*psi_x
+                    t240 = Om0_x*dpsi_y
+                    t241 = dOm0_x*psi_y
+                    t242 = Om0_y*dpsi_x + dOm0_y*psi_x - t240 - t241
+                    t243 = e0*psi_y
+                    t244 = Om_x*dpsi_z
+                    t245 = dOm_x*psi_z
+                    t246 = Om_z*dpsi_x
+                    t247 = dOm_z*psi_x
                     t248 = t244 + t245 - t246 - t247
-                    t249 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t250 = e1*t249
-                    t251 = psi_y*t250
-                    t252 = psi_z*t250
-                    t253 = dpsi_x*e0
-                    t254 = -Om_y*psi_z + Om_z*psi_y
-                    t255 = -Om0_y*psi_z + Om0_z*psi_y
-                    t256 = e0*psi_x
-                    t257 = Om_z*dpsi_y + dOm_z*psi_y - t222 - t224
-                    t258 = Om0_z*dpsi_y + dOm0_z*psi_y - t221 - t223
-                    t259 = psi_x*t250
+                    t249 = e0*psi_z
+                    t250 = Om_x*dpsi_y
+                    t251 = dOm_x*psi_y
+                    t252 = Om_y*dpsi_x + dOm_y*psi_x - t250 - t251
+                    t253 = Om0_x*dpsi_z
+                    t254 = dOm0_x*psi_z
+                    t255 = Om0_z*dpsi_x
+                    t256 = dOm0_z*psi_x
+                    t257 = t253 + t254 - t255 - t256
+                    t258 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t259 = e1*t258
+                    t260 = psi_y*t259
+                    t261 = psi_z*t259
+                    t262 = dpsi_x*e0
+                    t263 = -Om_y*psi_z + Om_z*psi_y
+                    t264 = -Om0_y*psi_z + Om0_z*psi_y
+                    t265 = e0*psi_x
+                    t266 = Om_z*dpsi_y + dOm_z*psi_y - t231 - t233
+                    t267 = Om0_z*dpsi_y + dOm0_z*psi_y - t230 - t232
+                    t268 = psi_x*t259
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t229 +
-                        dpsi_z*e0*t230 + e0*psi_y*t243 + e0*psi_z*t248 + e1*psi_y*t229*t249 +
-                        e1*psi_z*t230*t249 - 0.5*t221 - 0.5*t222 - 0.5*t223 - 0.5*t224 - t225*t226
-                        - t225*t251 - t227*t228 - t227*t252 - t233*t234 - t239*t240)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t225*t253 + t225*t259 + t228*t254 -
-                        t228*t255 - t229*t253 - t229*t259 + t233*t256 + (0.5)*t235 + (0.5)*t236 -
-                        0.5*t237 - 0.5*t238 + t240*t257 - t240*t258 - t243*t256 + (0.5)*t244 +
-                        (0.5)*t245 - 0.5*t246 - 0.5*t247 + t252*t254 - t252*t255)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t238 +
+                        dpsi_z*e0*t239 + e0*psi_y*t252 + e0*psi_z*t257 + e1*psi_y*t238*t258 +
+                        e1*psi_z*t239*t258 - 0.5*t230 - 0.5*t231 - 0.5*t232 - 0.5*t233 - t234*t235
+                        - t234*t260 - t236*t237 - t236*t261 - t242*t243 - t248*t249)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t234*t262 + t234*t268 + t237*t263 -
+                        t237*t264 - t238*t262 - t238*t268 + t242*t265 + (0.5)*t244 + (0.5)*t245 -
+                        0.5*t246 - 0.5*t247 + t249*t266 - t249*t267 - t252*t265 + (0.5)*t253 +
+                        (0.5)*t254 - 0.5*t255 - 0.5*t256 + t261*t263 - t261*t264)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t227 + dpsi_y*e0*t255 +
-                        e0*psi_x*t239 + e0*psi_y*t258 + e1*psi_x*t227*t249 + e1*psi_y*t249*t255 -
-                        t226*t254 - t230*t253 - t230*t259 - 0.5*t231 - 0.5*t232 - t234*t257 -
-                        0.5*t241 - 0.5*t242 - t248*t256 - t251*t254)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t236 + dpsi_y*e0*t264 +
+                        e0*psi_x*t248 + e0*psi_y*t267 + e1*psi_x*t236*t258 + e1*psi_y*t258*t264 -
+                        t235*t263 - t239*t262 - t239*t268 - 0.5*t240 - 0.5*t241 - t243*t266 -
+                        0.5*t250 - 0.5*t251 - t257*t265 - t260*t263)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
+                # differential: rate: rates of the elastic displacements, the frame held
+                for i in range(N_POSITIONS):
+                    i3 = 3*i
+                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
+                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
+                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
+                    detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
+                        Om0_z*dv0_y + Om0_z*dvs_y - dOm0_y*eu_z + dOm0_y*v0_z - dOm0_y*vs_z +
+                        dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - da0_x + dacc_x)
+                    detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
+                        Om0_z*dv0_x - Om0_z*dvs_x + dOm0_x*eu_z - dOm0_x*v0_z + dOm0_x*vs_z -
+                        dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x - da0_y + dacc_y)
+                    detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
+                        Om0_y*dv0_x + Om0_y*dvs_x - dOm0_x*eu_y + dOm0_x*v0_y - dOm0_x*vs_y +
+                        dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x - da0_z + dacc_z)
                 # differential: rate: sum w_j X_j x (rate of r_j) = 0
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
-                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t260 = Om0d_y*fit
-                    t261 = X_y*t260
-                    t262 = Om0d_z*fit
-                    t263 = X_z*t262
-                    t264 = X_y*du_y
-                    t265 = X_z*du_z
-                    t266 = Om0d_x*fit
-                    t267 = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x - Om0_y*dv0_x +
-                        Om0_y*dvs_x - dOm0_x*eu_y + dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x -
-                        dOm0_y*v0_x + dOm0_y*vs_x - da0_z + dacc_z)
-                    t268 = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x + Om0_z*dv0_x -
-                        Om0_z*dvs_x + dOm0_x*eu_z - dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x +
-                        dOm0_z*v0_x - dOm0_z*vs_x - da0_y + dacc_y)
-                    t269 = X_x*t266
-                    t270 = X_x*du_x
-                    t271 = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y - Om0_z*dv0_y +
-                        Om0_z*dvs_y - dOm0_y*eu_z + dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y -
-                        dOm0_z*v0_y + dOm0_z*vs_y - da0_x + dacc_x)
-                    rhs_x += (-du_x*t261 - du_x*t263 - fit*(X_y*t267 - X_z*t268) - t266*(-t264 -
-                        t265))
-                    rhs_y += (-du_y*t263 - du_y*t269 - fit*(-X_x*t267 + X_z*t271) - t260*(-t265 -
-                        t270))
-                    rhs_z += (-du_z*t261 - du_z*t269 - fit*(X_x*t268 - X_y*t271) - t262*(-t264 -
-                        t270))
+                    deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
+                    t269 = Om0d_y*fit
+                    t270 = X_y*t269
+                    t271 = X_z*fit
+                    t272 = Om0d_z*t271
+                    t273 = X_y*du_y
+                    t274 = X_z*du_z
+                    t275 = Om0d_x*fit
+                    t276 = X_x*t275
+                    t277 = X_x*du_x
+                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t270 - du_x*t272 -
+                        t275*(-t273 - t274))
+                    rhs_y += (X_x*deud_z*fit - deud_x*t271 - du_y*t272 - du_y*t276 - t269*(-t274 -
+                        t277))
+                    rhs_z += (-Om0d_z*fit*(-t273 - t277) - X_x*deud_y*fit + X_y*deud_x*fit -
+                        du_z*t270 - du_z*t276)
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1370,27 +1411,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
-                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t272 = X_y + u_y
-                    t273 = X_z + u_z
-                    t274 = X_x + u_x
-                    detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
-                        Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
-                        dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t273 + dOm0d_z*t272 - da0_x + dacc_x)
-                    detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
-                        Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
-                        dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t273 - dOm0d_z*t274 - da0_y + dacc_y)
-                    detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
-                        Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
-                        dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t272 + dOm0d_y*t274 - da0_z + dacc_z)
+                    deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
+                    t278 = X_y + u_y
+                    t279 = X_z + u_z
+                    t280 = X_x + u_x
+                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t279 + dOm0d_z*t278 + deud_x
+                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t279 - dOm0d_z*t280 + deud_y
+                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t278 + dOm0d_y*t280 +
+                        deud_z)
                 # differential: rate: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1405,144 +1434,144 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t275 = A_y*dpsi_z
-                    t276 = Om0_y*dep_z
-                    t277 = Om0d_y*dpsi_z
-                    t278 = Om_y*dep_z
-                    t279 = dA_y*psi_z
-                    t280 = dOm0_y*ep_z
-                    t281 = dOm0d_y*psi_z
-                    t282 = dOm_y*ep_z
-                    t283 = -Om0_x*psi_y + Om0_y*psi_x
-                    t284 = dep_y*e0
-                    t285 = Om_x*psi_z - Om_z*psi_x
-                    t286 = dep_z*e0
-                    t287 = -Om_x*psi_y + Om_y*psi_x
-                    t288 = Om0_x*psi_z - Om0_z*psi_x
-                    t289 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t290 = dpsi_y*e0
-                    t291 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t292 = dpsi_z*e0
-                    t293 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t294 = e0*ep_y
-                    t295 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t296 = e0*ep_z
-                    t297 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t298 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t299 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t300 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t301 = 2*psi_x
-                    t302 = 2*psi_y
-                    t303 = 2*psi_z
-                    t304 = ep_x*t301 + ep_y*t302 + ep_z*t303
-                    t305 = e1*t304
-                    t306 = dpsi_y*t305
-                    t307 = dpsi_z*t305
-                    t308 = dpsi_x*t301 + dpsi_y*t302 + dpsi_z*t303
-                    t309 = e1*t308
-                    t310 = ep_y*t309
-                    t311 = ep_z*t309
-                    t312 = psi_y*t309
-                    t313 = psi_y*t305
-                    t314 = psi_z*t309
-                    t315 = psi_z*t305
-                    t316 = Om0_x*dep_y
-                    t317 = Om0d_x*dpsi_y
-                    t318 = dOm0_x*ep_y
-                    t319 = dOm0d_x*psi_y
-                    t320 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t316 -
-                        t317 - t318 - t319)
-                    t321 = e0*psi_y
-                    t322 = A_x*dpsi_z
-                    t323 = Om_x*dep_z
-                    t324 = dA_x*psi_z
-                    t325 = dOm_x*ep_z
-                    t326 = A_z*dpsi_x
-                    t327 = Om_z*dep_x
-                    t328 = dA_z*psi_x
-                    t329 = dOm_z*ep_x
-                    t330 = t322 + t323 + t324 + t325 - t326 - t327 - t328 - t329
-                    t331 = e0*psi_z
-                    t332 = A_x*dpsi_y
-                    t333 = Om_x*dep_y
-                    t334 = dA_x*psi_y
-                    t335 = dOm_x*ep_y
-                    t336 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t332 - t333 - t334
-                        - t335)
-                    t337 = Om0_x*dep_z
-                    t338 = Om0d_x*dpsi_z
-                    t339 = dOm0_x*ep_z
-                    t340 = dOm0d_x*psi_z
-                    t341 = Om0_z*dep_x
-                    t342 = Om0d_z*dpsi_x
-                    t343 = dOm0_z*ep_x
-                    t344 = dOm0d_z*psi_x
-                    t345 = t337 + t338 + t339 + t340 - t341 - t342 - t343 - t344
-                    t346 = (dep_x*t301 + dep_y*t302 + dep_z*t303 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                    t281 = A_y*dpsi_z
+                    t282 = Om0_y*dep_z
+                    t283 = Om0d_y*dpsi_z
+                    t284 = Om_y*dep_z
+                    t285 = dA_y*psi_z
+                    t286 = dOm0_y*ep_z
+                    t287 = dOm0d_y*psi_z
+                    t288 = dOm_y*ep_z
+                    t289 = -Om0_x*psi_y + Om0_y*psi_x
+                    t290 = dep_y*e0
+                    t291 = Om_x*psi_z - Om_z*psi_x
+                    t292 = dep_z*e0
+                    t293 = -Om_x*psi_y + Om_y*psi_x
+                    t294 = Om0_x*psi_z - Om0_z*psi_x
+                    t295 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
+                    t296 = dpsi_y*e0
+                    t297 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t298 = dpsi_z*e0
+                    t299 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t300 = e0*ep_y
+                    t301 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t302 = e0*ep_z
+                    t303 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t304 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
+                    t305 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t306 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t307 = 2*psi_x
+                    t308 = 2*psi_y
+                    t309 = 2*psi_z
+                    t310 = ep_x*t307 + ep_y*t308 + ep_z*t309
+                    t311 = e1*t310
+                    t312 = dpsi_y*t311
+                    t313 = dpsi_z*t311
+                    t314 = dpsi_x*t307 + dpsi_y*t308 + dpsi_z*t309
+                    t315 = e1*t314
+                    t316 = ep_y*t315
+                    t317 = ep_z*t315
+                    t318 = psi_y*t315
+                    t319 = psi_y*t311
+                    t320 = psi_z*t315
+                    t321 = psi_z*t311
+                    t322 = Om0_x*dep_y
+                    t323 = Om0d_x*dpsi_y
+                    t324 = dOm0_x*ep_y
+                    t325 = dOm0d_x*psi_y
+                    t326 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t322 -
+                        t323 - t324 - t325)
+                    t327 = e0*psi_y
+                    t328 = A_x*dpsi_z
+                    t329 = Om_x*dep_z
+                    t330 = dA_x*psi_z
+                    t331 = dOm_x*ep_z
+                    t332 = A_z*dpsi_x
+                    t333 = Om_z*dep_x
+                    t334 = dA_z*psi_x
+                    t335 = dOm_z*ep_x
+                    t336 = t328 + t329 + t330 + t331 - t332 - t333 - t334 - t335
+                    t337 = e0*psi_z
+                    t338 = A_x*dpsi_y
+                    t339 = Om_x*dep_y
+                    t340 = dA_x*psi_y
+                    t341 = dOm_x*ep_y
+                    t342 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t338 - t339 - t340
+                        - t341)
+                    t343 = Om0_x*dep_z
+                    t344 = Om0d_x*dpsi_z
+                    t345 = dOm0_x*ep_z
+                    t346 = dOm0d_x*psi_z
+                    t347 = Om0_z*dep_x
+                    t348 = Om0d_z*dpsi_x
+                    t349 = dOm0_z*ep_x
+                    t350 = dOm0d_z*psi_x
+                    t351 = t343 + t344 + t345 + t346 - t347 - t348 - t349 - t350
+                    t352 = (dep_x*t307 + dep_y*t308 + dep_z*t309 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                         2*dpsi_z*ep_z)
-                    t347 = e1*t346
-                    t348 = t283*t347
-                    t349 = psi_z*t347
-                    t350 = e2*t304*t308
-                    t351 = t283*t350
-                    t352 = psi_z*t350
-                    t353 = dep_x*e0
-                    t354 = -Om_y*psi_z + Om_z*psi_y
-                    t355 = -Om0_y*psi_z + Om0_z*psi_y
-                    t356 = dpsi_x*e0
-                    t357 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t358 = e0*ep_x
-                    t359 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t360 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t361 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t362 = dpsi_x*t305
-                    t363 = ep_x*t309
-                    t364 = psi_x*t309
-                    t365 = psi_x*t305
-                    t366 = e0*psi_x
-                    t367 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t275 - t278 - t279
-                        - t282)
-                    t368 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t276 -
-                        t277 - t280 - t281)
-                    t369 = psi_x*t347
-                    t370 = psi_x*t350
+                    t353 = e1*t352
+                    t354 = t289*t353
+                    t355 = psi_z*t353
+                    t356 = e2*t310*t314
+                    t357 = t289*t356
+                    t358 = psi_z*t356
+                    t359 = dep_x*e0
+                    t360 = -Om_y*psi_z + Om_z*psi_y
+                    t361 = -Om0_y*psi_z + Om0_z*psi_y
+                    t362 = dpsi_x*e0
+                    t363 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t364 = e0*ep_x
+                    t365 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t366 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
+                    t367 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t368 = dpsi_x*t311
+                    t369 = ep_x*t315
+                    t370 = psi_x*t315
+                    t371 = psi_x*t311
+                    t372 = e0*psi_x
+                    t373 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t281 - t284 - t285
+                        - t288)
+                    t374 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t282 -
+                        t283 - t286 - t287)
+                    t375 = psi_x*t353
+                    t376 = psi_x*t356
                     detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
                         (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t287 + dep_z*e0*t288 +
-                        dpsi_y*e0*t297 + dpsi_y*e1*t287*t304 + dpsi_z*e0*t298 +
-                        dpsi_z*e1*t288*t304 + e0*ep_y*t299 + e0*ep_z*t300 + e0*psi_y*t336 +
-                        e0*psi_z*t345 + e1*ep_y*t287*t308 + e1*ep_z*t288*t308 + e1*psi_y*t287*t346
-                        + e1*psi_y*t297*t308 + e1*psi_y*t299*t304 + e1*psi_z*t288*t346 +
-                        e1*psi_z*t298*t308 + e1*psi_z*t300*t304 + e2*psi_y*t287*t304*t308 +
-                        e2*psi_z*t288*t304*t308 - psi_y*t348 - psi_y*t351 - 0.5*t275 - 0.5*t276 -
-                        0.5*t277 - 0.5*t278 - 0.5*t279 - 0.5*t280 - 0.5*t281 - 0.5*t282 -
-                        t283*t284 - t283*t306 - t283*t310 - t285*t286 - t285*t307 - t285*t311 -
-                        t285*t349 - t285*t352 - t289*t290 - t289*t312 - t291*t292 - t291*t314 -
-                        t293*t294 - t293*t313 - t295*t296 - t295*t315 - t320*t321 - t330*t331)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t348 + psi_x*t351 + t283*t353 +
-                        t283*t362 + t283*t363 + t286*t354 - t286*t355 - t287*t353 - t287*t362 -
-                        t287*t363 - t287*t369 - t287*t370 + t289*t356 + t289*t364 + t292*t357 -
-                        t292*t360 + t293*t358 + t293*t365 + t296*t359 - t296*t361 - t297*t356 -
-                        t297*t364 - t299*t358 - t299*t365 + t307*t354 - t307*t355 + t311*t354 -
-                        t311*t355 + t314*t357 - t314*t360 + t315*t359 - t315*t361 + t320*t366 +
-                        (0.5)*t322 + (0.5)*t323 + (0.5)*t324 + (0.5)*t325 - 0.5*t326 - 0.5*t327 -
-                        0.5*t328 - 0.5*t329 + t331*t367 - t331*t368 - t336*t366 + (0.5)*t337 +
-                        (0.5)*t338 + (0.5)*t339 + (0.5)*t340 - 0.5*t341 - 0.5*t342 - 0.5*t343 -
-                        0.5*t344 + t349*t354 - t349*t355 + t352*t354 - t352*t355)
+                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t293 + dep_z*e0*t294 +
+                        dpsi_y*e0*t303 + dpsi_y*e1*t293*t310 + dpsi_z*e0*t304 +
+                        dpsi_z*e1*t294*t310 + e0*ep_y*t305 + e0*ep_z*t306 + e0*psi_y*t342 +
+                        e0*psi_z*t351 + e1*ep_y*t293*t314 + e1*ep_z*t294*t314 + e1*psi_y*t293*t352
+                        + e1*psi_y*t303*t314 + e1*psi_y*t305*t310 + e1*psi_z*t294*t352 +
+                        e1*psi_z*t304*t314 + e1*psi_z*t306*t310 + e2*psi_y*t293*t310*t314 +
+                        e2*psi_z*t294*t310*t314 - psi_y*t354 - psi_y*t357 - 0.5*t281 - 0.5*t282 -
+                        0.5*t283 - 0.5*t284 - 0.5*t285 - 0.5*t286 - 0.5*t287 - 0.5*t288 -
+                        t289*t290 - t289*t312 - t289*t316 - t291*t292 - t291*t313 - t291*t317 -
+                        t291*t355 - t291*t358 - t295*t296 - t295*t318 - t297*t298 - t297*t320 -
+                        t299*t300 - t299*t319 - t301*t302 - t301*t321 - t326*t327 - t336*t337)
+                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t354 + psi_x*t357 + t289*t359 +
+                        t289*t368 + t289*t369 + t292*t360 - t292*t361 - t293*t359 - t293*t368 -
+                        t293*t369 - t293*t375 - t293*t376 + t295*t362 + t295*t370 + t298*t363 -
+                        t298*t366 + t299*t364 + t299*t371 + t302*t365 - t302*t367 - t303*t362 -
+                        t303*t370 - t305*t364 - t305*t371 + t313*t360 - t313*t361 + t317*t360 -
+                        t317*t361 + t320*t363 - t320*t366 + t321*t365 - t321*t367 + t326*t372 +
+                        (0.5)*t328 + (0.5)*t329 + (0.5)*t330 + (0.5)*t331 - 0.5*t332 - 0.5*t333 -
+                        0.5*t334 - 0.5*t335 + t337*t373 - t337*t374 - t342*t372 + (0.5)*t343 +
+                        (0.5)*t344 + (0.5)*t345 + (0.5)*t346 - 0.5*t347 - 0.5*t348 - 0.5*t349 -
+                        0.5*t350 + t355*t360 - t355*t361 + t358*t360 - t358*t361)
                     detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
                         (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t285 +
-                        dep_y*e0*t355 + dpsi_x*e0*t291 + dpsi_x*e1*t285*t304 + dpsi_y*e0*t360 +
-                        dpsi_y*e1*t304*t355 + e0*ep_x*t295 + e0*ep_y*t361 + e0*psi_x*t330 +
-                        e0*psi_y*t368 + e1*ep_x*t285*t308 + e1*ep_y*t308*t355 + e1*psi_x*t285*t346
-                        + e1*psi_x*t291*t308 + e1*psi_x*t295*t304 + e1*psi_y*t304*t361 +
-                        e1*psi_y*t308*t360 + e1*psi_y*t346*t355 + e2*psi_x*t285*t304*t308 +
-                        e2*psi_y*t304*t308*t355 - psi_y*t347*t354 - psi_y*t350*t354 - t284*t354 -
-                        t288*t353 - t288*t362 - t288*t363 - t288*t369 - t288*t370 - t290*t357 -
-                        t294*t359 - t298*t356 - t298*t364 - t300*t358 - t300*t365 - t306*t354 -
-                        t310*t354 - t312*t357 - t313*t359 - 0.5*t316 - 0.5*t317 - 0.5*t318 -
-                        0.5*t319 - t321*t367 - 0.5*t332 - 0.5*t333 - 0.5*t334 - 0.5*t335 -
-                        t345*t366)
+                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t291 +
+                        dep_y*e0*t361 + dpsi_x*e0*t297 + dpsi_x*e1*t291*t310 + dpsi_y*e0*t366 +
+                        dpsi_y*e1*t310*t361 + e0*ep_x*t301 + e0*ep_y*t367 + e0*psi_x*t336 +
+                        e0*psi_y*t374 + e1*ep_x*t291*t314 + e1*ep_y*t314*t361 + e1*psi_x*t291*t352
+                        + e1*psi_x*t297*t314 + e1*psi_x*t301*t310 + e1*psi_y*t310*t367 +
+                        e1*psi_y*t314*t366 + e1*psi_y*t352*t361 + e2*psi_x*t291*t310*t314 +
+                        e2*psi_y*t310*t314*t361 - psi_y*t353*t360 - psi_y*t356*t360 - t290*t360 -
+                        t294*t359 - t294*t368 - t294*t369 - t294*t375 - t294*t376 - t296*t363 -
+                        t300*t365 - t304*t362 - t304*t370 - t306*t364 - t306*t371 - t312*t360 -
+                        t316*t360 - t318*t363 - t319*t365 - 0.5*t322 - 0.5*t323 - 0.5*t324 -
+                        0.5*t325 - t327*t373 - 0.5*t338 - 0.5*t339 - 0.5*t340 - 0.5*t341 -
+                        t351*t372)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1552,12 +1581,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
                 dgamma[1] = dth0_x*gamma_z - dth0_z*gamma_x
                 dgamma[2] = -dth0_x*gamma_y + dth0_y*gamma_x
-                # coordinates that determine the others, of dy
-                gather(dy, kept, dz, free, hN)
                 # coordinates that determine the others, of deta
-                gather(deta, kept, dzd, free, hN)
+                to_free(deta, axes, order, unordered, dzd, bound, bound_free, free, hN)
                 # coordinates that determine the others, of detad
-                gather(detad, kept, dzdd, free, hN)
+                to_free(detad, axes, order, unordered, dzdd, bound, bound_free, free, hN)
                 # differential: rates of eta
                 rows_times(Zq, dzd, at(dzd, free), free, slaved, hn)
                 # of Q_b y
@@ -1570,17 +1597,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 add_rows_times(Zd, dzd, at(dzdd, free), free, slaved, hn)
                 # of Q_b y
                 add_rows_times(Za, dz, at(dzdd, free), free, slaved, hn)
-                # differential: motion of the frame as a factor of local tangents
+                # differential: motion of the frame in axes of the body, a factor of local tangents
+                turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                    turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
+                    turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                dzdd[N] = da0_x - dgamma_x
-                dzdd[N + 1] = da0_y - dgamma_y
-                dzdd[N + 2] = da0_z - dgamma_z
-                dzdd[N + 3] = dOm0d_x
-                dzdd[N + 4] = dOm0d_y
-                dzdd[N + 5] = dOm0d_z
-                dzd[N] = dOm0_x
-                dzd[N + 1] = dOm0_y
-                dzd[N + 2] = dOm0_z
+                t377 = da0_x - dgamma_x
+                t378 = da0_y - dgamma_y
+                t379 = da0_z - dgamma_z
+                dzdd[N] = t377*turn_xx + t378*turn_yx + t379*turn_zx
+                dzdd[N + 1] = t377*turn_xy + t378*turn_yy + t379*turn_zy
+                dzdd[N + 2] = t377*turn_xz + t378*turn_yz + t379*turn_zz
+                dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
+                dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
+                dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
+                dzd[N] = dOm0_x*turn_xx + dOm0_y*turn_yx + dOm0_z*turn_zx
+                dzd[N + 1] = dOm0_x*turn_xy + dOm0_y*turn_yy + dOm0_z*turn_zy
+                dzd[N + 2] = dOm0_x*turn_xz + dOm0_y*turn_yz + dOm0_z*turn_zz
                 # differential of the local forces by dzd
                 add_block_times(Lv, dzd, dlocal, N + 6, N + 3, deep)
                 # differential of the local forces by dzdd
@@ -1588,7 +1621,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # forces on eta, pulled back
                 add_block_times(Zq, at(dlocal, free), dlocal, free, slaved, hn)
                 # forces conjugate to y
-                scatter(dlocal, kept, ds, free, n)
+                from_free(dlocal, axes_back, order, unordered, ds, bound, bound_free, free)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -1599,24 +1632,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t371 = X_z + u_z
-                    t372 = X_y + u_y
-                    t373 = X_x + u_x
+                    t380 = X_z + u_z
+                    t381 = X_y + u_y
+                    t382 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t371 - df_z*t372 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t371 + df_z*t373 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t372 - df_y*t373 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t380 - df_z*t381 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t380 + df_z*t382 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t381 - df_y*t382 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
+                turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
+                    turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
+                    turn[8])
                 dRt_x, dRt_y, dRt_z = dlocal[N], dlocal[N + 1], dlocal[N + 2]
                 dRr_x, dRr_y, dRr_z = dlocal[N + 3], dlocal[N + 4], dlocal[N + 5]
-                dF_x += dRt_x
-                dF_y += dRt_y
-                dF_z += dRt_z
-                dW_x += dRr_x
-                dW_y += dRr_y
-                dW_z += dRr_z
+                dF_x += dRt_x*turn_xx + dRt_y*turn_xy + dRt_z*turn_xz
+                dF_y += dRt_x*turn_yx + dRt_y*turn_yy + dRt_z*turn_yz
+                dF_z += dRt_x*turn_zx + dRt_y*turn_zy + dRt_z*turn_zz
+                dW_x += dRr_x*turn_xx + dRr_y*turn_xy + dRr_z*turn_xz
+                dW_y += dRr_x*turn_yx + dRr_y*turn_yy + dRr_z*turn_yz
+                dW_z += dRr_x*turn_zx + dRr_y*turn_zy + dRr_z*turn_zz
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1626,25 +1662,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t374 = -m_x*psi_y + m_y*psi_x
-                    t375 = m_x*psi_z - m_z*psi_x
-                    t376 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t377 = dm_x*psi_z
-                    t378 = dpsi_z*m_x
-                    t379 = -dm_z*psi_x - dpsi_x*m_z + t377 + t378
-                    t380 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t381 = e1*t380
-                    t382 = -m_y*psi_z + m_z*psi_y
-                    t383 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t374 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t375 + (0.5)*dpsi_z*m_y - e0*psi_y*t376 +
-                        e0*psi_z*t379 + e1*psi_z*t375*t380 - psi_y*t374*t381)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t374 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t382 + e0*psi_x*t376 - e0*psi_z*t383 + e1*psi_x*t374*t380 -
-                        psi_z*t381*t382 - 0.5*t377 - 0.5*t378)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t375 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t382 + (0.5)*dpsi_y*m_x - e0*psi_x*t379 +
-                        e0*psi_y*t383 + e1*psi_y*t380*t382 - psi_x*t375*t381)
+                    t383 = -m_x*psi_y + m_y*psi_x
+                    t384 = m_x*psi_z - m_z*psi_x
+                    t385 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t386 = dm_x*psi_z
+                    t387 = dpsi_z*m_x
+                    t388 = -dm_z*psi_x - dpsi_x*m_z + t386 + t387
+                    t389 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t390 = e1*t389
+                    t391 = -m_y*psi_z + m_z*psi_y
+                    t392 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t383 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t384 + (0.5)*dpsi_z*m_y - e0*psi_y*t385 +
+                        e0*psi_z*t388 + e1*psi_z*t384*t389 - psi_y*t383*t390)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t383 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t391 + e0*psi_x*t385 - e0*psi_z*t392 + e1*psi_x*t383*t389 -
+                        psi_z*t390*t391 - 0.5*t386 - 0.5*t387)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t384 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t391 + (0.5)*dpsi_y*m_x - e0*psi_x*t388 +
+                        e0*psi_y*t392 + e1*psi_y*t389*t391 - psi_x*t384*t390)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1652,26 +1688,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t384 = X_x*wp_y - X_y*wp_x
-                    t385 = -X_x*wp_z + X_z*wp_x
-                    t386 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t384 - du_z*t385)
-                    rhs_y += -fit*(-du_x*t384 + du_z*t386)
-                    rhs_z += -fit*(du_x*t385 - du_y*t386)
-                t387 = dW_x + rhs_x
-                t388 = dW_y + rhs_y
-                t389 = dW_z + rhs_z
-                dwp_x = Bxx*t387 + Byx*t388 + Bzx*t389
-                dwp_y = Bxy*t387 + Byy*t388 + Bzy*t389
-                dwp_z = Bxz*t387 + Byz*t388 + Bzz*t389
+                    t393 = X_x*wp_y - X_y*wp_x
+                    t394 = -X_x*wp_z + X_z*wp_x
+                    t395 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t393 - du_z*t394)
+                    rhs_y += -fit*(-du_x*t393 + du_z*t395)
+                    rhs_z += -fit*(du_x*t394 - du_y*t395)
+                t396 = dW_x + rhs_x
+                t397 = dW_y + rhs_y
+                t398 = dW_z + rhs_z
+                dwp_x = Bxx*t396 + Byx*t397 + Bzx*t398
+                dwp_y = Bxy*t396 + Byy*t397 + Bzy*t398
+                dwp_z = Bxz*t396 + Byz*t397 + Bzz*t398
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t390 = dwp_z*fit
-                    dF_x += -X_y*t390 + X_z*dwp_y*fit
-                    dF_y += X_x*t390 - X_z*dwp_x*fit
+                    t399 = dwp_z*fit
+                    dF_x += -X_y*t399 + X_z*dwp_y*fit
+                    dF_y += X_x*t399 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -1680,10 +1716,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     alpha = alphas[i]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t391 = dwp_z*fit
-                    t392 = X_z*fit
-                    dh[i3] = X_y*t391 + alpha*dF_x + df_x - dwp_y*t392
-                    dh[i3 + 1] = -X_x*t391 + alpha*dF_y + df_y + dwp_x*t392
+                    t400 = dwp_z*fit
+                    t401 = X_z*fit
+                    dh[i3] = X_y*t400 + alpha*dF_x + df_x - dwp_y*t401
+                    dh[i3 + 1] = -X_x*t400 + alpha*dF_y + df_y + dwp_x*t401
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
                 # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
@@ -1702,33 +1738,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t393 = dm_y*psi_z
-                    t394 = dpsi_z*m_y
-                    t395 = -m_x*psi_y + m_y*psi_x
-                    t396 = e0*t395
-                    t397 = m_x*psi_z - m_z*psi_x
-                    t398 = dpsi_z*e0
-                    t399 = dm_x*psi_y
-                    t400 = dpsi_y*m_x
-                    t401 = e0*(dm_y*psi_x + dpsi_x*m_y - t399 - t400)
-                    t402 = dm_x*psi_z
-                    t403 = dpsi_z*m_x
-                    t404 = dm_z*psi_x
-                    t405 = dpsi_x*m_z
-                    t406 = t402 + t403 - t404 - t405
-                    t407 = e0*psi_z
-                    t408 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t409 = t395*t408
-                    t410 = psi_z*t408
-                    t411 = -m_y*psi_z + m_z*psi_y
-                    t412 = dm_z*psi_y + dpsi_y*m_z - t393 - t394
-                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t396 + psi_y*t401 +
-                        psi_y*t409 + (0.5)*t393 + (0.5)*t394 - t397*t398 - t397*t410 - t406*t407)
-                    dg[j3 + 1] = (dm_y - dpsi_x*t396 - psi_x*t401 - psi_x*t409 + t398*t411 -
-                        0.5*t402 - 0.5*t403 + (0.5)*t404 + (0.5)*t405 + t407*t412 + t410*t411)
-                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t397 - 0.5*dpsi_x*m_y -
-                        dpsi_y*e0*t411 + e0*psi_x*t406 - e0*psi_y*t412 + psi_x*t397*t408 -
-                        psi_y*t408*t411 + (0.5)*t399 + (0.5)*t400)
+                    t402 = dm_y*psi_z
+                    t403 = dpsi_z*m_y
+                    t404 = -m_x*psi_y + m_y*psi_x
+                    t405 = e0*t404
+                    t406 = m_x*psi_z - m_z*psi_x
+                    t407 = dpsi_z*e0
+                    t408 = dm_x*psi_y
+                    t409 = dpsi_y*m_x
+                    t410 = e0*(dm_y*psi_x + dpsi_x*m_y - t408 - t409)
+                    t411 = dm_x*psi_z
+                    t412 = dpsi_z*m_x
+                    t413 = dm_z*psi_x
+                    t414 = dpsi_x*m_z
+                    t415 = t411 + t412 - t413 - t414
+                    t416 = e0*psi_z
+                    t417 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t418 = t404*t417
+                    t419 = psi_z*t417
+                    t420 = -m_y*psi_z + m_z*psi_y
+                    t421 = dm_z*psi_y + dpsi_y*m_z - t402 - t403
+                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t405 + psi_y*t410 +
+                        psi_y*t418 + (0.5)*t402 + (0.5)*t403 - t406*t407 - t406*t419 - t415*t416)
+                    dg[j3 + 1] = (dm_y - dpsi_x*t405 - psi_x*t410 - psi_x*t418 + t407*t420 -
+                        0.5*t411 - 0.5*t412 + (0.5)*t413 + (0.5)*t414 + t416*t421 + t419*t420)
+                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t406 - 0.5*dpsi_x*m_y -
+                        dpsi_y*e0*t420 + e0*psi_x*t415 - e0*psi_y*t421 + psi_x*t406*t417 -
+                        psi_y*t417*t420 + (0.5)*t408 + (0.5)*t409)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

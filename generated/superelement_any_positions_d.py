@@ -65,8 +65,8 @@ WORK_ROWS = 38
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (947, 303, 410, 2),
-              "column": (1161, 456, 1229, 2)}
+OPERATIONS = {"residual": (947, 263, 410, 2),
+              "column": (1161, 381, 1229, 2)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("columns", (1,), "columns of C: n of a damped body, else none"),
     Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
@@ -75,7 +75,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -315,24 +315,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
+        # rate: rates of the elastic displacements, the frame held
+        for i in range(N_POSITIONS):
+            i3 = 3*i
+            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
+            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+            etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
+                Om0_z*vs_y - a0_x + acc_x)
+            etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
+                Om0_z*vs_x - a0_y + acc_y)
+            etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
+                Om0_y*vs_x - a0_z + acc_z)
         # rate: sum w_j X_j x (rate of r_j) = 0
         rhs_x = rhs_y = rhs_z = 0.0
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            t35 = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x + Om0_y*vs_x -
-                a0_z + acc_z)
-            t36 = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x -
-                a0_y + acc_y)
-            t37 = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y -
-                a0_x + acc_x)
-            rhs_x += -fit*(X_y*t35 - X_z*t36)
-            rhs_y += -fit*(-X_x*t35 + X_z*t37)
-            rhs_z += -fit*(X_x*t36 - X_y*t37)
+            eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
+            t35 = eud_z*fit
+            rhs_x += -X_y*t35 + X_z*eud_y*fit
+            rhs_y += X_x*t35 - X_z*eud_x*fit
+            rhs_z += -X_x*eud_y*fit + X_y*eud_x*fit
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -341,18 +346,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-            acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            t38 = X_y + u_y
-            t39 = X_z + u_z
-            t40 = X_x + u_x
-            etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t39 + Om0d_z*t38 - a0_x + acc_x)
-            etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t39 - Om0d_z*t40 - a0_y + acc_y)
-            etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t38 + Om0d_y*t40 - a0_z + acc_z)
+            eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
+            t36 = X_y + u_y
+            t37 = X_z + u_z
+            t38 = X_x + u_x
+            etad[i3] = -Om0d_y*t37 + Om0d_z*t36 + eud_x
+            etad[i3 + 1] = Om0d_x*t37 - Om0d_z*t38 + eud_y
+            etad[i3 + 2] = -Om0d_x*t36 + Om0d_y*t38 + eud_z
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -362,56 +362,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t41 = A_y*psi_z
-            t42 = Om0_y*ep_z
-            t43 = Om0d_y*psi_z
-            t44 = Om_y*ep_z
-            t45 = -Om_x*psi_y + Om_y*psi_x
-            t46 = e0*ep_y
-            t47 = Om0_x*psi_z - Om0_z*psi_x
-            t48 = e0*ep_z
-            t49 = -Om0_x*psi_y + Om0_y*psi_x
-            t50 = Om_x*psi_z - Om_z*psi_x
-            t51 = A_x*psi_y
-            t52 = Om_x*ep_y
-            t53 = A_y*psi_x + Om_y*ep_x - t51 - t52
-            t54 = e0*psi_y
-            t55 = Om0_x*ep_z
-            t56 = Om0d_x*psi_z
-            t57 = Om0_z*ep_x
-            t58 = Om0d_z*psi_x
-            t59 = t55 + t56 - t57 - t58
-            t60 = e0*psi_z
-            t61 = Om0_x*ep_y
-            t62 = Om0d_x*psi_y
-            t63 = Om0_y*ep_x + Om0d_y*psi_x - t61 - t62
-            t64 = A_x*psi_z
-            t65 = Om_x*ep_z
-            t66 = A_z*psi_x
-            t67 = Om_z*ep_x
-            t68 = t64 + t65 - t66 - t67
-            t69 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t70 = e1*t69
-            t71 = psi_y*t70
-            t72 = psi_z*t70
-            t73 = e0*ep_x
-            t74 = -Om_y*psi_z + Om_z*psi_y
-            t75 = -Om0_y*psi_z + Om0_z*psi_y
-            t76 = e0*psi_x
-            t77 = A_z*psi_y + Om_z*ep_y - t41 - t44
-            t78 = Om0_z*ep_y + Om0d_z*psi_y - t42 - t43
-            t79 = psi_x*t70
+            t39 = A_y*psi_z
+            t40 = Om0_y*ep_z
+            t41 = Om0d_y*psi_z
+            t42 = Om_y*ep_z
+            t43 = -Om_x*psi_y + Om_y*psi_x
+            t44 = e0*ep_y
+            t45 = Om0_x*psi_z - Om0_z*psi_x
+            t46 = e0*ep_z
+            t47 = -Om0_x*psi_y + Om0_y*psi_x
+            t48 = Om_x*psi_z - Om_z*psi_x
+            t49 = A_x*psi_y
+            t50 = Om_x*ep_y
+            t51 = A_y*psi_x + Om_y*ep_x - t49 - t50
+            t52 = e0*psi_y
+            t53 = Om0_x*ep_z
+            t54 = Om0d_x*psi_z
+            t55 = Om0_z*ep_x
+            t56 = Om0d_z*psi_x
+            t57 = t53 + t54 - t55 - t56
+            t58 = e0*psi_z
+            t59 = Om0_x*ep_y
+            t60 = Om0d_x*psi_y
+            t61 = Om0_y*ep_x + Om0d_y*psi_x - t59 - t60
+            t62 = A_x*psi_z
+            t63 = Om_x*ep_z
+            t64 = A_z*psi_x
+            t65 = Om_z*ep_x
+            t66 = t62 + t63 - t64 - t65
+            t67 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
+            t68 = e1*t67
+            t69 = psi_y*t68
+            t70 = psi_z*t68
+            t71 = e0*ep_x
+            t72 = -Om_y*psi_z + Om_z*psi_y
+            t73 = -Om0_y*psi_z + Om0_z*psi_y
+            t74 = e0*psi_x
+            t75 = A_z*psi_y + Om_z*ep_y - t39 - t42
+            t76 = Om0_z*ep_y + Om0d_z*psi_y - t40 - t41
+            t77 = psi_x*t68
             etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t41 - 0.5*t42 - 0.5*t43 - 0.5*t44 + t45*t46 + t45*t71 -
-                t46*t49 + t47*t48 + t47*t72 - t48*t50 - t49*t71 - t50*t72 + t53*t54 - t54*t63 +
-                t59*t60 - t60*t68)
-            etad[j3 + 1] = (A_y - Om0d_y - t45*t73 - t45*t79 + t48*t74 - t48*t75 + t49*t73 +
-                t49*t79 - t53*t76 + (0.5)*t55 + (0.5)*t56 - 0.5*t57 - 0.5*t58 + t60*t77 - t60*t78
-                + t63*t76 + (0.5)*t64 + (0.5)*t65 - 0.5*t66 - 0.5*t67 + t72*t74 - t72*t75)
+                (0.5)*Om_z*ep_y - 0.5*t39 - 0.5*t40 - 0.5*t41 - 0.5*t42 + t43*t44 + t43*t69 -
+                t44*t47 + t45*t46 + t45*t70 - t46*t48 - t47*t69 - t48*t70 + t51*t52 - t52*t61 +
+                t57*t58 - t58*t66)
+            etad[j3 + 1] = (A_y - Om0d_y - t43*t71 - t43*t77 + t46*t72 - t46*t73 + t47*t71 +
+                t47*t77 - t51*t74 + (0.5)*t53 + (0.5)*t54 - 0.5*t55 - 0.5*t56 + t58*t75 - t58*t76
+                + t61*t74 + (0.5)*t62 + (0.5)*t63 - 0.5*t64 - 0.5*t65 + t70*t72 - t70*t73)
             etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t50 + e0*ep_y*t75 + e0*psi_x*t68 + e0*psi_y*t78 +
-                e1*psi_x*t50*t69 + e1*psi_y*t69*t75 - t46*t74 - t47*t73 - t47*t79 - 0.5*t51 -
-                0.5*t52 - t54*t77 - t59*t76 - 0.5*t61 - 0.5*t62 - t71*t74)
+                + (0.5)*Om_y*ep_x + e0*ep_x*t48 + e0*ep_y*t73 + e0*psi_x*t66 + e0*psi_y*t76 +
+                e1*psi_x*t48*t67 + e1*psi_y*t67*t73 - t44*t72 - t45*t71 - t45*t77 - 0.5*t49 -
+                0.5*t50 - t52*t75 - t57*t74 - 0.5*t59 - 0.5*t60 - t69*t72)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -440,55 +440,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # angular velocity of the rigid part
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
-        t80 = -Om0_y*angle0_z + Om0_z*angle0_y
-        t81 = angle0_y*angle1_z - angle0_z*angle1_y
-        t82 = -Om0_x*angle0_y + Om0_y*angle0_x
-        t83 = Om0_x*angle0_z - Om0_z*angle0_x
-        t84 = angle0_x*angle1_y - angle0_y*angle1_x
-        t85 = -angle0_x*angle1_z + angle0_z*angle1_x
-        wc_x = (Om0_x + angle1_x - r1*t80 - r2*t81 + r2*(angle0_y*t82 - angle0_z*t83) +
-            r3*(angle0_y*t84 - angle0_z*t85))
-        wc_y = (Om0_y + angle1_y - r1*t83 - r2*t85 + r2*(-angle0_x*t82 + angle0_z*t80) +
-            r3*(-angle0_x*t84 + angle0_z*t81))
-        wc_z = (Om0_z + angle1_z - r1*t82 - r2*t84 + r2*(angle0_x*t83 - angle0_y*t80) +
-            r3*(angle0_x*t85 - angle0_y*t81))
+        t78 = -Om0_y*angle0_z + Om0_z*angle0_y
+        t79 = angle0_y*angle1_z - angle0_z*angle1_y
+        t80 = -Om0_x*angle0_y + Om0_y*angle0_x
+        t81 = Om0_x*angle0_z - Om0_z*angle0_x
+        t82 = angle0_x*angle1_y - angle0_y*angle1_x
+        t83 = -angle0_x*angle1_z + angle0_z*angle1_x
+        wc_x = (Om0_x + angle1_x - r1*t78 - r2*t79 + r2*(angle0_y*t80 - angle0_z*t81) +
+            r3*(angle0_y*t82 - angle0_z*t83))
+        wc_y = (Om0_y + angle1_y - r1*t81 - r2*t83 + r2*(-angle0_x*t80 + angle0_z*t78) +
+            r3*(-angle0_x*t82 + angle0_z*t79))
+        wc_z = (Om0_z + angle1_z - r1*t80 - r2*t82 + r2*(angle0_x*t81 - angle0_y*t78) +
+            r3*(angle0_x*t83 - angle0_y*t79))
         # its rate
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
         angle2_x, angle2_y, angle2_z = rigid2[3], rigid2[4], rigid2[5]
-        t86 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-        t87 = angle0_y*angle2_z - angle0_z*angle2_y
-        t88 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-        t89 = Om0d_x*angle0_z - Om0d_z*angle0_x
-        t90 = angle0_x*angle2_y - angle0_y*angle2_x
-        t91 = -angle0_x*angle2_z + angle0_z*angle2_x
-        t92 = angle0_x*angle1_y - angle0_y*angle1_x
-        t93 = -angle0_x*angle1_z + angle0_z*angle1_x
-        t94 = angle0_y*angle1_z - angle0_z*angle1_y
-        t95 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-        t96 = t95*(-r3 + 2*r4)
-        t97 = angle0_y*t92 - angle0_z*t93
-        t98 = t95*(-r4 + 3*r5)
-        t99 = Om0_x*angle0_z - Om0_z*angle0_x
-        t100 = -Om0_x*angle0_y + Om0_y*angle0_x
-        t101 = -Om0_y*angle0_z + Om0_z*angle0_y
-        t102 = Om0_y - r1*t99 + r2*(-angle0_x*t100 + angle0_z*t101)
-        t103 = angle0_x*t93 - angle0_y*t94
-        t104 = angle1_z - r2*t92 + r3*t103
-        t105 = -angle0_x*t92 + angle0_z*t94
-        t106 = angle1_y - r2*t93 + r3*t105
-        t107 = Om0_z - r1*t100 + r2*(angle0_x*t99 - angle0_y*t101)
-        t108 = angle1_x - r2*t94 + r3*t97
-        t109 = Om0_x - r1*t101 + r2*(angle0_y*t100 - angle0_z*t99)
-        wcd_x = (Om0d_x + angle2_x - r1*t86 - r2*t87 + r2*(angle0_y*t88 - angle0_z*t89) +
-            r3*(angle0_y*t90 - angle0_z*t91) + r3*(angle1_y*t92 - angle1_z*t93) + t102*t104 -
-            t106*t107 - t94*t96 + t97*t98)
-        wcd_y = (Om0d_y + angle2_y - r1*t89 - r2*t91 + r2*(-angle0_x*t88 + angle0_z*t86) +
-            r3*(-angle0_x*t90 + angle0_z*t87) + r3*(-angle1_x*t92 + angle1_z*t94) - t104*t109 +
-            t105*t98 + t107*t108 - t93*t96)
-        wcd_z = (Om0d_z + angle2_z - r1*t88 - r2*t90 + r2*(angle0_x*t89 - angle0_y*t86) +
-            r3*(angle0_x*t91 - angle0_y*t87) + r3*(angle1_x*t93 - angle1_y*t94) - t102*t108 +
-            t103*t98 + t106*t109 - t92*t96)
+        t84 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+        t85 = angle0_y*angle2_z - angle0_z*angle2_y
+        t86 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+        t87 = Om0d_x*angle0_z - Om0d_z*angle0_x
+        t88 = angle0_x*angle2_y - angle0_y*angle2_x
+        t89 = -angle0_x*angle2_z + angle0_z*angle2_x
+        t90 = angle0_x*angle1_y - angle0_y*angle1_x
+        t91 = -angle0_x*angle1_z + angle0_z*angle1_x
+        t92 = angle0_y*angle1_z - angle0_z*angle1_y
+        t93 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+        t94 = t93*(-r3 + 2*r4)
+        t95 = angle0_y*t90 - angle0_z*t91
+        t96 = t93*(-r4 + 3*r5)
+        t97 = Om0_x*angle0_z - Om0_z*angle0_x
+        t98 = -Om0_x*angle0_y + Om0_y*angle0_x
+        t99 = -Om0_y*angle0_z + Om0_z*angle0_y
+        t100 = Om0_y - r1*t97 + r2*(-angle0_x*t98 + angle0_z*t99)
+        t101 = angle0_x*t91 - angle0_y*t92
+        t102 = angle1_z - r2*t90 + r3*t101
+        t103 = -angle0_x*t90 + angle0_z*t92
+        t104 = angle1_y - r2*t91 + r3*t103
+        t105 = Om0_z - r1*t98 + r2*(angle0_x*t97 - angle0_y*t99)
+        t106 = angle1_x - r2*t92 + r3*t95
+        t107 = Om0_x - r1*t99 + r2*(angle0_y*t98 - angle0_z*t97)
+        wcd_x = (Om0d_x + angle2_x - r1*t84 - r2*t85 + r2*(angle0_y*t86 - angle0_z*t87) +
+            r3*(angle0_y*t88 - angle0_z*t89) + r3*(angle1_y*t90 - angle1_z*t91) + t100*t102 -
+            t104*t105 - t92*t94 + t95*t96)
+        wcd_y = (Om0d_y + angle2_y - r1*t87 - r2*t89 + r2*(-angle0_x*t86 + angle0_z*t84) +
+            r3*(-angle0_x*t88 + angle0_z*t85) + r3*(-angle1_x*t90 + angle1_z*t92) - t102*t107 +
+            t103*t96 + t105*t106 - t91*t94)
+        wcd_z = (Om0d_z + angle2_z - r1*t86 - r2*t88 + r2*(angle0_x*t87 - angle0_y*t84) +
+            r3*(angle0_x*t89 - angle0_y*t85) + r3*(angle1_x*t91 - angle1_y*t92) - t100*t106 +
+            t101*t96 + t104*t107 - t90*t94)
         # rate of its momentum and of the moment of it
         first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
         first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -497,26 +497,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mass = masses[0]
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
         Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-        t110 = 2*first1_z
-        t111 = 2*Om0_z
-        t112 = first0_z + mc_z
-        t113 = first0_y + mc_y
-        t114 = first0_x + mc_x
-        t115 = Om0_x*t113 - Om0_y*t114
-        t116 = -Om0_x*t112 + Om0_z*t114
-        t117 = Om0_y*t112 - Om0_z*t113
-        t118 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-        t119 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-        t120 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-        Rt_x = (Om0_y*t110 + Om0_y*t115 - Om0_z*t116 + Om0d_y*t112 - Om0d_z*t113 - first1_y*t111 +
+        t108 = 2*first1_z
+        t109 = 2*Om0_z
+        t110 = first0_z + mc_z
+        t111 = first0_y + mc_y
+        t112 = first0_x + mc_x
+        t113 = Om0_x*t111 - Om0_y*t112
+        t114 = -Om0_x*t110 + Om0_z*t112
+        t115 = Om0_y*t110 - Om0_z*t111
+        t116 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+        t117 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+        t118 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+        Rt_x = (Om0_y*t108 + Om0_y*t113 - Om0_z*t114 + Om0d_y*t110 - Om0d_z*t111 - first1_y*t109 +
             first2_x + mass*(a0_x - gamma_x))
-        Rt_y = (-Om0_x*t110 - Om0_x*t115 + Om0_z*t117 - Om0d_x*t112 + Om0d_z*t114 + first1_x*t111
+        Rt_y = (-Om0_x*t108 - Om0_x*t113 + Om0_z*t115 - Om0d_x*t110 + Om0d_z*t112 + first1_x*t109
             + first2_y + mass*(a0_y - gamma_y))
-        Rt_z = (2*Om0_x*first1_y + Om0_x*t116 - 2*Om0_y*first1_x - Om0_y*t117 + Om0d_x*t113 -
-            Om0d_y*t114 + first2_z + mass*(a0_z - gamma_z))
-        Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t118*wc_y - t119*wc_z
-        Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t118*wc_x + t120*wc_z
-        Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t119*wc_x - t120*wc_y
+        Rt_z = (2*Om0_x*first1_y + Om0_x*t114 - 2*Om0_y*first1_x - Om0_y*t115 + Om0d_x*t111 -
+            Om0d_y*t112 + first2_z + mass*(a0_z - gamma_z))
+        Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t116*wc_y - t117*wc_z
+        Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t116*wc_x + t118*wc_z
+        Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t117*wc_x - t118*wc_y
         # moment on the frame, forces on the first moment and mean rotation
         first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -525,25 +525,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
         mass = masses[0]
         Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-        t121 = -Mc_y*angle0_z + Mc_z*angle0_y
-        t122 = 1/mass
-        t123 = first0_y + mc_y
-        t124 = first0_z + mc_z
-        t125 = -Mc_x*angle0_y + Mc_y*angle0_x
-        t126 = Mc_x*angle0_z - Mc_z*angle0_x
-        t127 = angle0_y*t125 - angle0_z*t126
-        t128 = first0_x + mc_x
-        t129 = -angle0_x*t125 + angle0_z*t121
-        t130 = angle0_x*t126 - angle0_y*t121
-        Rr_x = Mc_x + r1*t121 + r2*t127 + t122*(-Rt_y*t124 + Rt_z*t123)
-        Rr_y = Mc_y + r1*t126 + r2*t129 + t122*(Rt_x*t124 - Rt_z*t128)
-        Rr_z = Mc_z + r1*t125 + r2*t130 + t122*(-Rt_x*t123 + Rt_y*t128)
-        carried[0] = t122*(Rt_x - first2_x)
-        carried[1] = t122*(Rt_y - first2_y)
-        carried[2] = t122*(Rt_z - first2_z)
-        carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t121 + r3*t127
-        carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t126 + r3*t129
-        carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t125 + r3*t130
+        t119 = -Mc_y*angle0_z + Mc_z*angle0_y
+        t120 = 1/mass
+        t121 = first0_y + mc_y
+        t122 = first0_z + mc_z
+        t123 = -Mc_x*angle0_y + Mc_y*angle0_x
+        t124 = Mc_x*angle0_z - Mc_z*angle0_x
+        t125 = angle0_y*t123 - angle0_z*t124
+        t126 = first0_x + mc_x
+        t127 = -angle0_x*t123 + angle0_z*t119
+        t128 = angle0_x*t124 - angle0_y*t119
+        Rr_x = Mc_x + r1*t119 + r2*t125 + t120*(-Rt_y*t122 + Rt_z*t121)
+        Rr_y = Mc_y + r1*t124 + r2*t127 + t120*(Rt_x*t122 - Rt_z*t126)
+        Rr_z = Mc_z + r1*t123 + r2*t128 + t120*(-Rt_x*t121 + Rt_y*t126)
+        carried[0] = t120*(Rt_x - first2_x)
+        carried[1] = t120*(Rt_y - first2_y)
+        carried[2] = t120*(Rt_z - first2_z)
+        carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t119 + r3*t125
+        carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t124 + r3*t127
+        carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t123 + r3*t128
         # forces of the rigid part, conjugate to y
         add_block_times(rigid_columns, carried, s, n, 6, padded(n))
         # damping force, Cbar ydot
@@ -556,15 +556,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t131 = X_z + u_z
-            t132 = X_y + u_y
-            t133 = X_x + u_x
+            t129 = X_z + u_z
+            t130 = X_y + u_y
+            t131 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t131 - f_z*t132
-            W_y += -f_x*t131 + f_z*t133
-            W_z += f_x*t132 - f_y*t133
+            W_x += f_y*t129 - f_z*t130
+            W_y += -f_x*t129 + f_z*t131
+            W_z += f_x*t130 - f_y*t131
         # inertia and weight on the frame
         F_x += Rt_x
         F_y += Rt_y
@@ -578,29 +578,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t134 = -m_x*psi_y + m_y*psi_x
-            t135 = m_x*psi_z
-            t136 = -m_z*psi_x + t135
-            t137 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t134 + e0*psi_z*t136 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t134 - e0*psi_z*t137 - m_y + (0.5)*m_z*psi_x - 0.5*t135
-            W_z += -e0*psi_x*t136 + e0*psi_y*t137 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t132 = -m_x*psi_y + m_y*psi_x
+            t133 = m_x*psi_z
+            t134 = -m_z*psi_x + t133
+            t135 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t132 + e0*psi_z*t134 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t132 - e0*psi_z*t135 - m_y + (0.5)*m_z*psi_x - 0.5*t133
+            W_z += -e0*psi_x*t134 + e0*psi_y*t135 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t138 = W_x + rhs_x
-        t139 = W_y + rhs_y
-        t140 = W_z + rhs_z
-        wp_x = Bxx*t138 + Byx*t139 + Bzx*t140
-        wp_y = Bxy*t138 + Byy*t139 + Bzy*t140
-        wp_z = Bxz*t138 + Byz*t139 + Bzz*t140
+        t136 = W_x + rhs_x
+        t137 = W_y + rhs_y
+        t138 = W_z + rhs_z
+        wp_x = Bxx*t136 + Byx*t137 + Bzx*t138
+        wp_y = Bxy*t136 + Byy*t137 + Bzy*t138
+        wp_z = Bxz*t136 + Byz*t137 + Bzz*t138
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t141 = fit*wp_z
-            F_x += -X_y*t141 + X_z*fit*wp_y
-            F_y += X_x*t141 - X_z*fit*wp_x
+            t139 = fit*wp_z
+            F_x += -X_y*t139 + X_z*fit*wp_y
+            F_y += X_x*t139 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -609,10 +609,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t142 = fit*wp_z
-            t143 = X_z*fit
-            h[i3] = F_x*alpha + X_y*t142 + f_x - t143*wp_y
-            h[i3 + 1] = F_y*alpha - X_x*t142 + f_y + t143*wp_x
+            t140 = fit*wp_z
+            t141 = X_z*fit
+            h[i3] = F_x*alpha + X_y*t140 + f_x - t141*wp_y
+            h[i3 + 1] = F_y*alpha - X_x*t140 + f_y + t141*wp_x
             h[i3 + 2] = F_z*alpha + X_x*fit*wp_y - X_y*fit*wp_x + f_z
         # force on the nodes
         for i in range(N_POSITIONS):
@@ -627,17 +627,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t144 = m_y*psi_z
-            t145 = m_x*psi_y
-            t146 = e0*(m_y*psi_x - t145)
-            t147 = m_x*psi_z
-            t148 = m_z*psi_x
-            t149 = t147 - t148
-            t150 = e0*psi_z
-            t151 = m_z*psi_y - t144
-            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t146 + (0.5)*t144 - t149*t150
-            g[j3 + 1] = m_y - psi_x*t146 - 0.5*t147 + (0.5)*t148 + t150*t151
-            g[j3 + 2] = e0*psi_x*t149 - e0*psi_y*t151 - 0.5*m_y*psi_x + m_z + (0.5)*t145
+            t142 = m_y*psi_z
+            t143 = m_x*psi_y
+            t144 = e0*(m_y*psi_x - t143)
+            t145 = m_x*psi_z
+            t146 = m_z*psi_x
+            t147 = t145 - t146
+            t148 = e0*psi_z
+            t149 = m_z*psi_y - t142
+            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t144 + (0.5)*t142 - t147*t148
+            g[j3 + 1] = m_y - psi_x*t144 - 0.5*t145 + (0.5)*t146 + t148*t149
+            g[j3 + 2] = e0*psi_x*t147 - e0*psi_y*t149 - 0.5*m_y*psi_x + m_z + (0.5)*t143
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -666,47 +666,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
             moving = squares[0]
             elastic = squares[1]
-            t152 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-            t153 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-            t154 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-            t155 = 1/mass
-            t156 = first0_y + mc_y
-            t157 = first0_x + mc_x
-            t158 = Om0_x*t156 - Om0_y*t157 + first1_z + mass*v0_z
-            t159 = first0_z + mc_z
-            t160 = -Om0_x*t159 + Om0_z*t157 + first1_y + mass*v0_y
-            t161 = Om0_y*t159 - Om0_z*t156 + first1_x + mass*v0_x
-            t162 = mass*x0_x
-            t163 = mass*x0_y
-            t164 = mass*x0_z
-            t165 = R0_xx*t161 + R0_xy*t160 + R0_xz*t158
-            t166 = R0_yx*t161 + R0_yy*t160 + R0_yz*t158
-            t167 = R0_zx*t161 + R0_zy*t160 + R0_zz*t158
-            t168 = angle0_y*t154 - angle0_z*t153
-            t169 = angle0_x*t153 - angle0_y*t152
-            t170 = -angle0_x*t154 + angle0_z*t152
-            t171 = (r1*t168 + r2*(angle0_y*t169 - angle0_z*t170) + t152 + t155*(t156*t158 -
-                t159*t160))
-            t172 = (r1*t170 + r2*(-angle0_x*t169 + angle0_z*t168) + t153 + t155*(-t157*t158 +
-                t159*t161))
-            t173 = (r1*t169 + r2*(angle0_x*t170 - angle0_y*t168) + t154 + t155*(-t156*t161 +
-                t157*t160))
+            t150 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+            t151 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+            t152 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+            t153 = 1/mass
+            t154 = first0_y + mc_y
+            t155 = first0_x + mc_x
+            t156 = Om0_x*t154 - Om0_y*t155 + first1_z + mass*v0_z
+            t157 = first0_z + mc_z
+            t158 = -Om0_x*t157 + Om0_z*t155 + first1_y + mass*v0_y
+            t159 = Om0_y*t157 - Om0_z*t154 + first1_x + mass*v0_x
+            t160 = mass*x0_x
+            t161 = mass*x0_y
+            t162 = mass*x0_z
+            t163 = R0_xx*t159 + R0_xy*t158 + R0_xz*t156
+            t164 = R0_yx*t159 + R0_yy*t158 + R0_yz*t156
+            t165 = R0_zx*t159 + R0_zy*t158 + R0_zz*t156
+            t166 = angle0_y*t152 - angle0_z*t151
+            t167 = angle0_x*t151 - angle0_y*t150
+            t168 = -angle0_x*t152 + angle0_z*t150
+            t169 = (r1*t166 + r2*(angle0_y*t167 - angle0_z*t168) + t150 + t153*(t154*t156 -
+                t157*t158))
+            t170 = (r1*t168 + r2*(-angle0_x*t167 + angle0_z*t166) + t151 + t153*(-t155*t156 +
+                t157*t159))
+            t171 = (r1*t167 + r2*(angle0_x*t168 - angle0_y*t166) + t152 + t153*(-t154*t159 +
+                t155*t158))
             kinetic = (-0.5*angle1_x*(Jc_xx*angle1_x + Jc_xy*angle1_y + Jc_xz*angle1_z) -
                 0.5*angle1_y*(Jc_xy*angle1_x + Jc_yy*angle1_y + Jc_yz*angle1_z) -
                 0.5*angle1_z*(Jc_xz*angle1_x + Jc_yz*angle1_y + Jc_zz*angle1_z) + (0.5)*moving +
-                (0.5)*t152*wc_x + (0.5)*t153*wc_y + (0.5)*t154*wc_z +
-                (0.5)*t155*(-first1_x*first1_x - first1_y*first1_y - first1_z*first1_z + t158*t158
-                + t160*t160 + t161*t161))
+                (0.5)*t150*wc_x + (0.5)*t151*wc_y + (0.5)*t152*wc_z +
+                (0.5)*t153*(-first1_x*first1_x - first1_y*first1_y - first1_z*first1_z + t156*t156
+                + t158*t158 + t159*t159))
             strain = (0.5)*elastic
-            potential = (-gamma_x*(R0_xx*t162 + R0_yx*t163 + R0_zx*t164 + t157) -
-                gamma_y*(R0_xy*t162 + R0_yy*t163 + R0_zy*t164 + t156) - gamma_z*(R0_xz*t162 +
-                R0_yz*t163 + R0_zz*t164 + t159))
-            P_x = t165
-            P_y = t166
-            P_z = t167
-            H_x = R0_xx*t171 + R0_xy*t172 + R0_xz*t173 - t166*x0_z + t167*x0_y
-            H_y = R0_yx*t171 + R0_yy*t172 + R0_yz*t173 + t165*x0_z - t167*x0_x
-            H_z = R0_zx*t171 + R0_zy*t172 + R0_zz*t173 - t165*x0_y + t166*x0_x
+            potential = (-gamma_x*(R0_xx*t160 + R0_yx*t161 + R0_zx*t162 + t155) -
+                gamma_y*(R0_xy*t160 + R0_yy*t161 + R0_zy*t162 + t154) - gamma_z*(R0_xz*t160 +
+                R0_yz*t161 + R0_zz*t162 + t157))
+            P_x = t163
+            P_y = t164
+            P_z = t165
+            H_x = R0_xx*t169 + R0_xy*t170 + R0_xz*t171 - t164*x0_z + t165*x0_y
+            H_y = R0_yx*t169 + R0_yy*t170 + R0_yz*t171 + t163*x0_z - t165*x0_x
+            H_z = R0_zx*t169 + R0_zy*t170 + R0_zz*t171 - t163*x0_y + t164*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -758,12 +758,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t174 = -dx0_z + dx_z
-                    t175 = -dx0_y + dx_y
-                    t176 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t174 - X_z*t175)
-                    rhs_y += -fit*(-X_x*t174 + X_z*t176)
-                    rhs_z += -fit*(X_x*t175 - X_y*t176)
+                    t172 = -dx0_z + dx_z
+                    t173 = -dx0_y + dx_y
+                    t174 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t172 - X_z*t173)
+                    rhs_y += -fit*(-X_x*t172 + X_z*t174)
+                    rhs_z += -fit*(X_x*t173 - X_y*t174)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -773,43 +773,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t177 = X_y + u_y
-                    t178 = X_z + u_z
-                    t179 = X_x + u_x
-                    dy[i3] = -dth0_y*t178 + dth0_z*t177 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t178 - dth0_z*t179 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t177 + dth0_y*t179 - dx0_z + dx_z
+                    t175 = X_y + u_y
+                    t176 = X_z + u_z
+                    t177 = X_x + u_x
+                    dy[i3] = -dth0_y*t176 + dth0_z*t175 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t176 - dth0_z*t177 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t175 + dth0_y*t177 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t180 = dth0_y*psi_z
-                    t181 = dth_y*psi_z
-                    t182 = dth0_x*psi_y
-                    t183 = dth0_y*psi_x - t182
-                    t184 = e0*psi_y
-                    t185 = dth_x*psi_z
-                    t186 = dth_z*psi_x
-                    t187 = t185 - t186
-                    t188 = e0*psi_z
-                    t189 = dth_x*psi_y
-                    t190 = dth_y*psi_x - t189
-                    t191 = dth0_x*psi_z
-                    t192 = dth0_z*psi_x
-                    t193 = t191 - t192
-                    t194 = e0*psi_x
-                    t195 = dth_z*psi_y - t181
-                    t196 = dth0_z*psi_y - t180
+                    t178 = dth0_y*psi_z
+                    t179 = dth_y*psi_z
+                    t180 = dth0_x*psi_y
+                    t181 = dth0_y*psi_x - t180
+                    t182 = e0*psi_y
+                    t183 = dth_x*psi_z
+                    t184 = dth_z*psi_x
+                    t185 = t183 - t184
+                    t186 = e0*psi_z
+                    t187 = dth_x*psi_y
+                    t188 = dth_y*psi_x - t187
+                    t189 = dth0_x*psi_z
+                    t190 = dth0_z*psi_x
+                    t191 = t189 - t190
+                    t192 = e0*psi_x
+                    t193 = dth_z*psi_y - t179
+                    t194 = dth0_z*psi_y - t178
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t190 + e0*psi_z*t193 - 0.5*t180 - 0.5*t181 - t183*t184 -
-                        t187*t188)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t183*t194 + (0.5)*t185 - 0.5*t186 + t188*t195
-                        - t188*t196 - t190*t194 + (0.5)*t191 - 0.5*t192)
+                        e0*psi_y*t188 + e0*psi_z*t191 - 0.5*t178 - 0.5*t179 - t181*t182 -
+                        t185*t186)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t181*t192 + (0.5)*t183 - 0.5*t184 + t186*t193
+                        - t186*t194 - t188*t192 + (0.5)*t189 - 0.5*t190)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t187 + e0*psi_y*t196 - 0.5*t182 - t184*t195 - 0.5*t189 -
-                        t193*t194)
+                        e0*psi_x*t185 + e0*psi_y*t194 - 0.5*t180 - t182*t193 - 0.5*t187 -
+                        t191*t192)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -853,12 +853,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t197 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t198 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t199 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t197 - X_z*t198)
-                    rhs_y += -fit*(-X_x*t197 + X_z*t199)
-                    rhs_z += -fit*(X_x*t198 - X_y*t199)
+                    t195 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t196 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t197 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t195 - X_z*t196)
+                    rhs_y += -fit*(-X_x*t195 + X_z*t197)
+                    rhs_z += -fit*(X_x*t196 - X_y*t197)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -891,13 +891,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t200 = X_y + u_y
-                    t201 = X_z + u_z
-                    t202 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t201 + dOm0_z*t200 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t201 - dOm0_z*t202 - dv0_y +
+                    t198 = X_y + u_y
+                    t199 = X_z + u_z
+                    t200 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t199 + dOm0_z*t198 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t199 - dOm0_z*t200 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t200 + dOm0_y*t202 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t198 + dOm0_y*t200 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -908,99 +908,103 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t203 = Om0_y*dpsi_z
-                    t204 = Om_y*dpsi_z
-                    t205 = dOm0_y*psi_z
-                    t206 = dOm_y*psi_z
-                    t207 = -Om0_x*psi_y + Om0_y*psi_x
-                    t208 = dpsi_y*e0
-                    t209 = Om_x*psi_z - Om_z*psi_x
-                    t210 = dpsi_z*e0
-                    t211 = -Om_x*psi_y + Om_y*psi_x
-                    t212 = Om0_x*psi_z - Om0_z*psi_x
-                    t213 = Om0_x*dpsi_y
-                    t214 = dOm0_x*psi_y
-                    t215 = Om0_y*dpsi_x + dOm0_y*psi_x - t213 - t214
-                    t216 = e0*psi_y
-                    t217 = Om_x*dpsi_z
-                    t218 = dOm_x*psi_z
-                    t219 = Om_z*dpsi_x
-                    t220 = dOm_z*psi_x
-                    t221 = t217 + t218 - t219 - t220
-                    t222 = e0*psi_z
-                    t223 = Om_x*dpsi_y
-                    t224 = dOm_x*psi_y
-                    t225 = Om_y*dpsi_x + dOm_y*psi_x - t223 - t224
-                    t226 = Om0_x*dpsi_z
-                    t227 = dOm0_x*psi_z
-                    t228 = Om0_z*dpsi_x
-                    t229 = dOm0_z*psi_x
-                    t230 = t226 + t227 - t228 - t229
-                    t231 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t232 = e1*t231
-                    t233 = psi_y*t232
-                    t234 = psi_z*t232
-                    t235 = dpsi_x*e0
-                    t236 = -Om_y*psi_z + Om_z*psi_y
-                    t237 = -Om0_y*psi_z + Om0_z*psi_y
-                    t238 = e0*psi_x
-                    t239 = Om_z*dpsi_y + dOm_z*psi_y - t204 - t206
-                    t240 = Om0_z*dpsi_y + dOm0_z*psi_y - t203 - t205
-                    t241 = psi_x*t232
+                    t201 = Om0_y*dpsi_z
+                    t202 = Om_y*dpsi_z
+                    t203 = dOm0_y*psi_z
+                    t204 = dOm_y*psi_z
+                    t205 = -Om0_x*psi_y + Om0_y*psi_x
+                    t206 = dpsi_y*e0
+                    t207 = Om_x*psi_z - Om_z*psi_x
+                    t208 = dpsi_z*e0
+                    t209 = -Om_x*psi_y + Om_y*psi_x
+                    t210 = Om0_x*psi_z - Om0_z*psi_x
+                    t211 = Om0_x*dpsi_y
+                    t212 = dOm0_x*psi_y
+                    t213 = Om0_y*dpsi_x + dOm0_y*psi_x - t211 - t212
+                    t214 = e0*psi_y
+                    t215 = Om_x*dpsi_z
+                    t216 = dOm_x*psi_z
+                    t217 = Om_z*dpsi_x
+                    t218 = dOm_z*psi_x
+                    t219 = t215 + t216 - t217 - t218
+                    t220 = e0*psi_z
+                    t221 = Om_x*dpsi_y
+                    t222 = dOm_x*psi_y
+                    t223 = Om_y*dpsi_x + dOm_y*psi_x - t221 - t222
+                    t224 = Om0_x*dpsi_z
+                    t225 = dOm0_x*psi_z
+                    t226 = Om0_z*dpsi_x
+                    t227 = dOm0_z*psi_x
+                    t228 = t224 + t225 - t226 - t227
+                    t229 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t230 = e1*t229
+                    t231 = psi_y*t230
+                    t232 = psi_z*t230
+                    t233 = dpsi_x*e0
+                    t234 = -Om_y*psi_z + Om_z*psi_y
+                    t235 = -Om0_y*psi_z + Om0_z*psi_y
+                    t236 = e0*psi_x
+                    t237 = Om_z*dpsi_y + dOm_z*psi_y - t202 - t204
+                    t238 = Om0_z*dpsi_y + dOm0_z*psi_y - t201 - t203
+                    t239 = psi_x*t230
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t211 +
-                        dpsi_z*e0*t212 + e0*psi_y*t225 + e0*psi_z*t230 + e1*psi_y*t211*t231 +
-                        e1*psi_z*t212*t231 - 0.5*t203 - 0.5*t204 - 0.5*t205 - 0.5*t206 - t207*t208
-                        - t207*t233 - t209*t210 - t209*t234 - t215*t216 - t221*t222)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t207*t235 + t207*t241 + t210*t236 -
-                        t210*t237 - t211*t235 - t211*t241 + t215*t238 + (0.5)*t217 + (0.5)*t218 -
-                        0.5*t219 - 0.5*t220 + t222*t239 - t222*t240 - t225*t238 + (0.5)*t226 +
-                        (0.5)*t227 - 0.5*t228 - 0.5*t229 + t234*t236 - t234*t237)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t209 +
+                        dpsi_z*e0*t210 + e0*psi_y*t223 + e0*psi_z*t228 + e1*psi_y*t209*t229 +
+                        e1*psi_z*t210*t229 - 0.5*t201 - 0.5*t202 - 0.5*t203 - 0.5*t204 - t205*t206
+                        - t205*t231 - t207*t208 - t207*t232 - t213*t214 - t219*t220)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t205*t233 + t205*t239 + t208*t234 -
+                        t208*t235 - t209*t233 - t209*t239 + t213*t236 + (0.5)*t215 + (0.5)*t216 -
+                        0.5*t217 - 0.5*t218 + t220*t237 - t220*t238 - t223*t236 + (0.5)*t224 +
+                        (0.5)*t225 - 0.5*t226 - 0.5*t227 + t232*t234 - t232*t235)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t209 + dpsi_y*e0*t237 +
-                        e0*psi_x*t221 + e0*psi_y*t240 + e1*psi_x*t209*t231 + e1*psi_y*t231*t237 -
-                        t208*t236 - t212*t235 - t212*t241 - 0.5*t213 - 0.5*t214 - t216*t239 -
-                        0.5*t223 - 0.5*t224 - t230*t238 - t233*t236)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t207 + dpsi_y*e0*t235 +
+                        e0*psi_x*t219 + e0*psi_y*t238 + e1*psi_x*t207*t229 + e1*psi_y*t229*t235 -
+                        t206*t234 - t210*t233 - t210*t239 - 0.5*t211 - 0.5*t212 - t214*t237 -
+                        0.5*t221 - 0.5*t222 - t228*t236 - t231*t234)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
+                # differential: rate: rates of the elastic displacements, the frame held
+                for i in range(N_POSITIONS):
+                    i3 = 3*i
+                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
+                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
+                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
+                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
+                    detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
+                        Om0_z*dv0_y + Om0_z*dvs_y - dOm0_y*eu_z + dOm0_y*v0_z - dOm0_y*vs_z +
+                        dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - da0_x + dacc_x)
+                    detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
+                        Om0_z*dv0_x - Om0_z*dvs_x + dOm0_x*eu_z - dOm0_x*v0_z + dOm0_x*vs_z -
+                        dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x - da0_y + dacc_y)
+                    detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
+                        Om0_y*dv0_x + Om0_y*dvs_x - dOm0_x*eu_y + dOm0_x*v0_y - dOm0_x*vs_y +
+                        dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x - da0_z + dacc_z)
                 # differential: rate: sum w_j X_j x (rate of r_j) = 0
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
-                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t242 = Om0d_y*fit
-                    t243 = X_y*t242
-                    t244 = Om0d_z*fit
-                    t245 = X_z*t244
-                    t246 = X_y*du_y
-                    t247 = X_z*du_z
-                    t248 = Om0d_x*fit
-                    t249 = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x - Om0_y*dv0_x +
-                        Om0_y*dvs_x - dOm0_x*eu_y + dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x -
-                        dOm0_y*v0_x + dOm0_y*vs_x - da0_z + dacc_z)
-                    t250 = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x + Om0_z*dv0_x -
-                        Om0_z*dvs_x + dOm0_x*eu_z - dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x +
-                        dOm0_z*v0_x - dOm0_z*vs_x - da0_y + dacc_y)
-                    t251 = X_x*t248
-                    t252 = X_x*du_x
-                    t253 = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y - Om0_z*dv0_y +
-                        Om0_z*dvs_y - dOm0_y*eu_z + dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y -
-                        dOm0_z*v0_y + dOm0_z*vs_y - da0_x + dacc_x)
-                    rhs_x += (-du_x*t243 - du_x*t245 - fit*(X_y*t249 - X_z*t250) - t248*(-t246 -
-                        t247))
-                    rhs_y += (-du_y*t245 - du_y*t251 - fit*(-X_x*t249 + X_z*t253) - t242*(-t247 -
-                        t252))
-                    rhs_z += (-du_z*t243 - du_z*t251 - fit*(X_x*t250 - X_y*t253) - t244*(-t246 -
-                        t252))
+                    deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
+                    t240 = Om0d_y*fit
+                    t241 = X_y*t240
+                    t242 = X_z*fit
+                    t243 = Om0d_z*t242
+                    t244 = X_y*du_y
+                    t245 = X_z*du_z
+                    t246 = Om0d_x*fit
+                    t247 = X_x*t246
+                    t248 = X_x*du_x
+                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t241 - du_x*t243 -
+                        t246*(-t244 - t245))
+                    rhs_y += (X_x*deud_z*fit - deud_x*t242 - du_y*t243 - du_y*t247 - t240*(-t245 -
+                        t248))
+                    rhs_z += (-Om0d_z*fit*(-t244 - t248) - X_x*deud_y*fit + X_y*deud_x*fit -
+                        du_z*t241 - du_z*t247)
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1009,27 +1013,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 3*i
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
-                    deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t254 = X_y + u_y
-                    t255 = X_z + u_z
-                    t256 = X_x + u_x
-                    detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
-                        Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
-                        dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t255 + dOm0d_z*t254 - da0_x + dacc_x)
-                    detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
-                        Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
-                        dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t255 - dOm0d_z*t256 - da0_y + dacc_y)
-                    detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
-                        Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
-                        dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t254 + dOm0d_y*t256 - da0_z + dacc_z)
+                    deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
+                    t249 = X_y + u_y
+                    t250 = X_z + u_z
+                    t251 = X_x + u_x
+                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t250 + dOm0d_z*t249 + deud_x
+                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t250 - dOm0d_z*t251 + deud_y
+                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t249 + dOm0d_y*t251 +
+                        deud_z)
                 # differential: rate: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1044,144 +1036,144 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t257 = A_y*dpsi_z
-                    t258 = Om0_y*dep_z
-                    t259 = Om0d_y*dpsi_z
-                    t260 = Om_y*dep_z
-                    t261 = dA_y*psi_z
-                    t262 = dOm0_y*ep_z
-                    t263 = dOm0d_y*psi_z
-                    t264 = dOm_y*ep_z
-                    t265 = -Om0_x*psi_y + Om0_y*psi_x
-                    t266 = dep_y*e0
-                    t267 = Om_x*psi_z - Om_z*psi_x
-                    t268 = dep_z*e0
-                    t269 = -Om_x*psi_y + Om_y*psi_x
-                    t270 = Om0_x*psi_z - Om0_z*psi_x
-                    t271 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t272 = dpsi_y*e0
-                    t273 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t274 = dpsi_z*e0
-                    t275 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t276 = e0*ep_y
-                    t277 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t278 = e0*ep_z
-                    t279 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t280 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t281 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t282 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t283 = 2*psi_x
-                    t284 = 2*psi_y
-                    t285 = 2*psi_z
-                    t286 = ep_x*t283 + ep_y*t284 + ep_z*t285
-                    t287 = e1*t286
-                    t288 = dpsi_y*t287
-                    t289 = dpsi_z*t287
-                    t290 = dpsi_x*t283 + dpsi_y*t284 + dpsi_z*t285
-                    t291 = e1*t290
-                    t292 = ep_y*t291
-                    t293 = ep_z*t291
-                    t294 = psi_y*t291
-                    t295 = psi_y*t287
-                    t296 = psi_z*t291
-                    t297 = psi_z*t287
-                    t298 = Om0_x*dep_y
-                    t299 = Om0d_x*dpsi_y
-                    t300 = dOm0_x*ep_y
-                    t301 = dOm0d_x*psi_y
-                    t302 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t298 -
-                        t299 - t300 - t301)
-                    t303 = e0*psi_y
-                    t304 = A_x*dpsi_z
-                    t305 = Om_x*dep_z
-                    t306 = dA_x*psi_z
-                    t307 = dOm_x*ep_z
-                    t308 = A_z*dpsi_x
-                    t309 = Om_z*dep_x
-                    t310 = dA_z*psi_x
-                    t311 = dOm_z*ep_x
-                    t312 = t304 + t305 + t306 + t307 - t308 - t309 - t310 - t311
-                    t313 = e0*psi_z
-                    t314 = A_x*dpsi_y
-                    t315 = Om_x*dep_y
-                    t316 = dA_x*psi_y
-                    t317 = dOm_x*ep_y
-                    t318 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t314 - t315 - t316
-                        - t317)
-                    t319 = Om0_x*dep_z
-                    t320 = Om0d_x*dpsi_z
-                    t321 = dOm0_x*ep_z
-                    t322 = dOm0d_x*psi_z
-                    t323 = Om0_z*dep_x
-                    t324 = Om0d_z*dpsi_x
-                    t325 = dOm0_z*ep_x
-                    t326 = dOm0d_z*psi_x
-                    t327 = t319 + t320 + t321 + t322 - t323 - t324 - t325 - t326
-                    t328 = (dep_x*t283 + dep_y*t284 + dep_z*t285 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                    t252 = A_y*dpsi_z
+                    t253 = Om0_y*dep_z
+                    t254 = Om0d_y*dpsi_z
+                    t255 = Om_y*dep_z
+                    t256 = dA_y*psi_z
+                    t257 = dOm0_y*ep_z
+                    t258 = dOm0d_y*psi_z
+                    t259 = dOm_y*ep_z
+                    t260 = -Om0_x*psi_y + Om0_y*psi_x
+                    t261 = dep_y*e0
+                    t262 = Om_x*psi_z - Om_z*psi_x
+                    t263 = dep_z*e0
+                    t264 = -Om_x*psi_y + Om_y*psi_x
+                    t265 = Om0_x*psi_z - Om0_z*psi_x
+                    t266 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
+                    t267 = dpsi_y*e0
+                    t268 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t269 = dpsi_z*e0
+                    t270 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t271 = e0*ep_y
+                    t272 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t273 = e0*ep_z
+                    t274 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t275 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
+                    t276 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t277 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t278 = 2*psi_x
+                    t279 = 2*psi_y
+                    t280 = 2*psi_z
+                    t281 = ep_x*t278 + ep_y*t279 + ep_z*t280
+                    t282 = e1*t281
+                    t283 = dpsi_y*t282
+                    t284 = dpsi_z*t282
+                    t285 = dpsi_x*t278 + dpsi_y*t279 + dpsi_z*t280
+                    t286 = e1*t285
+                    t287 = ep_y*t286
+                    t288 = ep_z*t286
+                    t289 = psi_y*t286
+                    t290 = psi_y*t282
+                    t291 = psi_z*t286
+                    t292 = psi_z*t282
+                    t293 = Om0_x*dep_y
+                    t294 = Om0d_x*dpsi_y
+                    t295 = dOm0_x*ep_y
+                    t296 = dOm0d_x*psi_y
+                    t297 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t293 -
+                        t294 - t295 - t296)
+                    t298 = e0*psi_y
+                    t299 = A_x*dpsi_z
+                    t300 = Om_x*dep_z
+                    t301 = dA_x*psi_z
+                    t302 = dOm_x*ep_z
+                    t303 = A_z*dpsi_x
+                    t304 = Om_z*dep_x
+                    t305 = dA_z*psi_x
+                    t306 = dOm_z*ep_x
+                    t307 = t299 + t300 + t301 + t302 - t303 - t304 - t305 - t306
+                    t308 = e0*psi_z
+                    t309 = A_x*dpsi_y
+                    t310 = Om_x*dep_y
+                    t311 = dA_x*psi_y
+                    t312 = dOm_x*ep_y
+                    t313 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t309 - t310 - t311
+                        - t312)
+                    t314 = Om0_x*dep_z
+                    t315 = Om0d_x*dpsi_z
+                    t316 = dOm0_x*ep_z
+                    t317 = dOm0d_x*psi_z
+                    t318 = Om0_z*dep_x
+                    t319 = Om0d_z*dpsi_x
+                    t320 = dOm0_z*ep_x
+                    t321 = dOm0d_z*psi_x
+                    t322 = t314 + t315 + t316 + t317 - t318 - t319 - t320 - t321
+                    t323 = (dep_x*t278 + dep_y*t279 + dep_z*t280 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                         2*dpsi_z*ep_z)
-                    t329 = e1*t328
-                    t330 = t265*t329
-                    t331 = psi_z*t329
-                    t332 = e2*t286*t290
-                    t333 = t265*t332
-                    t334 = psi_z*t332
-                    t335 = dep_x*e0
-                    t336 = -Om_y*psi_z + Om_z*psi_y
-                    t337 = -Om0_y*psi_z + Om0_z*psi_y
-                    t338 = dpsi_x*e0
-                    t339 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t340 = e0*ep_x
-                    t341 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t342 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t343 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t344 = dpsi_x*t287
-                    t345 = ep_x*t291
-                    t346 = psi_x*t291
-                    t347 = psi_x*t287
-                    t348 = e0*psi_x
-                    t349 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t257 - t260 - t261
-                        - t264)
-                    t350 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t258 -
-                        t259 - t262 - t263)
-                    t351 = psi_x*t329
-                    t352 = psi_x*t332
+                    t324 = e1*t323
+                    t325 = t260*t324
+                    t326 = psi_z*t324
+                    t327 = e2*t281*t285
+                    t328 = t260*t327
+                    t329 = psi_z*t327
+                    t330 = dep_x*e0
+                    t331 = -Om_y*psi_z + Om_z*psi_y
+                    t332 = -Om0_y*psi_z + Om0_z*psi_y
+                    t333 = dpsi_x*e0
+                    t334 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t335 = e0*ep_x
+                    t336 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t337 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
+                    t338 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t339 = dpsi_x*t282
+                    t340 = ep_x*t286
+                    t341 = psi_x*t286
+                    t342 = psi_x*t282
+                    t343 = e0*psi_x
+                    t344 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t252 - t255 - t256
+                        - t259)
+                    t345 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t253 -
+                        t254 - t257 - t258)
+                    t346 = psi_x*t324
+                    t347 = psi_x*t327
                     detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
                         (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t269 + dep_z*e0*t270 +
-                        dpsi_y*e0*t279 + dpsi_y*e1*t269*t286 + dpsi_z*e0*t280 +
-                        dpsi_z*e1*t270*t286 + e0*ep_y*t281 + e0*ep_z*t282 + e0*psi_y*t318 +
-                        e0*psi_z*t327 + e1*ep_y*t269*t290 + e1*ep_z*t270*t290 + e1*psi_y*t269*t328
-                        + e1*psi_y*t279*t290 + e1*psi_y*t281*t286 + e1*psi_z*t270*t328 +
-                        e1*psi_z*t280*t290 + e1*psi_z*t282*t286 + e2*psi_y*t269*t286*t290 +
-                        e2*psi_z*t270*t286*t290 - psi_y*t330 - psi_y*t333 - 0.5*t257 - 0.5*t258 -
-                        0.5*t259 - 0.5*t260 - 0.5*t261 - 0.5*t262 - 0.5*t263 - 0.5*t264 -
-                        t265*t266 - t265*t288 - t265*t292 - t267*t268 - t267*t289 - t267*t293 -
-                        t267*t331 - t267*t334 - t271*t272 - t271*t294 - t273*t274 - t273*t296 -
-                        t275*t276 - t275*t295 - t277*t278 - t277*t297 - t302*t303 - t312*t313)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t330 + psi_x*t333 + t265*t335 +
-                        t265*t344 + t265*t345 + t268*t336 - t268*t337 - t269*t335 - t269*t344 -
-                        t269*t345 - t269*t351 - t269*t352 + t271*t338 + t271*t346 + t274*t339 -
-                        t274*t342 + t275*t340 + t275*t347 + t278*t341 - t278*t343 - t279*t338 -
-                        t279*t346 - t281*t340 - t281*t347 + t289*t336 - t289*t337 + t293*t336 -
-                        t293*t337 + t296*t339 - t296*t342 + t297*t341 - t297*t343 + t302*t348 +
-                        (0.5)*t304 + (0.5)*t305 + (0.5)*t306 + (0.5)*t307 - 0.5*t308 - 0.5*t309 -
-                        0.5*t310 - 0.5*t311 + t313*t349 - t313*t350 - t318*t348 + (0.5)*t319 +
-                        (0.5)*t320 + (0.5)*t321 + (0.5)*t322 - 0.5*t323 - 0.5*t324 - 0.5*t325 -
-                        0.5*t326 + t331*t336 - t331*t337 + t334*t336 - t334*t337)
+                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t264 + dep_z*e0*t265 +
+                        dpsi_y*e0*t274 + dpsi_y*e1*t264*t281 + dpsi_z*e0*t275 +
+                        dpsi_z*e1*t265*t281 + e0*ep_y*t276 + e0*ep_z*t277 + e0*psi_y*t313 +
+                        e0*psi_z*t322 + e1*ep_y*t264*t285 + e1*ep_z*t265*t285 + e1*psi_y*t264*t323
+                        + e1*psi_y*t274*t285 + e1*psi_y*t276*t281 + e1*psi_z*t265*t323 +
+                        e1*psi_z*t275*t285 + e1*psi_z*t277*t281 + e2*psi_y*t264*t281*t285 +
+                        e2*psi_z*t265*t281*t285 - psi_y*t325 - psi_y*t328 - 0.5*t252 - 0.5*t253 -
+                        0.5*t254 - 0.5*t255 - 0.5*t256 - 0.5*t257 - 0.5*t258 - 0.5*t259 -
+                        t260*t261 - t260*t283 - t260*t287 - t262*t263 - t262*t284 - t262*t288 -
+                        t262*t326 - t262*t329 - t266*t267 - t266*t289 - t268*t269 - t268*t291 -
+                        t270*t271 - t270*t290 - t272*t273 - t272*t292 - t297*t298 - t307*t308)
+                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t325 + psi_x*t328 + t260*t330 +
+                        t260*t339 + t260*t340 + t263*t331 - t263*t332 - t264*t330 - t264*t339 -
+                        t264*t340 - t264*t346 - t264*t347 + t266*t333 + t266*t341 + t269*t334 -
+                        t269*t337 + t270*t335 + t270*t342 + t273*t336 - t273*t338 - t274*t333 -
+                        t274*t341 - t276*t335 - t276*t342 + t284*t331 - t284*t332 + t288*t331 -
+                        t288*t332 + t291*t334 - t291*t337 + t292*t336 - t292*t338 + t297*t343 +
+                        (0.5)*t299 + (0.5)*t300 + (0.5)*t301 + (0.5)*t302 - 0.5*t303 - 0.5*t304 -
+                        0.5*t305 - 0.5*t306 + t308*t344 - t308*t345 - t313*t343 + (0.5)*t314 +
+                        (0.5)*t315 + (0.5)*t316 + (0.5)*t317 - 0.5*t318 - 0.5*t319 - 0.5*t320 -
+                        0.5*t321 + t326*t331 - t326*t332 + t329*t331 - t329*t332)
                     detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
                         (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t267 +
-                        dep_y*e0*t337 + dpsi_x*e0*t273 + dpsi_x*e1*t267*t286 + dpsi_y*e0*t342 +
-                        dpsi_y*e1*t286*t337 + e0*ep_x*t277 + e0*ep_y*t343 + e0*psi_x*t312 +
-                        e0*psi_y*t350 + e1*ep_x*t267*t290 + e1*ep_y*t290*t337 + e1*psi_x*t267*t328
-                        + e1*psi_x*t273*t290 + e1*psi_x*t277*t286 + e1*psi_y*t286*t343 +
-                        e1*psi_y*t290*t342 + e1*psi_y*t328*t337 + e2*psi_x*t267*t286*t290 +
-                        e2*psi_y*t286*t290*t337 - psi_y*t329*t336 - psi_y*t332*t336 - t266*t336 -
-                        t270*t335 - t270*t344 - t270*t345 - t270*t351 - t270*t352 - t272*t339 -
-                        t276*t341 - t280*t338 - t280*t346 - t282*t340 - t282*t347 - t288*t336 -
-                        t292*t336 - t294*t339 - t295*t341 - 0.5*t298 - 0.5*t299 - 0.5*t300 -
-                        0.5*t301 - t303*t349 - 0.5*t314 - 0.5*t315 - 0.5*t316 - 0.5*t317 -
-                        t327*t348)
+                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t262 +
+                        dep_y*e0*t332 + dpsi_x*e0*t268 + dpsi_x*e1*t262*t281 + dpsi_y*e0*t337 +
+                        dpsi_y*e1*t281*t332 + e0*ep_x*t272 + e0*ep_y*t338 + e0*psi_x*t307 +
+                        e0*psi_y*t345 + e1*ep_x*t262*t285 + e1*ep_y*t285*t332 + e1*psi_x*t262*t323
+                        + e1*psi_x*t268*t285 + e1*psi_x*t272*t281 + e1*psi_y*t281*t338 +
+                        e1*psi_y*t285*t337 + e1*psi_y*t323*t332 + e2*psi_x*t262*t281*t285 +
+                        e2*psi_y*t281*t285*t332 - psi_y*t324*t331 - psi_y*t327*t331 - t261*t331 -
+                        t265*t330 - t265*t339 - t265*t340 - t265*t346 - t265*t347 - t267*t334 -
+                        t271*t336 - t275*t333 - t275*t341 - t277*t335 - t277*t342 - t283*t331 -
+                        t287*t331 - t289*t334 - t290*t336 - 0.5*t293 - 0.5*t294 - 0.5*t295 -
+                        0.5*t296 - t298*t344 - 0.5*t309 - 0.5*t310 - 0.5*t311 - 0.5*t312 -
+                        t322*t343)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1207,41 +1199,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
-                t353 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-                t354 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
+                t348 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+                t349 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
                     angle1_z*dangle0_y)
-                t355 = angle0_y*angle1_z - angle0_z*angle1_y
-                t356 = (0.5)*r3
-                t357 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t358 = t357*(r4 - t356)
-                t359 = -Om0_y*angle0_z + Om0_z*angle0_y
-                t360 = t357*(-0.5*r2 + t356)
-                t361 = -Om0_x*angle0_y + Om0_y*angle0_x
-                t362 = Om0_x*angle0_z - Om0_z*angle0_x
-                t363 = angle0_x*angle1_y - angle0_y*angle1_x
-                t364 = -angle0_x*angle1_z + angle0_z*angle1_x
-                t365 = t357*(-0.5*r4 + (1.5)*r5)
-                t366 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-                t367 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-                t368 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
+                t350 = angle0_y*angle1_z - angle0_z*angle1_y
+                t351 = (0.5)*r3
+                t352 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t353 = t352*(r4 - t351)
+                t354 = -Om0_y*angle0_z + Om0_z*angle0_y
+                t355 = t352*(-0.5*r2 + t351)
+                t356 = -Om0_x*angle0_y + Om0_y*angle0_x
+                t357 = Om0_x*angle0_z - Om0_z*angle0_x
+                t358 = angle0_x*angle1_y - angle0_y*angle1_x
+                t359 = -angle0_x*angle1_z + angle0_z*angle1_x
+                t360 = t352*(-0.5*r4 + (1.5)*r5)
+                t361 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+                t362 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+                t363 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
                     angle1_y*dangle0_x)
-                t369 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+                t364 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                     angle1_z*dangle0_x)
-                dwc_x = (dOm0_x + dangle1_x - r1*t353 - r2*t354 + r2*(angle0_y*t366 -
-                    angle0_z*t367 + dangle0_y*t361 - dangle0_z*t362) + r3*(angle0_y*t368 -
-                    angle0_z*t369 + dangle0_y*t363 - dangle0_z*t364) - t355*t358 +
-                    t358*(angle0_y*t361 - angle0_z*t362) - t359*t360 + t365*(angle0_y*t363 -
-                    angle0_z*t364))
-                dwc_y = (dOm0_y + dangle1_y - r1*t367 - r2*t369 + r2*(-angle0_x*t366 +
-                    angle0_z*t353 - dangle0_x*t361 + dangle0_z*t359) + r3*(-angle0_x*t368 +
-                    angle0_z*t354 - dangle0_x*t363 + dangle0_z*t355) - t358*t364 +
-                    t358*(-angle0_x*t361 + angle0_z*t359) - t360*t362 + t365*(-angle0_x*t363 +
-                    angle0_z*t355))
-                dwc_z = (dOm0_z + dangle1_z - r1*t366 - r2*t368 + r2*(angle0_x*t367 -
-                    angle0_y*t353 + dangle0_x*t362 - dangle0_y*t359) + r3*(angle0_x*t369 -
-                    angle0_y*t354 + dangle0_x*t364 - dangle0_y*t355) - t358*t363 +
-                    t358*(angle0_x*t362 - angle0_y*t359) - t360*t361 + t365*(angle0_x*t364 -
-                    angle0_y*t355))
+                dwc_x = (dOm0_x + dangle1_x - r1*t348 - r2*t349 + r2*(angle0_y*t361 -
+                    angle0_z*t362 + dangle0_y*t356 - dangle0_z*t357) + r3*(angle0_y*t363 -
+                    angle0_z*t364 + dangle0_y*t358 - dangle0_z*t359) - t350*t353 +
+                    t353*(angle0_y*t356 - angle0_z*t357) - t354*t355 + t360*(angle0_y*t358 -
+                    angle0_z*t359))
+                dwc_y = (dOm0_y + dangle1_y - r1*t362 - r2*t364 + r2*(-angle0_x*t361 +
+                    angle0_z*t348 - dangle0_x*t356 + dangle0_z*t354) + r3*(-angle0_x*t363 +
+                    angle0_z*t349 - dangle0_x*t358 + dangle0_z*t350) - t353*t359 +
+                    t353*(-angle0_x*t356 + angle0_z*t354) - t355*t357 + t360*(-angle0_x*t358 +
+                    angle0_z*t350))
+                dwc_z = (dOm0_z + dangle1_z - r1*t361 - r2*t363 + r2*(angle0_x*t362 -
+                    angle0_y*t348 + dangle0_x*t357 - dangle0_y*t354) + r3*(angle0_x*t364 -
+                    angle0_y*t349 + dangle0_x*t359 - dangle0_y*t350) - t353*t358 +
+                    t353*(angle0_x*t357 - angle0_y*t354) - t355*t356 + t360*(angle0_x*t359 -
+                    angle0_y*t350))
                 # differential: its rate
                 angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
                 angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
@@ -1249,102 +1241,102 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
                 dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-                t370 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
-                t371 = (angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z +
+                t365 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
+                t366 = (angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z +
                     angle2_z*dangle0_y)
-                t372 = angle0_y*angle2_z - angle0_z*angle2_y
-                t373 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t374 = (0.5)*r3
-                t375 = t373*(r4 - t374)
-                t376 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-                t377 = -0.5*r2 + t374
-                t378 = t373*t377
-                t379 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
+                t367 = angle0_y*angle2_z - angle0_z*angle2_y
+                t368 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t369 = (0.5)*r3
+                t370 = t368*(r4 - t369)
+                t371 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+                t372 = -0.5*r2 + t369
+                t373 = t368*t372
+                t374 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
                     angle1_z*dangle0_y)
-                t380 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-                t381 = -r3 + 2*r4
-                t382 = t380*t381
-                t383 = angle0_y*angle1_z - angle0_z*angle1_y
-                t384 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
+                t375 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+                t376 = -r3 + 2*r4
+                t377 = t375*t376
+                t378 = angle0_y*angle1_z - angle0_z*angle1_y
+                t379 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
                     angle1_x*dangle0_x + angle1_y*dangle0_y + angle1_z*dangle0_z)
-                t385 = t381*t384
-                t386 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-                t387 = Om0d_x*angle0_z - Om0d_z*angle0_x
-                t388 = angle0_x*angle2_y - angle0_y*angle2_x
-                t389 = -angle0_x*angle2_z + angle0_z*angle2_x
-                t390 = t373*(-0.5*r4 + (1.5)*r5)
-                t391 = angle0_x*angle1_y - angle0_y*angle1_x
-                t392 = -angle0_x*angle1_z + angle0_z*angle1_x
-                t393 = angle0_y*t391 - angle0_z*t392
-                t394 = -r4 + 3*r5
-                t395 = t384*t394
-                t396 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
-                t397 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
-                t398 = (angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y +
+                t380 = t376*t379
+                t381 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+                t382 = Om0d_x*angle0_z - Om0d_z*angle0_x
+                t383 = angle0_x*angle2_y - angle0_y*angle2_x
+                t384 = -angle0_x*angle2_z + angle0_z*angle2_x
+                t385 = t368*(-0.5*r4 + (1.5)*r5)
+                t386 = angle0_x*angle1_y - angle0_y*angle1_x
+                t387 = -angle0_x*angle1_z + angle0_z*angle1_x
+                t388 = angle0_y*t386 - angle0_z*t387
+                t389 = -r4 + 3*r5
+                t390 = t379*t389
+                t391 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
+                t392 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
+                t393 = (angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y +
                     angle2_y*dangle0_x)
-                t399 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
+                t394 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
                     angle2_z*dangle0_x)
-                t400 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
+                t395 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
                     angle1_y*dangle0_x)
-                t401 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+                t396 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                     angle1_z*dangle0_x)
-                t402 = -0.5*r5 + 2*r6
-                t403 = t380*(2*t373*t402 - t390)
-                t404 = angle0_y*t400 - angle0_z*t401 + dangle0_y*t391 - dangle0_z*t392
-                t405 = t380*t394
-                t406 = t380*(-t373*t402 + 3*t373*(-0.5*r6 + (2.5)*r7))
-                t407 = Om0_x*angle0_z - Om0_z*angle0_x
-                t408 = -Om0_x*angle0_y + Om0_y*angle0_x
-                t409 = -Om0_y*angle0_z + Om0_z*angle0_y
-                t410 = -angle0_x*t408 + angle0_z*t409
-                t411 = Om0_y - r1*t407 + r2*t410
-                t412 = angle0_x*t392 - angle0_y*t383
-                t413 = angle0_x*t401 - angle0_y*t379 + dangle0_x*t392 - dangle0_y*t383
-                t414 = dangle1_z - r2*t400 + r3*t413 - t375*t391 + t390*t412
-                t415 = angle1_z - r2*t391 + r3*t412
-                t416 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-                t417 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-                t418 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-                t419 = (dOm0_y - r1*t416 + r2*(-angle0_x*t417 + angle0_z*t418 - dangle0_x*t408 +
-                    dangle0_z*t409) + t375*t410 - t378*t407)
-                t420 = angle0_x*t407 - angle0_y*t409
-                t421 = Om0_z - r1*t408 + r2*t420
-                t422 = -angle0_x*t391 + angle0_z*t383
-                t423 = -angle0_x*t400 + angle0_z*t379 - dangle0_x*t391 + dangle0_z*t383
-                t424 = dangle1_y - r2*t401 + r3*t423 - t375*t392 + t390*t422
-                t425 = angle1_y - r2*t392 + r3*t422
-                t426 = (dOm0_z - r1*t417 + r2*(angle0_x*t416 - angle0_y*t418 + dangle0_x*t407 -
-                    dangle0_y*t409) - t373*t377*t408 + t375*t420)
-                t427 = dangle1_x - r2*t379 + r3*t404 - t375*t383 + t390*t393
-                t428 = angle1_x - r2*t383 + r3*t393
-                t429 = angle0_y*t408 - angle0_z*t407
-                t430 = Om0_x - r1*t409 + r2*t429
-                t431 = (dOm0_x - r1*t418 + r2*(angle0_y*t417 - angle0_z*t416 + dangle0_y*t408 -
-                    dangle0_z*t407) - t373*t377*t409 + t375*t429)
-                dwcd_x = (dOm0d_x + dangle2_x - r1*t370 - r2*t371 + r2*(angle0_y*t396 -
-                    angle0_z*t397 + dangle0_y*t386 - dangle0_z*t387) + r3*(angle0_y*t398 -
-                    angle0_z*t399 + dangle0_y*t388 - dangle0_z*t389) + r3*(angle1_y*t400 -
-                    angle1_z*t401 + dangle1_y*t391 - dangle1_z*t392) - t372*t375 +
-                    t375*(angle0_y*t386 - angle0_z*t387) - t376*t378 - t379*t382 - t383*t385 -
-                    t383*t403 + t390*(angle0_y*t388 - angle0_z*t389) + t390*(angle1_y*t391 -
-                    angle1_z*t392) + t393*t395 + t393*t406 + t404*t405 + t411*t414 + t415*t419 -
-                    t421*t424 - t425*t426)
-                dwcd_y = (dOm0d_y + dangle2_y - r1*t397 - r2*t399 + r2*(-angle0_x*t396 +
-                    angle0_z*t370 - dangle0_x*t386 + dangle0_z*t376) + r3*(-angle0_x*t398 +
-                    angle0_z*t371 - dangle0_x*t388 + dangle0_z*t372) + r3*(-angle1_x*t400 +
-                    angle1_z*t379 - dangle1_x*t391 + dangle1_z*t383) - t375*t389 +
-                    t375*(-angle0_x*t386 + angle0_z*t376) - t378*t387 - t382*t401 - t385*t392 +
-                    t390*(-angle0_x*t388 + angle0_z*t372) + t390*(-angle1_x*t391 + angle1_z*t383)
-                    - t392*t403 + t395*t422 + t405*t423 + t406*t422 - t414*t430 - t415*t431 +
-                    t421*t427 + t426*t428)
-                dwcd_z = (dOm0d_z + dangle2_z - r1*t396 - r2*t398 + r2*(angle0_x*t397 -
-                    angle0_y*t370 + dangle0_x*t387 - dangle0_y*t376) + r3*(angle0_x*t399 -
-                    angle0_y*t371 + dangle0_x*t389 - dangle0_y*t372) + r3*(angle1_x*t401 -
-                    angle1_y*t379 + dangle1_x*t392 - dangle1_y*t383) - t375*t388 +
-                    t375*(angle0_x*t387 - angle0_y*t376) - t378*t386 - t382*t400 - t385*t391 +
-                    t390*(angle0_x*t389 - angle0_y*t372) + t390*(angle1_x*t392 - angle1_y*t383) -
-                    t391*t403 + t395*t412 + t405*t413 + t406*t412 - t411*t427 - t419*t428 +
-                    t424*t430 + t425*t431)
+                t397 = -0.5*r5 + 2*r6
+                t398 = t375*(2*t368*t397 - t385)
+                t399 = angle0_y*t395 - angle0_z*t396 + dangle0_y*t386 - dangle0_z*t387
+                t400 = t375*t389
+                t401 = t375*(-t368*t397 + 3*t368*(-0.5*r6 + (2.5)*r7))
+                t402 = Om0_x*angle0_z - Om0_z*angle0_x
+                t403 = -Om0_x*angle0_y + Om0_y*angle0_x
+                t404 = -Om0_y*angle0_z + Om0_z*angle0_y
+                t405 = -angle0_x*t403 + angle0_z*t404
+                t406 = Om0_y - r1*t402 + r2*t405
+                t407 = angle0_x*t387 - angle0_y*t378
+                t408 = angle0_x*t396 - angle0_y*t374 + dangle0_x*t387 - dangle0_y*t378
+                t409 = dangle1_z - r2*t395 + r3*t408 - t370*t386 + t385*t407
+                t410 = angle1_z - r2*t386 + r3*t407
+                t411 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+                t412 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+                t413 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+                t414 = (dOm0_y - r1*t411 + r2*(-angle0_x*t412 + angle0_z*t413 - dangle0_x*t403 +
+                    dangle0_z*t404) + t370*t405 - t373*t402)
+                t415 = angle0_x*t402 - angle0_y*t404
+                t416 = Om0_z - r1*t403 + r2*t415
+                t417 = -angle0_x*t386 + angle0_z*t378
+                t418 = -angle0_x*t395 + angle0_z*t374 - dangle0_x*t386 + dangle0_z*t378
+                t419 = dangle1_y - r2*t396 + r3*t418 - t370*t387 + t385*t417
+                t420 = angle1_y - r2*t387 + r3*t417
+                t421 = (dOm0_z - r1*t412 + r2*(angle0_x*t411 - angle0_y*t413 + dangle0_x*t402 -
+                    dangle0_y*t404) - t368*t372*t403 + t370*t415)
+                t422 = dangle1_x - r2*t374 + r3*t399 - t370*t378 + t385*t388
+                t423 = angle1_x - r2*t378 + r3*t388
+                t424 = angle0_y*t403 - angle0_z*t402
+                t425 = Om0_x - r1*t404 + r2*t424
+                t426 = (dOm0_x - r1*t413 + r2*(angle0_y*t412 - angle0_z*t411 + dangle0_y*t403 -
+                    dangle0_z*t402) - t368*t372*t404 + t370*t424)
+                dwcd_x = (dOm0d_x + dangle2_x - r1*t365 - r2*t366 + r2*(angle0_y*t391 -
+                    angle0_z*t392 + dangle0_y*t381 - dangle0_z*t382) + r3*(angle0_y*t393 -
+                    angle0_z*t394 + dangle0_y*t383 - dangle0_z*t384) + r3*(angle1_y*t395 -
+                    angle1_z*t396 + dangle1_y*t386 - dangle1_z*t387) - t367*t370 +
+                    t370*(angle0_y*t381 - angle0_z*t382) - t371*t373 - t374*t377 - t378*t380 -
+                    t378*t398 + t385*(angle0_y*t383 - angle0_z*t384) + t385*(angle1_y*t386 -
+                    angle1_z*t387) + t388*t390 + t388*t401 + t399*t400 + t406*t409 + t410*t414 -
+                    t416*t419 - t420*t421)
+                dwcd_y = (dOm0d_y + dangle2_y - r1*t392 - r2*t394 + r2*(-angle0_x*t391 +
+                    angle0_z*t365 - dangle0_x*t381 + dangle0_z*t371) + r3*(-angle0_x*t393 +
+                    angle0_z*t366 - dangle0_x*t383 + dangle0_z*t367) + r3*(-angle1_x*t395 +
+                    angle1_z*t374 - dangle1_x*t386 + dangle1_z*t378) - t370*t384 +
+                    t370*(-angle0_x*t381 + angle0_z*t371) - t373*t382 - t377*t396 - t380*t387 +
+                    t385*(-angle0_x*t383 + angle0_z*t367) + t385*(-angle1_x*t386 + angle1_z*t378)
+                    - t387*t398 + t390*t417 + t400*t418 + t401*t417 - t409*t425 - t410*t426 +
+                    t416*t422 + t421*t423)
+                dwcd_z = (dOm0d_z + dangle2_z - r1*t391 - r2*t393 + r2*(angle0_x*t392 -
+                    angle0_y*t365 + dangle0_x*t382 - dangle0_y*t371) + r3*(angle0_x*t394 -
+                    angle0_y*t366 + dangle0_x*t384 - dangle0_y*t367) + r3*(angle1_x*t396 -
+                    angle1_y*t374 + dangle1_x*t387 - dangle1_y*t378) - t370*t383 +
+                    t370*(angle0_x*t382 - angle0_y*t371) - t373*t381 - t377*t395 - t380*t386 +
+                    t385*(angle0_x*t384 - angle0_y*t367) + t385*(angle1_x*t387 - angle1_y*t378) -
+                    t386*t398 + t390*t407 + t400*t408 + t401*t407 - t406*t422 - t414*t423 +
+                    t419*t425 + t420*t426)
                 # differential: rate of its momentum and of the moment of it
                 first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
                 first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -1355,43 +1347,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dfirst0_x, dfirst0_y, dfirst0_z = drigid0[0], drigid0[1], drigid0[2]
                 dfirst1_x, dfirst1_y, dfirst1_z = drigid1[0], drigid1[1], drigid1[2]
                 dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
-                t432 = 2*dfirst1_z
-                t433 = 2*Om0_z
-                t434 = 2*first1_z
-                t435 = 2*dOm0_z
-                t436 = first0_z + mc_z
-                t437 = first0_y + mc_y
-                t438 = first0_x + mc_x
-                t439 = Om0_x*t437 - Om0_y*t438
-                t440 = -Om0_x*t436 + Om0_z*t438
-                t441 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t437 - dOm0_y*t438
-                t442 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t436 + dOm0_z*t438
-                t443 = Om0_y*t436 - Om0_z*t437
-                t444 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t436 - dOm0_z*t437
-                t445 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-                t446 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
-                t447 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-                t448 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
-                t449 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-                t450 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
-                dRt_x = (Om0_y*t432 + Om0_y*t441 - Om0_z*t442 + Om0d_y*dfirst0_z -
-                    Om0d_z*dfirst0_y + dOm0_y*t434 + dOm0_y*t439 - dOm0_z*t440 + dOm0d_y*t436 -
-                    dOm0d_z*t437 - dfirst1_y*t433 + dfirst2_x - first1_y*t435 + mass*(da0_x -
+                t427 = 2*dfirst1_z
+                t428 = 2*Om0_z
+                t429 = 2*first1_z
+                t430 = 2*dOm0_z
+                t431 = first0_z + mc_z
+                t432 = first0_y + mc_y
+                t433 = first0_x + mc_x
+                t434 = Om0_x*t432 - Om0_y*t433
+                t435 = -Om0_x*t431 + Om0_z*t433
+                t436 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t432 - dOm0_y*t433
+                t437 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t431 + dOm0_z*t433
+                t438 = Om0_y*t431 - Om0_z*t432
+                t439 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t431 - dOm0_z*t432
+                t440 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+                t441 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
+                t442 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+                t443 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
+                t444 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+                t445 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
+                dRt_x = (Om0_y*t427 + Om0_y*t436 - Om0_z*t437 + Om0d_y*dfirst0_z -
+                    Om0d_z*dfirst0_y + dOm0_y*t429 + dOm0_y*t434 - dOm0_z*t435 + dOm0d_y*t431 -
+                    dOm0d_z*t432 - dfirst1_y*t428 + dfirst2_x - first1_y*t430 + mass*(da0_x -
                     dgamma_x))
-                dRt_y = (-Om0_x*t432 - Om0_x*t441 + Om0_z*t444 - Om0d_x*dfirst0_z +
-                    Om0d_z*dfirst0_x - dOm0_x*t434 - dOm0_x*t439 + dOm0_z*t443 - dOm0d_x*t436 +
-                    dOm0d_z*t438 + dfirst1_x*t433 + dfirst2_y + first1_x*t435 + mass*(da0_y -
+                dRt_y = (-Om0_x*t427 - Om0_x*t436 + Om0_z*t439 - Om0d_x*dfirst0_z +
+                    Om0d_z*dfirst0_x - dOm0_x*t429 - dOm0_x*t434 + dOm0_z*t438 - dOm0d_x*t431 +
+                    dOm0d_z*t433 + dfirst1_x*t428 + dfirst2_y + first1_x*t430 + mass*(da0_y -
                     dgamma_y))
-                dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t442 - 2*Om0_y*dfirst1_x - Om0_y*t444 +
-                    Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t440 -
-                    2*dOm0_y*first1_x - dOm0_y*t443 + dOm0d_x*t437 - dOm0d_y*t438 + dfirst2_z +
+                dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t437 - 2*Om0_y*dfirst1_x - Om0_y*t439 +
+                    Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t435 -
+                    2*dOm0_y*first1_x - dOm0_y*t438 + dOm0d_x*t432 - dOm0d_y*t433 + dfirst2_z +
                     mass*(da0_z - dgamma_z))
-                dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t445 - dwc_z*t447 +
-                    t446*wc_y - t448*wc_z)
-                dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t445 + dwc_z*t449 -
-                    t446*wc_x + t450*wc_z)
-                dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t447 - dwc_y*t449 +
-                    t448*wc_x - t450*wc_y)
+                dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t440 - dwc_z*t442 +
+                    t441*wc_y - t443*wc_z)
+                dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t440 + dwc_z*t444 -
+                    t441*wc_x + t445*wc_z)
+                dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t442 - dwc_y*t444 +
+                    t443*wc_x - t445*wc_y)
                 # differential: moment on the frame, forces on the first moment and mean rotation
                 first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
                 angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -1402,42 +1394,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
                 dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-                t451 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
-                t452 = 1/mass
-                t453 = first0_y + mc_y
-                t454 = first0_z + mc_z
-                t455 = -Mc_y*angle0_z + Mc_z*angle0_y
-                t456 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t457 = (0.5)*r3
-                t458 = t456*(-0.5*r2 + t457)
-                t459 = -Mc_x*angle0_y + Mc_y*angle0_x
-                t460 = Mc_x*angle0_z - Mc_z*angle0_x
-                t461 = angle0_y*t459 - angle0_z*t460
-                t462 = t456*(r4 - t457)
-                t463 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
-                t464 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
-                t465 = angle0_y*t463 - angle0_z*t464 + dangle0_y*t459 - dangle0_z*t460
-                t466 = first0_x + mc_x
-                t467 = -angle0_x*t459 + angle0_z*t455
-                t468 = -angle0_x*t463 + angle0_z*t451 - dangle0_x*t459 + dangle0_z*t455
-                t469 = angle0_x*t460 - angle0_y*t455
-                t470 = angle0_x*t464 - angle0_y*t451 + dangle0_x*t460 - dangle0_y*t455
-                t471 = t456*(-0.5*r4 + (1.5)*r5)
-                dRr_x = (dMc_x + r1*t451 + r2*t465 + t452*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
-                    dRt_y*t454 + dRt_z*t453) + t455*t458 + t461*t462)
-                dRr_y = (dMc_y + r1*t464 + r2*t468 + t452*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
-                    dRt_x*t454 - dRt_z*t466) + t458*t460 + t462*t467)
-                dRr_z = (dMc_z + r1*t463 + r2*t470 + t452*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
-                    dRt_x*t453 + dRt_y*t466) + t458*t459 + t462*t469)
-                dcarried[0] = t452*(dRt_x - dfirst2_x)
-                dcarried[1] = t452*(dRt_y - dfirst2_y)
-                dcarried[2] = t452*(dRt_z - dfirst2_z)
+                t446 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
+                t447 = 1/mass
+                t448 = first0_y + mc_y
+                t449 = first0_z + mc_z
+                t450 = -Mc_y*angle0_z + Mc_z*angle0_y
+                t451 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t452 = (0.5)*r3
+                t453 = t451*(-0.5*r2 + t452)
+                t454 = -Mc_x*angle0_y + Mc_y*angle0_x
+                t455 = Mc_x*angle0_z - Mc_z*angle0_x
+                t456 = angle0_y*t454 - angle0_z*t455
+                t457 = t451*(r4 - t452)
+                t458 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
+                t459 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
+                t460 = angle0_y*t458 - angle0_z*t459 + dangle0_y*t454 - dangle0_z*t455
+                t461 = first0_x + mc_x
+                t462 = -angle0_x*t454 + angle0_z*t450
+                t463 = -angle0_x*t458 + angle0_z*t446 - dangle0_x*t454 + dangle0_z*t450
+                t464 = angle0_x*t455 - angle0_y*t450
+                t465 = angle0_x*t459 - angle0_y*t446 + dangle0_x*t455 - dangle0_y*t450
+                t466 = t451*(-0.5*r4 + (1.5)*r5)
+                dRr_x = (dMc_x + r1*t446 + r2*t460 + t447*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
+                    dRt_y*t449 + dRt_z*t448) + t450*t453 + t456*t457)
+                dRr_y = (dMc_y + r1*t459 + r2*t463 + t447*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
+                    dRt_x*t449 - dRt_z*t461) + t453*t455 + t457*t462)
+                dRr_z = (dMc_z + r1*t458 + r2*t465 + t447*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
+                    dRt_x*t448 + dRt_y*t461) + t453*t454 + t457*t464)
+                dcarried[0] = t447*(dRt_x - dfirst2_x)
+                dcarried[1] = t447*(dRt_y - dfirst2_y)
+                dcarried[2] = t447*(dRt_z - dfirst2_z)
                 dcarried[3] = (-Jc_xx*dangle2_x - Jc_xy*dangle2_y - Jc_xz*dangle2_z + dMc_x +
-                    r2*t451 + r3*t465 + t455*t462 + t461*t471)
+                    r2*t446 + r3*t460 + t450*t457 + t456*t466)
                 dcarried[4] = (-Jc_xy*dangle2_x - Jc_yy*dangle2_y - Jc_yz*dangle2_z + dMc_y +
-                    r2*t464 + r3*t468 + t460*t462 + t467*t471)
+                    r2*t459 + r3*t463 + t455*t457 + t462*t466)
                 dcarried[5] = (-Jc_xz*dangle2_x - Jc_yz*dangle2_y - Jc_zz*dangle2_z + dMc_z +
-                    r2*t463 + r3*t470 + t459*t462 + t469*t471)
+                    r2*t458 + r3*t465 + t454*t457 + t464*t466)
                 # forces of the rigid part, conjugate to y
                 add_block_times(rigid_columns, dcarried, ds, n, 6, padded(n))
                 # damping force, Cbar ydot
@@ -1452,15 +1444,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t472 = X_z + u_z
-                    t473 = X_y + u_y
-                    t474 = X_x + u_x
+                    t467 = X_z + u_z
+                    t468 = X_y + u_y
+                    t469 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t472 - df_z*t473 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t472 + df_z*t474 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t473 - df_y*t474 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t467 - df_z*t468 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t467 + df_z*t469 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t468 - df_y*t469 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 dF_x += dRt_x
                 dF_y += dRt_y
@@ -1477,25 +1469,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t475 = -m_x*psi_y + m_y*psi_x
-                    t476 = m_x*psi_z - m_z*psi_x
-                    t477 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t478 = dm_x*psi_z
-                    t479 = dpsi_z*m_x
-                    t480 = -dm_z*psi_x - dpsi_x*m_z + t478 + t479
-                    t481 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t482 = e1*t481
-                    t483 = -m_y*psi_z + m_z*psi_y
-                    t484 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t475 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t476 + (0.5)*dpsi_z*m_y - e0*psi_y*t477 +
-                        e0*psi_z*t480 + e1*psi_z*t476*t481 - psi_y*t475*t482)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t475 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t483 + e0*psi_x*t477 - e0*psi_z*t484 + e1*psi_x*t475*t481 -
-                        psi_z*t482*t483 - 0.5*t478 - 0.5*t479)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t476 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t483 + (0.5)*dpsi_y*m_x - e0*psi_x*t480 +
-                        e0*psi_y*t484 + e1*psi_y*t481*t483 - psi_x*t476*t482)
+                    t470 = -m_x*psi_y + m_y*psi_x
+                    t471 = m_x*psi_z - m_z*psi_x
+                    t472 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t473 = dm_x*psi_z
+                    t474 = dpsi_z*m_x
+                    t475 = -dm_z*psi_x - dpsi_x*m_z + t473 + t474
+                    t476 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t477 = e1*t476
+                    t478 = -m_y*psi_z + m_z*psi_y
+                    t479 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t470 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t471 + (0.5)*dpsi_z*m_y - e0*psi_y*t472 +
+                        e0*psi_z*t475 + e1*psi_z*t471*t476 - psi_y*t470*t477)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t470 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t478 + e0*psi_x*t472 - e0*psi_z*t479 + e1*psi_x*t470*t476 -
+                        psi_z*t477*t478 - 0.5*t473 - 0.5*t474)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t471 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t478 + (0.5)*dpsi_y*m_x - e0*psi_x*t475 +
+                        e0*psi_y*t479 + e1*psi_y*t476*t478 - psi_x*t471*t477)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1503,26 +1495,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t485 = X_x*wp_y - X_y*wp_x
-                    t486 = -X_x*wp_z + X_z*wp_x
-                    t487 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t485 - du_z*t486)
-                    rhs_y += -fit*(-du_x*t485 + du_z*t487)
-                    rhs_z += -fit*(du_x*t486 - du_y*t487)
-                t488 = dW_x + rhs_x
-                t489 = dW_y + rhs_y
-                t490 = dW_z + rhs_z
-                dwp_x = Bxx*t488 + Byx*t489 + Bzx*t490
-                dwp_y = Bxy*t488 + Byy*t489 + Bzy*t490
-                dwp_z = Bxz*t488 + Byz*t489 + Bzz*t490
+                    t480 = X_x*wp_y - X_y*wp_x
+                    t481 = -X_x*wp_z + X_z*wp_x
+                    t482 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t480 - du_z*t481)
+                    rhs_y += -fit*(-du_x*t480 + du_z*t482)
+                    rhs_z += -fit*(du_x*t481 - du_y*t482)
+                t483 = dW_x + rhs_x
+                t484 = dW_y + rhs_y
+                t485 = dW_z + rhs_z
+                dwp_x = Bxx*t483 + Byx*t484 + Bzx*t485
+                dwp_y = Bxy*t483 + Byy*t484 + Bzy*t485
+                dwp_z = Bxz*t483 + Byz*t484 + Bzz*t485
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t491 = dwp_z*fit
-                    dF_x += -X_y*t491 + X_z*dwp_y*fit
-                    dF_y += X_x*t491 - X_z*dwp_x*fit
+                    t486 = dwp_z*fit
+                    dF_x += -X_y*t486 + X_z*dwp_y*fit
+                    dF_y += X_x*t486 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -1531,10 +1523,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     alpha = alphas[i]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t492 = dwp_z*fit
-                    t493 = X_z*fit
-                    dh[i3] = X_y*t492 + alpha*dF_x + df_x - dwp_y*t493
-                    dh[i3 + 1] = -X_x*t492 + alpha*dF_y + df_y + dwp_x*t493
+                    t487 = dwp_z*fit
+                    t488 = X_z*fit
+                    dh[i3] = X_y*t487 + alpha*dF_x + df_x - dwp_y*t488
+                    dh[i3 + 1] = -X_x*t487 + alpha*dF_y + df_y + dwp_x*t488
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
                 # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
@@ -1553,33 +1545,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t494 = dm_y*psi_z
-                    t495 = dpsi_z*m_y
-                    t496 = -m_x*psi_y + m_y*psi_x
-                    t497 = e0*t496
-                    t498 = m_x*psi_z - m_z*psi_x
-                    t499 = dpsi_z*e0
-                    t500 = dm_x*psi_y
-                    t501 = dpsi_y*m_x
-                    t502 = e0*(dm_y*psi_x + dpsi_x*m_y - t500 - t501)
-                    t503 = dm_x*psi_z
-                    t504 = dpsi_z*m_x
-                    t505 = dm_z*psi_x
-                    t506 = dpsi_x*m_z
-                    t507 = t503 + t504 - t505 - t506
-                    t508 = e0*psi_z
-                    t509 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t510 = t496*t509
-                    t511 = psi_z*t509
-                    t512 = -m_y*psi_z + m_z*psi_y
-                    t513 = dm_z*psi_y + dpsi_y*m_z - t494 - t495
-                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t497 + psi_y*t502 +
-                        psi_y*t510 + (0.5)*t494 + (0.5)*t495 - t498*t499 - t498*t511 - t507*t508)
-                    dg[j3 + 1] = (dm_y - dpsi_x*t497 - psi_x*t502 - psi_x*t510 + t499*t512 -
-                        0.5*t503 - 0.5*t504 + (0.5)*t505 + (0.5)*t506 + t508*t513 + t511*t512)
-                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t498 - 0.5*dpsi_x*m_y -
-                        dpsi_y*e0*t512 + e0*psi_x*t507 - e0*psi_y*t513 + psi_x*t498*t509 -
-                        psi_y*t509*t512 + (0.5)*t500 + (0.5)*t501)
+                    t489 = dm_y*psi_z
+                    t490 = dpsi_z*m_y
+                    t491 = -m_x*psi_y + m_y*psi_x
+                    t492 = e0*t491
+                    t493 = m_x*psi_z - m_z*psi_x
+                    t494 = dpsi_z*e0
+                    t495 = dm_x*psi_y
+                    t496 = dpsi_y*m_x
+                    t497 = e0*(dm_y*psi_x + dpsi_x*m_y - t495 - t496)
+                    t498 = dm_x*psi_z
+                    t499 = dpsi_z*m_x
+                    t500 = dm_z*psi_x
+                    t501 = dpsi_x*m_z
+                    t502 = t498 + t499 - t500 - t501
+                    t503 = e0*psi_z
+                    t504 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t505 = t491*t504
+                    t506 = psi_z*t504
+                    t507 = -m_y*psi_z + m_z*psi_y
+                    t508 = dm_z*psi_y + dpsi_y*m_z - t489 - t490
+                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t492 + psi_y*t497 +
+                        psi_y*t505 + (0.5)*t489 + (0.5)*t490 - t493*t494 - t493*t506 - t502*t503)
+                    dg[j3 + 1] = (dm_y - dpsi_x*t492 - psi_x*t497 - psi_x*t505 + t494*t507 -
+                        0.5*t498 - 0.5*t499 + (0.5)*t500 + (0.5)*t501 + t503*t508 + t506*t507)
+                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t493 - 0.5*dpsi_x*m_y -
+                        dpsi_y*e0*t507 + e0*psi_x*t502 - e0*psi_y*t508 + psi_x*t493*t504 -
+                        psi_y*t504*t507 + (0.5)*t495 + (0.5)*t496)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

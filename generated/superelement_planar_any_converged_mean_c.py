@@ -14,11 +14,10 @@ from sebody.kernels.dense import (
     add_block_times,
     add_rows_times,
     block_times,
+    clear,
     columns_times,
-    gather,
     rows_times,
     scale,
-    scatter,
 )
 from sebody.kernels.frame_search import planar_mean
 from sebody.kernels.layout import (
@@ -45,6 +44,14 @@ from sebody.kernels.layout import (
     TANGENT,
     Part,
 )
+from sebody.kernels.packed_products import (
+    add_packed,
+    add_packed_times,
+    from_free,
+    packed_room,
+    packed_times,
+    to_free,
+)
 from sebody.kernels.pipeline import kernel_function
 
 LAYOUT = "planar-any"
@@ -57,30 +64,33 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 114
+WORK_ROWS = 116
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (248, 76, 7, 7),
-              "column": (6, 93, 9, 3)}
+OPERATIONS = {"residual": (260, 76, 7, 2),
+              "column": (18, 93, 9, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
-    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped ones"),
-    Part("kept", ("free",), "local coordinates that determine the others in the frame"),
+    Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
+    Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
+    Part("axes", ("bound_free", "bound"),
+         "boundary coordinates that determine the others", columns=True),
+    Part("axes_back", ("bound", "bound_free"), "its transpose", columns=True),
+    Part("order", ("free",), "where these and the modes are among themselves"),
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
     Part("moment_rows", ("lines", "N"), "their transpose", columns=True),
-    Part("quadratics", ("N", "quadratic"),
-         "column by column of J2_kl, K_k^T, K_k^T - K_k", columns=True),
-    Part("Mz", ("N", "N"), "reduced mass with slaved coordinates", columns=True),
-    Part("Sz", ("free", "free"), "reduced stiffness", columns=True),
-    Part("Cz", ("free", "damped"), "reduced damping", columns=True),
-    Part("followers", ("free", "slaving"), "column by column of Q_b", columns=True),
+    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
+    Part("of_rate", ("rated", "N", "N"), "K_k^T - K_k, K_k^T", packed=True),
+    Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
+    Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
+    Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
     Part("lam", ("resultants",), "eigenvalues of the resultants"),
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
-    Part("Ghat", ("free", "stressing"), "column by column of Ghat_e", columns=True),
+    Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -102,57 +112,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     eta = at(work, 6*row)
     etad = at(work, 7*row)
     gamma = at(work, 8*row)
-    z = at(work, 9*row)
-    zd = at(work, 10*row)
-    zdd = at(work, 11*row)
-    line0 = at(work, 12*row)
-    line1 = at(work, 13*row)
-    line2 = at(work, 14*row)
-    product0 = at(work, 15*row)
-    product1 = at(work, 16*row)
-    product2 = at(work, 17*row)
-    by_moment_columns = at(work, 18*row)
-    by_products = at(work, 19*row)
-    local = at(work, 20*row)
-    along = at(work, 21*row)
-    twice = at(work, 22*row)
-    by_E = at(work, 23*row)
-    by_Gy = at(work, 24*row)
-    s = at(work, 25*row)
-    h = at(work, 26*row)
-    moved = at(work, 27*row)
-    squares = at(work, 28*row)
-    dqe = at(work, 29*row)
-    dve = at(work, 30*row)
-    dae = at(work, 31*row)
-    by_place = at(work, 32*row)
-    by_rate = at(work, 33*row)
-    ones = at(work, 34*row)
-    by_followers = at(work, 35*row)
-    of_E = at(work, 36*row)
-    of_Gy = at(work, 37*row)
-    dy = at(work, 38*row)
-    dz = at(work, 39*row)
-    dlocal = at(work, 40*row)
-    dyd = at(work, 41*row)
-    dacc = at(work, 42*row)
-    deta = at(work, 43*row)
-    detad = at(work, 44*row)
-    dgamma = at(work, 45*row)
-    dzd = at(work, 46*row)
-    dzdd = at(work, 47*row)
-    ds = at(work, 48*row)
-    dh = at(work, 49*row)
-    dg = at(work, 50*row)
-    Zq = at(work, 51*row)
-    Zd = at(work, 63*row)
-    products = at(work, 75*row)
-    Za = at(work, 90*row)
-    more = at(work, 102*row)
-    Gy = at(work, (114 + 0*(n + 18))*row)
-    Lz = at(work, (114 + 1*(n + 18))*row)
-    Lv = at(work, (114 + 2*(n + 18))*row)
-    La = at(work, (114 + 3*(n + 18))*row)
+    unordered = at(work, 9*row)
+    z = at(work, 10*row)
+    zd = at(work, 11*row)
+    zdd = at(work, 12*row)
+    line0 = at(work, 13*row)
+    line1 = at(work, 14*row)
+    line2 = at(work, 15*row)
+    product0 = at(work, 16*row)
+    product1 = at(work, 17*row)
+    product3 = at(work, 18*row)
+    product2 = at(work, 19*row)
+    by_moment_columns = at(work, 20*row)
+    by_products = at(work, 21*row)
+    local = at(work, 22*row)
+    along = at(work, 23*row)
+    twice = at(work, 24*row)
+    by_E = at(work, 25*row)
+    by_Gy = at(work, 26*row)
+    s = at(work, 27*row)
+    h = at(work, 28*row)
+    moved = at(work, 29*row)
+    squares = at(work, 30*row)
+    dqe = at(work, 31*row)
+    dve = at(work, 32*row)
+    dae = at(work, 33*row)
+    by_place = at(work, 34*row)
+    by_rate = at(work, 35*row)
+    ones = at(work, 36*row)
+    by_followers = at(work, 37*row)
+    of_E = at(work, 38*row)
+    of_Gy = at(work, 39*row)
+    dy = at(work, 40*row)
+    dz = at(work, 41*row)
+    dlocal = at(work, 42*row)
+    dyd = at(work, 43*row)
+    dacc = at(work, 44*row)
+    deta = at(work, 45*row)
+    detad = at(work, 46*row)
+    dgamma = at(work, 47*row)
+    dzd = at(work, 48*row)
+    dzdd = at(work, 49*row)
+    ds = at(work, 50*row)
+    dh = at(work, 51*row)
+    dg = at(work, 52*row)
+    Zq = at(work, 53*row)
+    Zd = at(work, 65*row)
+    products = at(work, 77*row)
+    Za = at(work, 92*row)
+    more = at(work, 104*row)
+    Gy = at(work, (116 + 0*(n + 18))*row)
+    Lz = at(work, (116 + 1*(n + 18))*row)
+    Lv = at(work, (116 + 2*(n + 18))*row)
+    La = at(work, (116 + 3*(n + 18))*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
@@ -171,23 +183,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         masses = at(full, 1)
         sizes = at(masses, 1)
         slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])
-        free = n - 3
-        N = free + slaved
-        quadratic, slaving = 3*N, slaved*free
+        free, bound, bound_free = n - 3, MODES, MODES - 3
+        N, stretching = free + slaved, resultants + 1
         hn, hN, deep = padded(free), padded(N), padded(N + 3)
-        kept = at(sizes, 3)
-        c0 = at(kept, free)
+        turn = at(sizes, 3)
+        axes = at(turn, 2)
+        axes_back = at(axes, bound*padded(bound_free))
+        order = at(axes_back, bound_free*padded(bound))
+        c0 = at(order, free)
         J0 = at(c0, 2)
         moment_columns = at(J0, 1)
         moment_rows = at(moment_columns, 4*padded(N))
-        quadratics = at(moment_rows, N*padded(4))
-        Mz = at(quadratics, quadratic*padded(N))
-        Sz = at(Mz, N*padded(N))
-        Cz = at(Sz, free*padded(free))
-        followers = at(Cz, damped*padded(free))
-        lam = at(followers, slaving*padded(free))
+        of_place = at(moment_rows, N*padded(4))
+        of_rate = at(of_place, packed_room(2, N, N))
+        Mz = at(of_rate, packed_room(2, N, N))
+        Cz = at(Mz, packed_room(1, N, N))
+        followers = at(Cz, packed_room(damped, free, free))
+        lam = at(followers, packed_room(slaved, free, free))
         E = at(lam, resultants)
-        Ghat = at(E, resultants*padded(free))
+        stretched = at(E, resultants*padded(free))
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -269,14 +283,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
+        # rate: rates of the elastic rotations, the frame held
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + j
+            A_z = ae[j3]
+            etad[j3] = A_z
         # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
         rhs_z = 0.0
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
             alpha_r = alpha_rs[j]
-            A_z = ae[j3]
-            rhs_z += A_z*alpha_r
+            epd_z = etad[j3]
+            rhs_z += alpha_r*epd_z
         Om0d_z = rhs_z
+        # rate: rates of the elastic rotations
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + j
+            epd_z = etad[j3]
+            etad[j3] = -Om0d_z + epd_z
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 2*i
@@ -288,11 +312,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             etad[i3] = Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y + Om0d_z*(X_y + u_y) - a0_x + acc_x
             etad[i3 + 1] = (-Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x + Om0d_z*(-X_x - u_x) - a0_y +
                 acc_y)
-        # rate: rates of the elastic rotations
-        for j in range(N_ROTATIONS):
-            j3 = ROTATIONS + j
-            A_z = ae[j3]
-            etad[j3] = A_z - Om0d_z
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -302,15 +321,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[0] = R0_cos*field_x + R0_sin*field_y
         gamma[1] = R0_cos*field_y - R0_sin*field_x
         # coordinates that determine the others, of y
-        gather(y, kept, z, free, hN)
+        to_free(y, axes, order, unordered, z, bound, bound_free, free, hN)
         # coordinates that determine the others, of eta
-        gather(eta, kept, zd, free, hN)
+        to_free(eta, axes, order, unordered, zd, bound, bound_free, free, hN)
         # coordinates that determine the others, of etad
-        gather(etad, kept, zdd, free, hN)
+        to_free(etad, axes, order, unordered, zdd, bound, bound_free, free, hN)
         # Q_b z, all b
-        block_times(followers, z, Zq, slaved*hn, free, slaved*hn)
+        packed_times(followers, z, Zq, slaved*hn)
         # Q_b zd, all b
-        block_times(followers, zd, Zd, slaved*hn, free, slaved*hn)
+        packed_times(followers, zd, Zd, slaved*hn)
         # eta_b = y . Q_b y / 2
         rows_times(Zq, z, at(z, free), free, slaved, hn)
         # half of it
@@ -328,13 +347,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # first moments and couplings of zdd
         columns_times(moment_rows, zdd, line2, 4, N)
         # J2_kl z and K_k^T z
-        block_times(quadratics, z, products, 2*hN, N, 3*hN)
-        # K_k^T zdot and (K_k^T - K_k) zdot
-        block_times(at(quadratics, 1*hN), zd, at(products, 2*hN), 2*hN, N, 3*hN)
+        packed_times(of_place, z, products, 2*hN)
+        # (K_k^T - K_k) zdot and K_k^T zdot
+        packed_times(of_rate, zd, at(products, 2*hN), 2*hN)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 1, hN)
         # quadratic parts, by zd
-        rows_times(products, zd, product1, N, 3, hN)
+        rows_times(products, zd, product1, N, 2, hN)
+        # quadratic parts, by zd
+        rows_times(at(products, 3*hN), zd, product3, N, 1, hN)
         # quadratic parts, by zdd
         rows_times(at(products, 1*hN), zdd, product2, N, 1, hN)
         # integrals over the body
@@ -350,7 +371,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         jz_zz = product0[0]
         jzd_zz = product1[0]
         uzd_z = product1[1]
-        vzd_z = product1[2]
+        vzd_z = product3[0]
         uzdd_z = product2[0]
         sum_c_x = S1z0_x + c0_x
         sum_c_y = S1z0_y + c0_y
@@ -363,35 +384,37 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         sum_spun_z = gz1_z + uzd_z
         sum_accelerated_z = gz2_z + uzdd_z
         sum_coupled_z = vzd_z
-        # motion of the frame as a factor of local tangents
+        # motion of the frame in axes of the body, a factor of local tangents
+        turn_cos, turn_sin = turn[0], turn[1]
         gamma_x, gamma_y = gamma[0], gamma[1]
-        zdd[N] = a0_x - gamma_x
-        zdd[N + 1] = a0_y - gamma_y
+        t2 = a0_x - gamma_x
+        t3 = a0_y - gamma_y
+        zdd[N] = t2*turn_cos + t3*turn_sin
+        zdd[N + 1] = -t2*turn_sin + t3*turn_cos
         zdd[N + 2] = Om0d_z
         zd[N] = Om0_z
         # factors of the force on a coordinate
         felt_x, felt_y = zdd[N], zdd[N + 1]
-        t2 = Om0_z*Om0_z
+        turning_z = zdd[N + 2]
+        spin_z = zd[N]
+        t4 = spin_z*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
-        by_moment_columns[2] = Om0d_z
-        by_moment_columns[3] = -0.5*t2
-        by_products[0] = -t2
-        by_products[1] = Om0d_z
-        by_products[2] = 0
-        by_products[3] = Om0_z
+        by_moment_columns[2] = turning_z
+        by_moment_columns[3] = -0.5*t4
+        by_products[0] = -t4
+        by_products[1] = turning_z
+        by_products[2] = spin_z
         # force on the coordinates: first moments, couplings, inertia at rest
         columns_times(moment_columns, by_moment_columns, local, N, 4)
         # of the deformed body
-        add_block_times(products, by_products, local, N, 4, hN)
+        add_block_times(products, by_products, local, N, 3, hN)
         # inertia force of deformation, Mbar zddot
-        add_block_times(Mz, zdd, local, N, N, hN)
-        # elastic force, Sbar y
-        add_block_times(Sz, z, local, free, free, hn)
+        add_packed_times(Mz, zdd, local)
         # damping force, Cbar ydot
-        add_block_times(Cz, zd, local, free, damped, hn)
-        # Ghat_e y, all e
-        block_times(Ghat, z, Gy, resultants*hn, free, resultants*hn)
+        add_packed_times(Cz, zd, local)
+        # Ghat_e y of all e, and Sbar y
+        packed_times(stretched, z, Gy, stretching*hn)
         # E_e . y
         rows_times(E, z, along, free, resultants, hn)
         # y . Ghat_e y
@@ -402,28 +425,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t3 = (0.5)*twice_e
-            t4 = 1/lam_e
-            by_E[e] = t3
-            by_Gy[e] = along_e + t3*t4
-            stiffened += t3*(along_e + (0.25)*t4*twice_e)
-        # their forces
+            t5 = (0.5)*twice_e
+            t6 = 1/lam_e
+            by_E[e] = t5
+            by_Gy[e] = along_e + t5*t6
+            stiffened += t5*(along_e + (0.25)*t6*twice_e)
+        # and of Sbar y
+        by_Gy[resultants] = 1
+        # forces of the resultants
         add_block_times(E, by_E, local, free, resultants, hn)
-        # and those of the geometric stiffness
-        add_block_times(Gy, by_Gy, local, free, resultants, hn)
+        # and those of the geometric stiffness, with Sbar y
+        add_block_times(Gy, by_Gy, local, free, stretching, hn)
         # forces on eta, pulled back
         add_block_times(Zq, at(local, free), local, free, slaved, hn)
-        # force and moment on the frame
+        # force and moment on the frame, in axes of the body
         felt_x, felt_y = zdd[N], zdd[N + 1]
+        turning_z = zdd[N + 2]
+        spin_z = zd[N]
         mass = masses[0]
-        t5 = 2*Om0_z
-        t6 = Om0_z*Om0_z
-        local[N] = -Om0d_z*sum_c_y + felt_x*mass - sum_c_x*t6 - sum_cd_y*t5 + sum_cdd_x
-        local[N + 1] = Om0d_z*sum_c_x + felt_y*mass - sum_c_y*t6 + sum_cd_x*t5 + sum_cdd_y
-        local[N + 2] = (Om0_z*sum_Jd_zz + Om0d_z*sum_J_zz - felt_x*sum_c_y + felt_y*sum_c_x +
+        t7 = 2*spin_z
+        t8 = spin_z*spin_z
+        local[N] = felt_x*mass - sum_c_x*t8 - sum_c_y*turning_z - sum_cd_y*t7 + sum_cdd_x
+        local[N + 1] = felt_y*mass + sum_c_x*turning_z - sum_c_y*t8 + sum_cd_x*t7 + sum_cdd_y
+        local[N + 2] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_z*sum_Jd_zz + sum_J_zz*turning_z +
             sum_accelerated_z + sum_coupled_z)
         # forces conjugate to y
-        scatter(local, kept, s, free, n)
+        from_free(local, axes_back, order, unordered, s, bound, bound_free, free)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = 0.0
         W_z = 0.0
@@ -436,10 +463,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             F_y += -f_y
             W_z += f_x*(X_y + u_y) + f_y*(-X_x - u_x)
         # inertia and weight on the frame
+        turn_cos, turn_sin = turn[0], turn[1]
         Rt_x, Rt_y = local[N], local[N + 1]
         Rr_z = local[N + 2]
-        F_x += Rt_x
-        F_y += Rt_y
+        F_x += Rt_x*turn_cos - Rt_y*turn_sin
+        F_y += Rt_x*turn_sin + Rt_y*turn_cos
         W_z += Rr_z
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
@@ -474,38 +502,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[k] = fm
         if task == ENERGY:
             # momentum of deformation, Mbar zdot
-            block_times(Mz, zd, moved, N, N, hN)
+            packed_times(Mz, zd, moved, 1*hN)
             # twice its energy
-            rows_times(moved, zd, squares, N, 1, hN)
-            # elastic force, Sbar y
-            block_times(Sz, z, moved, free, free, hn)
-            # twice its energy
-            rows_times(moved, z, at(squares, 1), free, 1, hn)
+            rows_times(moved, zd, at(squares, 0), N, 1, hN)
+            # twice that of Sbar y
+            rows_times(at(Gy, resultants*hn), z, at(squares, 1), free, 1, hn)
             # damping force, Cbar ydot
-            block_times(Cz, zd, moved, free, damped, hn)
+            packed_times(Cz, zd, moved, 1*hN)
             # its power
             rows_times(moved, zd, at(squares, 2), free, 1, hn)
             # energies, momentum and its moment about the origin
+            turn_cos, turn_sin = turn[0], turn[1]
+            spin_z = zd[N]
             mass = masses[0]
             gamma_x, gamma_y = gamma[0], gamma[1]
             moving = squares[0]
             elastic = squares[1]
-            t7 = Om0_z*sum_c_x + sum_cd_y
-            t8 = Om0_z*sum_c_y
-            t9 = R0_cos*mass
-            t10 = R0_sin*mass
-            t11 = mass*v0_x + sum_cd_x - t8
-            t12 = mass*v0_y + t7
-            t13 = R0_cos*t11 - R0_sin*t12
-            t14 = R0_cos*t12 + R0_sin*t11
-            kinetic = ((0.5)*Om0_z*Om0_z*sum_J_zz + Om0_z*sum_spun_z + (0.5)*mass*(v0_x*v0_x +
-                v0_y*v0_y) + (0.5)*moving + t7*v0_y + v0_x*(sum_cd_x - t8))
+            t9 = spin_z*sum_c_x + sum_cd_y
+            t10 = turn_cos*v0_y - turn_sin*v0_x
+            t11 = spin_z*sum_c_y
+            t12 = turn_cos*v0_x + turn_sin*v0_y
+            t13 = R0_cos*mass
+            t14 = R0_sin*mass
+            t15 = mass*t12 + sum_cd_x - t11
+            t16 = mass*t10 + t9
+            t17 = t15*turn_cos - t16*turn_sin
+            t18 = t15*turn_sin + t16*turn_cos
+            t19 = R0_cos*t17 - R0_sin*t18
+            t20 = R0_cos*t18 + R0_sin*t17
+            kinetic = ((0.5)*mass*(t10*t10 + t12*t12) + (0.5)*moving +
+                (0.5)*spin_z*spin_z*sum_J_zz + spin_z*sum_spun_z + t10*t9 + t12*(sum_cd_x - t11))
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(sum_c_x + t10*x0_y + t9*x0_x) - gamma_y*(sum_c_y - t10*x0_x +
-                t9*x0_y))
-            P_x = t13
-            P_y = t14
-            H_z = Om0_z*sum_J_zz + sum_c_x*v0_y - sum_c_y*v0_x + sum_spun_z - t13*x0_y + t14*x0_x
+            potential = (-gamma_x*(sum_c_x*turn_cos - sum_c_y*turn_sin + t13*x0_x + t14*x0_y) -
+                gamma_y*(sum_c_x*turn_sin + sum_c_y*turn_cos + t13*x0_y - t14*x0_x))
+            P_x = t19
+            P_y = t20
+            H_z = spin_z*sum_J_zz + sum_c_x*t10 - sum_c_y*t12 + sum_spun_z - t19*x0_y + t20*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -519,38 +551,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             # Q_b zdd, all b
-            block_times(followers, zdd, Za, slaved*hn, free, slaved*hn)
+            packed_times(followers, zdd, Za, slaved*hn)
             # J2_kl zdot
-            block_times(quadratics, zd, more, 1*hN, N, 3*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            block_times(at(quadratics, 1*hN), zdd, at(more, 1*hN), 2*hN, N, 3*hN)
+            packed_times(of_place, zd, more, 2*hN)
+            # (K_k^T - K_k) zddot and K_k^T zddot
+            packed_times(of_rate, zdd, at(more, 1*hN), 2*hN)
             # factors of the local tangents
-            by_place[0] = -Om0_z*Om0_z*c_geo
-            by_place[1] = Om0d_z*c_geo
-            by_place[2] = 0
-            by_rate[0] = 0
+            turning_z = zdd[N + 2]
+            spin_z = zd[N]
+            by_place[0] = -c_geo*spin_z*spin_z
+            by_place[1] = c_geo*turning_z
+            by_rate[0] = spin_z
             by_rate[1] = 0
-            by_rate[2] = Om0_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
                 on_eta = local[free + b]
                 by_followers[b] = c_geo*on_eta
-            # local tangents: columns of the coordinates
-            for j in range(N):
-                # by z
-                block_times(at(quadratics, j*3*hN), by_place, at(Lz, j*deep), N, 3, hN)
-                # by zdot
-                block_times(at(quadratics, j*3*hN), by_rate, at(Lv, j*deep), N, 3, hN)
-                # by zddot
-                block_times(at(Mz, j*hN), ones, at(La, j*deep), N, 1, hN)
-            # elastic and slaved parts
+            # local tangents
+            clear(Lz, N*deep)
+            # local tangents
+            clear(Lv, N*deep)
+            # local tangents
+            clear(La, N*deep)
+            # by z: J2_kl and K_k^T
+            add_packed(of_place, by_place, Lz, deep)
+            # forces on eta
+            add_packed(followers, by_followers, Lz, deep)
+            # by zdot: K_k^T - K_k
+            add_packed(of_rate, by_rate, Lv, deep)
+            # structural damping
+            add_packed(Cz, ones, Lv, deep)
+            # by zddot
+            add_packed(Mz, ones, La, deep)
+            # stiffness and geometric stiffness
+            add_packed(stretched, by_Gy, Lz, deep)
+            # changes of the resultants
             for j in range(free):
-                # stiffness
-                add_block_times(at(Sz, j*hn), ones, at(Lz, j*deep), free, 1, hn)
-                # forces on eta
-                add_block_times(at(followers, j*slaved*hn), by_followers, at(Lz, j*deep),
-                                free, slaved, hn)
                 # factors of the column
                 for e in range(resultants):
                     lam_e = lam[e]
@@ -558,69 +595,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gy_j = Gy[e*hn + j]
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
-                # change of the resultants
+                # their forces
                 add_block_times(E, of_E, at(Lz, j*deep), free, resultants, hn)
                 # the same
                 add_block_times(Gy, of_Gy, at(Lz, j*deep), free, resultants, hn)
-                # geometric stiffness
-                add_block_times(at(Ghat, j*resultants*hn), by_Gy, at(Lz, j*deep), free,
-                                resultants, hn)
-            # structural damping
-            for j in range(damped):
-                # a column
-                add_block_times(at(Cz, j*hn), ones, at(Lv, j*deep), free, 1, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y = zdd[N], zdd[N + 1]
+                turning_z = zdd[N + 2]
+                spin_z = zd[N]
                 row_S1_x, row_S1_y = moment_columns[i], moment_columns[1*hN + i]
                 row_g_z = moment_columns[2*hN + i]
                 row_h_zz = moment_columns[3*hN + i]
                 row_j_zz = products[i]
                 row_u_z = products[1*hN + i]
-                row_v_z = products[2*hN + i]
-                row_w_z = products[3*hN + i]
+                row_w_z = products[2*hN + i]
+                row_v_z = products[3*hN + i]
                 row_jd_zz = more[i]
-                row_ua_z = more[1*hN + i]
-                row_wa_z = more[2*hN + i]
-                t15 = Om0_z*Om0_z
-                t16 = 2*Om0_z
-                t17 = row_h_zz + 2*row_j_zz
-                Lz[i*deep + N] = c_geo*(-Om0d_z*row_S1_y - row_S1_x*t15)
-                Lz[i*deep + N + 1] = c_geo*(Om0d_z*row_S1_x - row_S1_y*t15)
-                Lz[i*deep + N + 2] = (c_geo*(Om0d_z*t17 - felt_x*row_S1_y + felt_y*row_S1_x +
-                    row_jd_zz*t16 + row_ua_z - row_wa_z))
-                Lv[i*deep + N] = -row_S1_y*t16
-                Lv[i*deep + N + 1] = row_S1_x*t16
-                Lv[i*deep + N + 2] = Om0_z*t17 + 2*row_v_z - row_w_z
+                row_wa_z = more[1*hN + i]
+                row_ua_z = more[2*hN + i]
+                t21 = spin_z*spin_z
+                t22 = 2*spin_z
+                t23 = row_h_zz + 2*row_j_zz
+                Lz[i*deep + N] = c_geo*(-row_S1_x*t21 - row_S1_y*turning_z)
+                Lz[i*deep + N + 1] = c_geo*(row_S1_x*turning_z - row_S1_y*t21)
+                Lz[i*deep + N + 2] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_zz*t22 +
+                    row_ua_z - row_wa_z + t23*turning_z))
+                Lv[i*deep + N] = -row_S1_y*t22
+                Lv[i*deep + N + 1] = row_S1_x*t22
+                Lv[i*deep + N + 2] = 2*row_v_z - row_w_z + spin_z*t23
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_g_z + row_u_z
             # local tangents: motion of the frame
             for i in range(N):
+                spin_z = zd[N]
                 row_S1_x, row_S1_y = moment_columns[i], moment_columns[1*hN + i]
                 row_g_z = moment_columns[2*hN + i]
                 row_h_zz = moment_columns[3*hN + i]
                 row_j_zz = products[i]
                 row_u_z = products[1*hN + i]
-                row_w_z = products[3*hN + i]
-                Lv[N*deep + i] = -Om0_z*(row_h_zz + 2*row_j_zz) + row_w_z
+                row_w_z = products[2*hN + i]
+                Lv[N*deep + i] = row_w_z - spin_z*(row_h_zz + 2*row_j_zz)
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_g_z + row_u_z
             # local tangents: force on the frame by its motion
+            spin_z = zd[N]
             mass = masses[0]
-            t18 = 2*Om0_z
-            t19 = -sum_c_y
-            Lv[N*deep + N] = -sum_c_x*t18 - 2*sum_cd_y
-            Lv[N*deep + N + 1] = -sum_c_y*t18 + 2*sum_cd_x
+            t24 = 2*spin_z
+            t25 = -sum_c_y
+            Lv[N*deep + N] = -sum_c_x*t24 - 2*sum_cd_y
+            Lv[N*deep + N + 1] = -sum_c_y*t24 + 2*sum_cd_x
             Lv[N*deep + N + 2] = sum_Jd_zz
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0
-            La[N*deep + N + 2] = t19
+            La[N*deep + N + 2] = t25
             La[(N + 1)*deep + N] = 0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = sum_c_x
-            La[(N + 2)*deep + N] = t19
+            La[(N + 2)*deep + N] = t25
             La[(N + 2)*deep + N + 1] = sum_c_x
             La[(N + 2)*deep + N + 2] = sum_J_zz
             for column in range(n):
@@ -665,7 +699,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dqm = dqe[k]
                     dy[k] = dqm
                 # coordinates that determine the others, of dy
-                gather(dy, kept, dz, free, hN)
+                to_free(dy, axes, order, unordered, dz, bound, bound_free, free, hN)
                 # differential: eta_b
                 rows_times(Zq, dz, at(dz, free), free, slaved, hn)
                 # differential of the local forces by dz
@@ -732,14 +766,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
+                # differential: rate: rates of the elastic rotations, the frame held
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + j
+                    dA_z = dae[j3]
+                    detad[j3] = dA_z
                 # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
                 rhs_z = 0.0
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
                     alpha_r = alpha_rs[j]
-                    dA_z = dae[j3]
-                    rhs_z += alpha_r*dA_z
+                    depd_z = detad[j3]
+                    rhs_z += alpha_r*depd_z
                 dOm0d_z = rhs_z
+                # differential: rate: rates of the elastic rotations
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + j
+                    depd_z = detad[j3]
+                    detad[j3] = -dOm0d_z + depd_z
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 2*i
@@ -757,11 +801,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     detad[i3 + 1] = (-Om0_z*deu_x + Om0_z*dv0_x - Om0_z*dvs_x - Om0d_z*du_x -
                         dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x + dOm0d_z*(-X_x - u_x) - da0_y +
                         dacc_y)
-                # differential: rate: rates of the elastic rotations
-                for j in range(N_ROTATIONS):
-                    j3 = ROTATIONS + j
-                    dA_z = dae[j3]
-                    detad[j3] = dA_z - dOm0d_z
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -770,12 +809,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 gamma_x, gamma_y = gamma[0], gamma[1]
                 dgamma[0] = dth0_z*gamma_y
                 dgamma[1] = -dth0_z*gamma_x
-                # coordinates that determine the others, of dy
-                gather(dy, kept, dz, free, hN)
                 # coordinates that determine the others, of deta
-                gather(deta, kept, dzd, free, hN)
+                to_free(deta, axes, order, unordered, dzd, bound, bound_free, free, hN)
                 # coordinates that determine the others, of detad
-                gather(detad, kept, dzdd, free, hN)
+                to_free(detad, axes, order, unordered, dzdd, bound, bound_free, free, hN)
                 # differential: rates of eta
                 rows_times(Zq, dzd, at(dzd, free), free, slaved, hn)
                 # of Q_b y
@@ -788,10 +825,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 add_rows_times(Zd, dzd, at(dzdd, free), free, slaved, hn)
                 # of Q_b y
                 add_rows_times(Za, dz, at(dzdd, free), free, slaved, hn)
-                # differential: motion of the frame as a factor of local tangents
+                # differential: motion of the frame in axes of the body, a factor of local tangents
+                turn_cos, turn_sin = turn[0], turn[1]
                 dgamma_x, dgamma_y = dgamma[0], dgamma[1]
-                dzdd[N] = da0_x - dgamma_x
-                dzdd[N + 1] = da0_y - dgamma_y
+                t26 = da0_x - dgamma_x
+                t27 = da0_y - dgamma_y
+                dzdd[N] = t26*turn_cos + t27*turn_sin
+                dzdd[N + 1] = -t26*turn_sin + t27*turn_cos
                 dzdd[N + 2] = dOm0d_z
                 dzd[N] = dOm0_z
                 # differential of the local forces by dzd
@@ -801,7 +841,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # forces on eta, pulled back
                 add_block_times(Zq, at(dlocal, free), dlocal, free, slaved, hn)
                 # forces conjugate to y
-                scatter(dlocal, kept, ds, free, n)
+                from_free(dlocal, axes_back, order, unordered, ds, bound, bound_free, free)
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = 0.0
                 dW_z = 0.0
@@ -816,10 +856,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dF_y += -df_y
                     dW_z += df_x*(X_y + u_y) + df_y*(-X_x - u_x) - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
+                turn_cos, turn_sin = turn[0], turn[1]
                 dRt_x, dRt_y = dlocal[N], dlocal[N + 1]
                 dRr_z = dlocal[N + 2]
-                dF_x += dRt_x
-                dF_y += dRt_y
+                dF_x += dRt_x*turn_cos - dRt_y*turn_sin
+                dF_y += dRt_x*turn_sin + dRt_y*turn_cos
                 dW_z += dRr_z
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):

@@ -68,7 +68,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -220,14 +220,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
+        # rate: rates of the elastic rotations, the frame held
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + j
+            A_z = ae[j3]
+            etad[j3] = A_z
         # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
         rhs_z = 0.0
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
             alpha_r = alpha_rs[j]
-            A_z = ae[j3]
-            rhs_z += A_z*alpha_r
+            epd_z = etad[j3]
+            rhs_z += alpha_r*epd_z
         Om0d_z = rhs_z
+        # rate: rates of the elastic rotations
+        for j in range(N_ROTATIONS):
+            j3 = ROTATIONS + j
+            epd_z = etad[j3]
+            etad[j3] = -Om0d_z + epd_z
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 2*i
@@ -239,11 +249,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             etad[i3] = Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y + Om0d_z*(X_y + u_y) - a0_x + acc_x
             etad[i3 + 1] = (-Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x + Om0d_z*(-X_x - u_x) - a0_y +
                 acc_y)
-        # rate: rates of the elastic rotations
-        for j in range(N_ROTATIONS):
-            j3 = ROTATIONS + j
-            A_z = ae[j3]
-            etad[j3] = A_z - Om0d_z
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -505,14 +510,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
+                # differential: rate: rates of the elastic rotations, the frame held
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + j
+                    dA_z = dae[j3]
+                    detad[j3] = dA_z
                 # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
                 rhs_z = 0.0
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
                     alpha_r = alpha_rs[j]
-                    dA_z = dae[j3]
-                    rhs_z += alpha_r*dA_z
+                    depd_z = detad[j3]
+                    rhs_z += alpha_r*depd_z
                 dOm0d_z = rhs_z
+                # differential: rate: rates of the elastic rotations
+                for j in range(N_ROTATIONS):
+                    j3 = ROTATIONS + j
+                    depd_z = detad[j3]
+                    detad[j3] = -dOm0d_z + depd_z
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 2*i
@@ -530,11 +545,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     detad[i3 + 1] = (-Om0_z*deu_x + Om0_z*dv0_x - Om0_z*dvs_x - Om0d_z*du_x -
                         dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x + dOm0d_z*(-X_x - u_x) - da0_y +
                         dacc_y)
-                # differential: rate: rates of the elastic rotations
-                for j in range(N_ROTATIONS):
-                    j3 = ROTATIONS + j
-                    dA_z = dae[j3]
-                    detad[j3] = dA_z - dOm0d_z
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]

@@ -58,8 +58,8 @@ WORK_ROWS = 35
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (450, 120, 3, 2),
-              "column": (65, 168, 4, 2)}
+OPERATIONS = {"residual": (450, 106, 3, 2),
+              "column": (65, 142, 4, 2)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("columns", (1,), "columns of C: n of a damped body, else none"),
     Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
@@ -68,7 +68,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "dbf3ae38b5af"     # hash of sebody/kernels, which this file was made for
+ROOM = "667ab45bd622"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -237,29 +237,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             vm = ve[k]
             eta[k] = vm
+        # rate: rates of the elastic displacements, the frame held
+        for i in range(N_POSITIONS):
+            i3 = 2*i
+            vs_x, vs_y = yd[i3], yd[i3 + 1]
+            acc_x, acc_y = acc[i3], acc[i3 + 1]
+            eu_x, eu_y = eta[i3], eta[i3 + 1]
+            etad[i3] = Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y - a0_x + acc_x
+            etad[i3 + 1] = -Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x - a0_y + acc_y
         # rate: sum w_j X_j x (rate of r_j) = 0
         rhs_z = 0.0
         for i in range(N_POSITIONS):
             i3 = 2*i
             fit = fits[i]
             X_x, X_y = X[i3], X[i3 + 1]
-            vs_x, vs_y = yd[i3], yd[i3 + 1]
-            acc_x, acc_y = acc[i3], acc[i3 + 1]
-            eu_x, eu_y = eta[i3], eta[i3 + 1]
-            rhs_z += (-fit*(X_x*(-Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x - a0_y + acc_y) -
-                X_y*(Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y - a0_x + acc_x)))
+            eud_x, eud_y = etad[i3], etad[i3 + 1]
+            rhs_z += -X_x*eud_y*fit + X_y*eud_x*fit
         Om0d_z = Bzz*rhs_z
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 2*i
             X_x, X_y = X[i3], X[i3 + 1]
             u_x, u_y = y[i3], y[i3 + 1]
-            vs_x, vs_y = yd[i3], yd[i3 + 1]
-            acc_x, acc_y = acc[i3], acc[i3 + 1]
-            eu_x, eu_y = eta[i3], eta[i3 + 1]
-            etad[i3] = Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y + Om0d_z*(X_y + u_y) - a0_x + acc_x
-            etad[i3 + 1] = (-Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x + Om0d_z*(-X_x - u_x) - a0_y +
-                acc_y)
+            eud_x, eud_y = etad[i3], etad[i3 + 1]
+            etad[i3] = Om0d_z*(X_y + u_y) + eud_x
+            etad[i3 + 1] = Om0d_z*(-X_x - u_x) + eud_y
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
@@ -548,40 +550,37 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dvm = dve[k]
                     deta[k] = dvm
+                # differential: rate: rates of the elastic displacements, the frame held
+                for i in range(N_POSITIONS):
+                    i3 = 2*i
+                    vs_x, vs_y = yd[i3], yd[i3 + 1]
+                    eu_x, eu_y = eta[i3], eta[i3 + 1]
+                    dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]
+                    dacc_x, dacc_y = dacc[i3], dacc[i3 + 1]
+                    deu_x, deu_y = deta[i3], deta[i3 + 1]
+                    detad[i3] = (Om0_z*deu_y - Om0_z*dv0_y + Om0_z*dvs_y + dOm0_z*eu_y -
+                        dOm0_z*v0_y + dOm0_z*vs_y - da0_x + dacc_x)
+                    detad[i3 + 1] = (-Om0_z*deu_x + Om0_z*dv0_x - Om0_z*dvs_x - dOm0_z*eu_x +
+                        dOm0_z*v0_x - dOm0_z*vs_x - da0_y + dacc_y)
                 # differential: rate: sum w_j X_j x (rate of r_j) = 0
                 rhs_z = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 2*i
                     fit = fits[i]
                     X_x, X_y = X[i3], X[i3 + 1]
-                    vs_x, vs_y = yd[i3], yd[i3 + 1]
-                    eu_x, eu_y = eta[i3], eta[i3 + 1]
                     du_x, du_y = dy[i3], dy[i3 + 1]
-                    dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]
-                    dacc_x, dacc_y = dacc[i3], dacc[i3 + 1]
-                    deu_x, deu_y = deta[i3], deta[i3 + 1]
-                    rhs_z += (-Om0d_z*fit*(-X_x*du_x - X_y*du_y) - fit*(X_x*(-Om0_z*deu_x +
-                        Om0_z*dv0_x - Om0_z*dvs_x - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x -
-                        da0_y + dacc_y) - X_y*(Om0_z*deu_y - Om0_z*dv0_y + Om0_z*dvs_y +
-                        dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - da0_x + dacc_x)))
+                    deud_x, deud_y = detad[i3], detad[i3 + 1]
+                    rhs_z += -Om0d_z*fit*(-X_x*du_x - X_y*du_y) - X_x*deud_y*fit + X_y*deud_x*fit
                 dOm0d_z = Bzz*rhs_z
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 2*i
                     X_x, X_y = X[i3], X[i3 + 1]
                     u_x, u_y = y[i3], y[i3 + 1]
-                    vs_x, vs_y = yd[i3], yd[i3 + 1]
-                    eu_x, eu_y = eta[i3], eta[i3 + 1]
                     du_x, du_y = dy[i3], dy[i3 + 1]
-                    dvs_x, dvs_y = dyd[i3], dyd[i3 + 1]
-                    dacc_x, dacc_y = dacc[i3], dacc[i3 + 1]
-                    deu_x, deu_y = deta[i3], deta[i3 + 1]
-                    detad[i3] = (Om0_z*deu_y - Om0_z*dv0_y + Om0_z*dvs_y + Om0d_z*du_y +
-                        dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y + dOm0d_z*(X_y + u_y) - da0_x +
-                        dacc_x)
-                    detad[i3 + 1] = (-Om0_z*deu_x + Om0_z*dv0_x - Om0_z*dvs_x - Om0d_z*du_x -
-                        dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x + dOm0d_z*(-X_x - u_x) - da0_y +
-                        dacc_y)
+                    deud_x, deud_y = detad[i3], detad[i3 + 1]
+                    detad[i3] = Om0d_z*du_y + dOm0d_z*(X_y + u_y) + deud_x
+                    detad[i3 + 1] = -Om0d_z*du_x + dOm0d_z*(-X_x - u_x) + deud_y
                 # differential: rate: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j

@@ -17,7 +17,7 @@ def _part(part: Part, indent: int) -> list[str]:
     given = [repr(part.name)]
     given += [repr(part.shape)] if part.shape or part.meaning else []
     given += [repr(part.meaning)] if part.meaning else []
-    given += ["columns=True"] if part.columns else []
+    given += [f"{flag}=True" for flag in ("columns", "packed") if getattr(part, flag)]
     line = f"Part({', '.join(given)}),".replace("'", '"')
     if indent + len(line) <= WIDTH:
         return [line]
@@ -42,8 +42,8 @@ def chain(parts: tuple[Part, ...], planar: bool) -> list[str]:
 
 def _counts(known: Counts) -> list[str]:
     """Counts of option C: slaved coordinates, resultants, and what follows from them."""
-    motions = known["lines"] - known["pairs"]
+    motions = known["motions"]
     return ["slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])",
-            f"free = n - {motions}",
-            "N = free + slaved", f"quadratic, slaving = {known['blocks']}*N, slaved*free",
+            f"free, bound, bound_free = n - {motions}, MODES, MODES - {motions}",
+            "N, stretching = free + slaved, resultants + 1",
             f"hn, hN, deep = padded(free), padded(N), padded(N + {motions})"]

@@ -71,6 +71,7 @@ def _names(kernel: Superelement, uses: Resources) -> set[str]:
     names |= set(templates.DAMPING_NAMES) if kernel.layout.damped else set()
     names |= {"AT_PORT", "POWERS"} if kernel.options[1].traits.rates else set()
     names |= set(templates.GENERAL_NAMES) if kernel.layout.nodes is None else set()
+    names |= {"packed_room"} if any(part.packed for part in kernel.declared) else set()
     return names | ({"Part"} if kernel.declared else set())
 
 

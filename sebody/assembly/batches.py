@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from itertools import accumulate
 from types import ModuleType
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +25,10 @@ from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
+from sebody.reduction import ReducedBody
+
+# rows of constants of every body that is still in use: the next run of its model needs them again
+_rows: WeakKeyDictionary[ReducedBody, dict[tuple, NDArray]] = WeakKeyDictionary()
 
 
 class Batch(NamedTuple):
@@ -87,10 +92,14 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
     for frame, body in enumerate(model.bodies.values()):
         kernel = load(body.kernel)
         check_superelement(body, kernel)
-        key = id(body.body), body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r)
+        how = body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r)
+        key = id(body.body), *how
         if key not in known:
-            row = constants_row(body.name, kernel, counts_of(body), superelement_constants(body))
-            known[key] = constants.add(row), _full(body, kernel)
+            rows = _rows.setdefault(body.body, {})
+            if how not in rows:
+                rows[how] = constants_row(body.name, kernel, counts_of(body),
+                                          superelement_constants(body))
+            known[key] = constants.add(rows[how]), _full(body, kernel)
         at_constants, full = known[key]
         unknowns = [c for t in (*body.positions, *body.rotations)
                     for c in coordinates(numbering, t)]
@@ -178,9 +187,10 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
         return values
     if not option.field:
         return values | carried_constants(reduced)
-    conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts_of(body), values)
+    counts = counts_of(body)
+    conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts, values)
     return values | floating_constants(body.invariants.about(origin), reduced.stiffness,
-                                       conditions, reduced.damping)
+                                       conditions, counts, reduced.damping)
 
 
 def frame_constants(body: Superelement) -> dict[str, ArrayLike]:

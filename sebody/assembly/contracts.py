@@ -18,6 +18,7 @@ from sebody.kernels.layout import (
     ContractError,
     Counts,
     Row,
+    bound_counts,
     carried_counts,
     first_mode,
     floating_counts,
@@ -131,8 +132,10 @@ def counts_of(body: Superelement) -> Counts:
                                  reduced.planar, _width(body))
     option, damped = INERTIA_OPTIONS[body.inertia], reduced.damping is not None
     if option.field:
-        return counts | floating_counts(reduced.planar, _width(body), body.invariants.slaved,
-                                        body.invariants.resultants, damped)
+        return counts | bound_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
+                                     reduced.planar) | floating_counts(
+            reduced.planar, _width(body), body.invariants.slaved, body.invariants.resultants,
+            damped)
     return counts | carried_counts(reduced.planar, _width(body), damped) if option.rates else counts
 
 

@@ -1,18 +1,42 @@
 """Constants of option C in the order of its kernels, from the body's integrals."""
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import qr
 
+from sebody.assembly.body_axes import (
+    body_axes,
+    grouped,
+    of_coordinates,
+    stiff_without_rounding,
+    without_rounding,
+)
 from sebody.kernels.layout import Counts, FrameTraits, first_rotation
+from sebody.kernels.packed import pack
 from sebody.reduction.invariants import InertiaInvariants
 
 
-def floating_constants(invariants: InertiaInvariants, stiffness: NDArray,
-                       conditions: NDArray, damping: NDArray | None = None
-                       ) -> dict[str, ArrayLike]:
+class Free(NamedTuple):
+    """Coordinates z that determine all local coordinates of a body."""
+
+    turn: NDArray       # axes of the body in the frame, columns: boundary coordinates are in them
+    axes: NDArray       # (bound_free, bound) boundary coordinates that determine the others
+    order: NDArray      # where each z is among these and the modes
+
+    def matrix(self, n: int) -> NDArray:
+        """``z = A y`` of all n local coordinates, (free, n)."""
+        bound_free, bound = self.axes.shape
+        whole = np.zeros((n - bound + bound_free, n))
+        whole[:bound_free, :bound] = self.axes
+        whole[bound_free:, bound:] = np.eye(n - bound)
+        return whole[self.order]
+
+
+def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, conditions: NDArray,
+                       counts: Counts, damping: NDArray | None = None) -> dict[str, ArrayLike]:
     """Values by name.
 
     Parameters
@@ -23,28 +47,45 @@ def floating_constants(invariants: InertiaInvariants, stiffness: NDArray,
         Reduced stiffness.
     conditions : (k, n)
         What the local coordinates obey in the frame, see `frame_conditions`.
+    counts : dict
+        Those of the body's kernel.
     damping : (n, n), optional
         Reduced damping.
     """
-    kept, basis = determining(conditions)
-    return packed(_restricted(invariants, basis), basis.T @ stiffness @ basis, kept,
-                  None if damping is None else basis.T @ damping @ basis)
+    turn = body_axes(invariants, counts)
+    coordinates, basis = free_coordinates(conditions, counts, turn)
+    by = of_coordinates(turn.T, counts)
+    of_z = by.T @ basis
+    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis))
+    S, C = (None if A is None else stiff_without_rounding(of_z.T @ A @ of_z)
+            for A in (stiffness, damping))
+    order = grouped(inertia.Mbar, S)
+    coordinates = coordinates._replace(order=order)
+    inertia = _restricted(inertia, np.eye(len(order))[:, order])
+    return packed(inertia, S[np.ix_(order, order)], coordinates,
+                  None if C is None else C[np.ix_(order, order)])
 
 
-def packed(invariants: InertiaInvariants, stiffness: NDArray, kept: ArrayLike,
+def packed(invariants: InertiaInvariants, stiffness: NDArray, coordinates: Free,
            damping: NDArray | None = None) -> dict[str, ArrayLike]:
-    """Values by name, of integrals and a stiffness of the `kept` coordinates alone."""
-    i, free = invariants, len(stiffness)
-    pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)) if len(i.J0) == 3 else ((0, 0),)
+    """Values by name, of integrals and a stiffness of the coordinates z, in axes of the body."""
+    i, free, N = invariants, len(stiffness), len(invariants.Mbar)
+    planar = len(i.J0) == 1
+    pairs = ((0, 0),) if planar else ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     moments = np.vstack([i.S1, i.g, *(i.h[r, c] + i.h[c, r] for r, c in pairs)])
     across = i.K.transpose(0, 2, 1)
-    blocks = [*(i.J2[pair] for pair in pairs), *across, *(across - i.K)]
-    Cz = np.zeros((free, 0)) if damping is None else damping
-    return {"sizes": [i.slaved, i.resultants, Cz.shape[1]], "Cz": Cz, "kept": kept, "c0": i.c0,
-            "J0": [i.J0[pair] for pair in pairs], "moment_columns": moments.T,
-            "moment_rows": moments, "quadratics": _by_columns(blocks, len(i.Mbar)), "Mz": i.Mbar,
-            "Sz": stiffness, "followers": _by_columns(i.Q, free), "lam": i.lam, "E": i.E,
-            "Ghat": _by_columns(i.Ghat, free)}
+
+    def rows(matrices, size):
+        return pack(matrices, (len(matrices), size, size))
+    return {"sizes": [i.slaved, i.resultants, int(damping is not None)],
+            "turn": coordinates.turn[:, 0] if planar else coordinates.turn.ravel(),
+            "axes": coordinates.axes, "axes_back": coordinates.axes.T, "order": coordinates.order,
+            "c0": i.c0, "J0": [i.J0[pair] for pair in pairs], "moment_columns": moments.T,
+            "moment_rows": moments, "of_place": rows([*(i.J2[pair] for pair in pairs), *across], N),
+            "of_rate": rows([*(across - i.K), *across], N), "Mz": rows([i.Mbar], N),
+            "Cz": rows([] if damping is None else [damping], free),
+            "followers": rows(i.Q, free), "lam": i.lam, "E": i.E,
+            "stretched": rows([*i.Ghat, stiffness], free)}
 
 
 def frame_conditions(frame: FrameTraits, counts: Counts, values: Mapping[str, ArrayLike]
@@ -54,7 +95,7 @@ def frame_conditions(frame: FrameTraits, counts: Counts, values: Mapping[str, Ar
     The weighted displacements add up to zero; so do the weighted rotation vectors, or the moments
     of the displacements in a rotation of best fit.
     """
-    D, turns = counts["D"], counts["lines"] - counts["D"] - counts["pairs"]
+    D, turns = counts["D"], counts["turns"]
     first = first_rotation(counts["N_POSITIONS"], D == 2)
     found = np.zeros((D + turns, counts["n"]))
     found[:D, :first] = np.kron(values["alphas"], np.eye(D))
@@ -67,6 +108,25 @@ def frame_conditions(frame: FrameTraits, counts: Counts, values: Mapping[str, Ar
                   np.array([[0, -X[2], X[1]], [X[2], 0, -X[0]], [-X[1], X[0], 0]]))
         found[D:, D * j:D * j + D] = w * moment
     return found
+
+
+def free_coordinates(conditions: NDArray, counts: Counts, turn: NDArray) -> tuple[Free, NDArray]:
+    """Coordinates that determine the others, and the matrix that makes all of them, (n, free).
+
+    All are in axes of the body, columns of `turn`.
+    """
+    count = len(conditions)
+    by = of_coordinates(turn.T, counts)
+    axes = np.eye(count)
+    axes[:len(turn), :len(turn)] = turn.T
+    if len(turn) == 3:
+        axes[3:, 3:] = turn.T
+    conditions = axes @ conditions @ by.T
+    conditions[np.abs(conditions) < 1e-14 * np.abs(conditions).max(axis=1, keepdims=True)] = 0.0
+    kept, basis = determining(conditions)
+    bound_free = np.count_nonzero(kept < counts["bound"])
+    rows = kept[:bound_free]
+    return Free(turn, by[rows, :counts["bound"]], np.arange(len(kept))), basis
 
 
 def determining(conditions: NDArray) -> tuple[NDArray, NDArray]:
@@ -90,9 +150,3 @@ def _restricted(i: InertiaInvariants, basis: NDArray) -> InertiaInvariants:
         i.mass, i.c0, i.S1 @ whole, i.J0, i.g @ whole, i.h @ whole, whole.T @ i.K @ whole,
         whole.T @ i.J2 @ whole, whole.T @ i.Mbar @ whole, basis.T @ i.Q @ basis, i.lam,
         basis.T @ i.E, basis.T @ i.Ghat @ basis)
-
-
-def _by_columns(matrices: ArrayLike, n: int) -> NDArray:
-    """First columns of all matrices, then their second ones, and so on."""
-    stack = np.asarray(matrices).reshape(-1, n, n)
-    return stack.transpose(1, 2, 0).reshape(n, -1)

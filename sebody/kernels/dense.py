@@ -88,11 +88,11 @@ def _dot(builder, A, x, out, rows, columns, height, add):
             for total in totals:
                 builder.store(ir.Constant(vector, [0.0] * LANES), total)
             with cgutils.for_range_slice(builder, word(0), last, word(LANES)) as (row, _):
-                factor = _load(builder, x, row, vector)
+                factor = load_vector(builder, x, row, vector)
                 for k, total in enumerate(totals):
                     place = builder.mul(builder.add(column, word(k)), height)
-                    product = builder.fmul(_load(builder, A, builder.add(place, row), vector),
-                                           factor, flags=("contract",))
+                    entries = load_vector(builder, A, builder.add(place, row), vector)
+                    product = builder.fmul(entries, factor, flags=("contract",))
                     builder.store(builder.fadd(builder.load(total), product,
                                                flags=("contract",)), total)
             for k, total in enumerate(totals):
@@ -122,18 +122,18 @@ def _multiply_wide(builder, A, x, out, rows, columns, height, add):
         with cgutils.for_range_slice(builder, done, end, word(count * LANES)) as (row, _):
             places = [builder.add(row, word(k * LANES)) for k in range(count)]
             for place, total in zip(places, totals, strict=True):
-                builder.store(_load(builder, out, place, vector) if add else
+                builder.store(load_vector(builder, out, place, vector) if add else
                               ir.Constant(vector, [0.0] * LANES), total)
             with cgutils.for_range_slice(builder, word(0), columns, word(1)) as (column, _):
-                factor = _broadcast(builder, builder.load(builder.gep(x, [column])), vector)
+                factor = broadcast(builder, builder.load(builder.gep(x, [column])), vector)
                 first = builder.mul(column, height)
                 for place, total in zip(places, totals, strict=True):
-                    entries = _load(builder, A, builder.add(first, place), vector)
+                    entries = load_vector(builder, A, builder.add(first, place), vector)
                     product = builder.fmul(entries, factor, flags=("contract",))
                     builder.store(builder.fadd(builder.load(total), product,
                                                flags=("contract",)), total)
             for place, total in zip(places, totals, strict=True):
-                _store(builder, builder.load(total), out, place)
+                store_vector(builder, builder.load(total), out, place)
         done = end
 
 
@@ -157,10 +157,10 @@ def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
     paired = builder.sub(columns, builder.srem(columns, word(_UNROLLED)))
 
     def add_column(totals, column):
-        factor = _broadcast(builder, builder.load(builder.gep(x, [column])), vector)
+        factor = broadcast(builder, builder.load(builder.gep(x, [column])), vector)
         start = builder.gep(A, [builder.mul(column, height)])
         for total, place in zip(totals, places, strict=True):
-            product = builder.fmul(_load(builder, start, place, vector), factor,
+            product = builder.fmul(load_vector(builder, start, place, vector), factor,
                                    flags=("contract",))
             builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
 
@@ -169,7 +169,7 @@ def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
             builder.store(ir.Constant(vector, [0.0] * LANES), total)
     if add:
         for total, place in zip(sums[0], places, strict=True):
-            builder.store(_load(builder, out, place, vector), total)
+            builder.store(load_vector(builder, out, place, vector), total)
     with cgutils.for_range_slice(builder, word(0), paired, word(_UNROLLED)) as (column, _):
         for k, totals in enumerate(sums):
             add_column(totals, builder.add(column, word(k)))
@@ -179,7 +179,7 @@ def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
         result = builder.load(parts[0])
         for total in parts[1:]:
             result = builder.fadd(result, builder.load(total))
-        _store(builder, result, out, place)
+        store_vector(builder, result, out, place)
 
 
 def _whole_vectors(builder, rows):
@@ -198,15 +198,15 @@ def subtract_product(typingctx, C, A, B):
 def _subtract_product(context, builder, sig, args):
     C, A, B = args
     word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
-    columns = [_load(builder, A, word(LANES * k), vector) for k in range(LANES)]
+    columns = [load_vector(builder, A, word(LANES * k), vector) for k in range(LANES)]
     for j in range(LANES):
-        total = _load(builder, C, word(LANES * j), vector)
+        total = load_vector(builder, C, word(LANES * j), vector)
         for k, column in enumerate(columns):
             number = builder.load(builder.gep(B, [word(LANES * j + k)]))
-            product = builder.fmul(column, _broadcast(builder, number, vector),
+            product = builder.fmul(column, broadcast(builder, number, vector),
                                    flags=("contract",))
             total = builder.fsub(total, product, flags=("contract",))
-        _store(builder, total, C, word(LANES * j))
+        store_vector(builder, total, C, word(LANES * j))
     return context.get_dummy_value()
 
 
@@ -220,29 +220,32 @@ def subtract_block_times(typingctx, y, A, x):
 def _subtract_block_times(context, builder, sig, args):
     y, A, x = args
     word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
-    total = _load(builder, y, word(0), vector)
+    total = load_vector(builder, y, word(0), vector)
     for k in range(LANES):
         number = builder.load(builder.gep(x, [word(k)]))
-        product = builder.fmul(_load(builder, A, word(LANES * k), vector),
-                               _broadcast(builder, number, vector), flags=("contract",))
+        product = builder.fmul(load_vector(builder, A, word(LANES * k), vector),
+                               broadcast(builder, number, vector), flags=("contract",))
         total = builder.fsub(total, product, flags=("contract",))
-    _store(builder, total, y, word(0))
+    store_vector(builder, total, y, word(0))
     return context.get_dummy_value()
 
 
-def _load(builder, pointer, first, vector):
+def load_vector(builder, pointer, first, vector):
+    """Instructions that read `LANES` numbers of a pointer from the place `first` on."""
     place = builder.bitcast(builder.gep(pointer, [first]), vector.as_pointer())
     value = builder.load(place)
     value.align = 8
     return value
 
 
-def _store(builder, value, pointer, first):
+def store_vector(builder, value, pointer, first):
+    """Instructions that write a vector to a pointer from the place `first` on."""
     place = builder.bitcast(builder.gep(pointer, [first]), value.type.as_pointer())
     builder.store(value, place).align = 8
 
 
-def _broadcast(builder, number, vector):
+def broadcast(builder, number, vector):
+    """Instructions that set every number of a vector to one value."""
     undefined = ir.Constant(vector, ir.Undefined)
     lane = builder.insert_element(undefined, number, ir.IntType(32)(0))
     lanes = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
@@ -269,21 +272,10 @@ _add_columns_times = _product(_multiply, True)
 
 
 @compiled
-def gather(row, kept, to, count, end):
-    """Some numbers of a row, by their places, and zeros to an end."""
+def clear(row, count):
+    """Zeros in place of numbers."""
     for k in range(count):
-        to[k] = row[int(kept[k])]
-    for k in range(count, end):
-        to[k] = 0.0
-
-
-@compiled
-def scatter(row, kept, to, count, size):
-    """The opposite: numbers to their places, zeros to the others."""
-    for k in range(size):
-        to[k] = 0.0
-    for k in range(count):
-        to[int(kept[k])] = row[k]
+        row[k] = 0.0
 
 
 @compiled

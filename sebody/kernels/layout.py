@@ -37,26 +37,36 @@ Size = str | int        # a count, or a number
 class Part(NamedTuple):
     """A named stretch of a row: a number, a vector or a matrix.
 
-    `columns` stores a matrix column after column, each filled with zeros to whole vectors.
+    `columns` stores a matrix column after column, each filled with zeros to whole vectors;
+    `packed` leaves room for some packed matrices, whose number, rows and columns are the shape.
     """
 
     name: str
     shape: tuple[Size, ...] = ()
     meaning: str = ""
     columns: bool = False
+    packed: bool = False
 
     def size(self, counts: Counts) -> int:
         """How many numbers the part takes."""
         sizes = [counts[s] if isinstance(s, str) else s for s in self.shape]
         if self.columns:
             return sizes[1] * whole_vectors(sizes[0])
-        return prod(sizes)
+        return packed_size(*sizes) if self.packed else prod(sizes)
+
+    def own_shape(self, counts: Counts) -> tuple[int, ...]:
+        """The shape of its value: packed matrices are a row of numbers."""
+        if self.packed:
+            return (self.size(counts),)
+        return tuple([counts[s] if isinstance(s, str) else s for s in self.shape])
 
     def expression(self, known: Counts) -> str:
         """The size as text for a kernel: known counts as numbers, the others by name."""
         sizes = [str(known.get(s, s)) for s in self.shape]
         if self.columns:
             return f"{sizes[1]}*padded({sizes[0]})"
+        if self.packed:
+            return f"packed_room({', '.join(sizes)})"
         return "*".join(sizes) or "1"
 
 
@@ -114,7 +124,7 @@ class Row(NamedTuple):
         """The values of a row by name, in their shapes."""
         values = {}
         for part in self.parts:
-            shape = tuple(counts[s] if isinstance(s, str) else s for s in part.shape)
+            shape = part.own_shape(counts)
             piece = row[self.slices(counts)[part.name]]
             if part.columns:
                 values[part.name] = piece.reshape(shape[1], whole_vectors(shape[0]))[:, :shape[0]].T
@@ -129,7 +139,7 @@ class Row(NamedTuple):
                                 f"given are {', '.join(values) or 'none'}")
 
     def _check_shape(self, part: Part, own: tuple[int, ...], counts: Counts) -> None:
-        shape = tuple([counts[s] if isinstance(s, str) else s for s in part.shape])
+        shape = part.own_shape(counts)
         if own != shape:
             raise ContractError(f"{self.title}: {part.name} has shape {own}, the kernel reads "
                                 f"{shape}")
@@ -274,11 +284,20 @@ def floating_counts(planar: bool, unknowns: int, slaved: int, resultants: int,
                     damped: bool = False) -> dict[str, int]:
     """The further counts of option C."""
     axes = axes_of(planar)
-    free = unknowns - (axes["lines"] - axes["pairs"])
-    N = free + slaved
-    return axes | {"free": free, "N": N, "resultants": resultants,
-                   "quadratic": axes["blocks"] * N, "slaving": slaved * free,
-                   "stressing": resultants * free, "damped": free * damped}
+    free = unknowns - axes["motions"]
+    return axes | {"free": free, "N": free + slaved, "slaved": slaved, "resultants": resultants,
+                   "stretching": resultants + 1, "damped": int(damped)}
+
+
+def bound_counts(positions: int, rotations: int, planar: bool) -> dict[str, int]:
+    """Coordinates of the boundary, and those that determine the others in the frame."""
+    bound = first_mode(positions, rotations, planar)
+    return {"bound": bound, "bound_free": bound - axes_of(planar)["motions"]}
+
+
+def packed_size(count: int, rows: int, columns: int) -> int:
+    """Length of the row of some packed matrices, see `sebody.kernels.packed`."""
+    return count * whole_vectors(rows) * (columns + 2) + 4
 
 
 def carried_counts(planar: bool, unknowns: int, damped: bool = False) -> dict[str, int]:
@@ -295,12 +314,14 @@ def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: in
 def axes_of(planar: bool) -> dict[str, int]:
     """The counts that follow from the space: of a position, a rotation, a symmetric matrix.
 
-    ``motions`` are those of a rigid body, ``lines`` a first moment, a rotation and an inertia for
-    each coordinate, ``blocks`` an inertia and two rotations.
+    ``lines`` are a first moment, a rotation and an inertia for each coordinate, ``motions`` those
+    of the frame, ``entries`` of its rotation: cosine and sine in a plane. ``placed`` and ``rated``
+    are matrices that multiply coordinates, and their rates.
     """
     D, turns, pairs = (2, 1, 1) if planar else (3, 3, 6)
-    return {"D": D, "pairs": pairs, "motions": D + turns, "lines": D + turns + pairs,
-            "blocks": pairs + 2 * turns}
+    return {"D": D, "turns": turns, "pairs": pairs, "lines": D + turns + pairs,
+            "motions": D + turns, "entries": 2 if planar else 9, "placed": pairs + turns,
+            "rated": 2 * turns}
 
 
 def first_rotation(positions: int, planar: bool) -> int:

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, generalized_alpha, simulate
 from sebody.analysis import equilibrium
 from sebody.fem import StiffnessSection, hexahedral_block, loads, planar_beam, straight_beam
-from sebody.reduction import RigidFace, craig_bampton
+from sebody.reduction import RigidFace, craig_bampton, reduce
 
 TURN = Rotation.from_rotvec([0.7, -0.4, 0.9]).as_matrix()
 SHIFT = np.array([3.0, -2.0, 5.0])
@@ -213,3 +213,18 @@ def test_loads_that_do_not_fit(given, message):
     bricks, _, ends = plate()
     with pytest.raises(InputError, match=message):
         craig_bampton(bricks, [(int(ends[0][0]), "translation")], 0, loads=given)
+
+
+@pytest.mark.parametrize("method", ["guyan", "macneal", "rubin"])
+def test_loads_of_every_reduction(method):
+    """Resultants are those of the load; residual modes belong to clamped interiors."""
+    bricks, top, ends = plate()
+    faces = [(RigidFace(bricks.coordinates[n].mean(axis=0), tuple(n)), "full") for n in ends]
+    given = {"pressure": loads.pressure(bricks, top)}
+    modes = 0 if method == "guyan" else 3
+    found = reduce(bricks, faces, modes, method, loads=given)
+    assert (found.rigid_modes[:, :3].T @ found.loads["pressure"]
+            == pytest.approx([0.0, 0.0, -4.0], abs=1e-9))
+    if method != "guyan":
+        with pytest.raises(InputError, match=f"residual_modes is for .*; '{method}' has residual"):
+            reduce(bricks, faces, modes, method, loads=given, residual_modes=True)

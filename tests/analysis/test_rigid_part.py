@@ -1,5 +1,6 @@
 """Option D: bodies of which nothing but the reduced stiffness and mass is known."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model, Simulation, generalized_alpha, simulate
+from sebody import InputError, LimitWarning, Model, Simulation, generalized_alpha, simulate
 from sebody.analysis import equilibrium, modes, resume, save_state, vibrations
 from sebody.fem import StiffnessSection, hexahedral_block, planar_beam, straight_beam
 from sebody.reduction import craig_bampton
@@ -211,3 +212,20 @@ def test_frames_that_depend_on_the_last_step_are_refused(frame):
     with pytest.raises(InputError, match=f"inertia 'd' needs the exact rates of a frame .* which "
                                          f"'{frame}' does not: use one of converged_mean, node"):
         hinged_beam.build(inertia="d", frame=frame)
+
+
+def test_a_body_of_reduced_matrices_says_once_how_fast_it_may_spin():
+    """From a quarter of 3.516 on, its first frequency with a node held."""
+    spin = TURN @ (0.0, 0.0, 1.2)
+    found = equilibrium(blade(turn=TURN, inertia=None), 2, spin=spin)
+    assert found.model.bodies["arm"].inertia == "d"
+    said = (r"body 'arm' spins at 1\.2 rad/s, more than a quarter of 3\.52, .*: its stiffness does "
+            "not grow with the spin, .*; divide it in two, or reduce it from an FE model with its "
+            "mass")
+    with pytest.warns(LimitWarning, match=said) as caught:
+        modes(found, spin)
+    assert len(caught) == 1
+    slower = 0.7 * spin
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        modes(equilibrium(blade(turn=TURN, inertia=None), 2, spin=slower), slower)

@@ -61,8 +61,8 @@ def reference_case(frame, state):
     first = s["R"][0].ravel()
     case = states.Case(kernel, 18, states.index_row(18, 2, 2), np.zeros(0), q, s["R"].ravel(), v, a,
                        first, first, slaved=2, resultants=6)
-    return states.with_constants(case, values | floating_constants(body, stiffness,
-                                                                   conditions)), s
+    return states.with_constants(case, values | floating_constants(
+        body, stiffness, conditions, case.counts)), s
 
 
 @pytest.mark.parametrize("frame", ["mean", "node"])

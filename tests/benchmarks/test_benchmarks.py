@@ -113,3 +113,11 @@ def test_recovered_stresses_are_compared_with_full_solutions():
     near, middle = row["moving"]
     assert near < 0.6 * row["moving, without"][0] and middle < 0.05
     assert min(bench.seconds(bench.large_field((3, 2, 2), 20, 14)).values()) > 0.0
+
+
+def test_inertia_options_are_compared(capsys):
+    imported("bench_inertia").main(["--json"], 2, ())
+    (name, row), = json.loads(capsys.readouterr().out).items()
+    assert (name, row["coordinates"], row["resultants"]) == ("planar 8", 8, 1)
+    assert all(min(row[what].values()) > 0.0 for what in ("residual", "matrix"))
+    assert list(row["residual"]) == ["b", "plain c", "c"]

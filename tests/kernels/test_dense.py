@@ -9,9 +9,7 @@ from sebody.kernels.dense import (
     add_rows_times,
     arrow_times,
     block_times,
-    gather,
     rows_times,
-    scatter,
 )
 from sebody.kernels.layout import LANES, padded_columns, whole_vectors
 from sebody.kernels.pipeline import compiled
@@ -83,12 +81,3 @@ def test_blocks_of_taller_matrices(rows, columns):
             initial=0.0) < 1e-13
         assert np.array_equal(out[tail:], before[tail:])
         assert np.array_equal(sums[columns:], before[columns:])
-
-
-def test_numbers_by_their_places():
-    row, kept, out = np.arange(1.0, 8.0), np.array([5.0, 0.0, 2.0]), np.full(6, 9.0)
-    gather(row, kept, out, 3, 5)
-    assert out.tolist() == [6.0, 1.0, 3.0, 0.0, 0.0, 9.0]
-    back = np.full(8, 9.0)
-    scatter(out, kept, back, 3, 7)
-    assert back.tolist() == [1.0, 0.0, 3.0, 0.0, 0.0, 6.0, 0.0, 9.0]

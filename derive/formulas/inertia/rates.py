@@ -9,9 +9,18 @@ from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.frames.frame import Frame, origin_stage
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.linearize import Linearizer
+from sebody.derive.symbolic.rotations import skew
 from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import Call, Solve, Stage, Step, Values, cross
-from sebody.derive.symbolic.variation import along
+from sebody.derive.symbolic.steps import (
+    Call,
+    Solve,
+    Stage,
+    Step,
+    Values,
+    cross,
+    solve_matrix,
+)
+from sebody.derive.symbolic.variation import Rules, along, check_same, differential
 from sebody.kernels.layout import axes_of
 
 MOVING, STRAINED = range(2)      # places in the array `squares`; then the power lost
@@ -20,17 +29,45 @@ MOVING, STRAINED = range(2)      # places in the array `squares`; then the power
 def frame_motion(q: Quantities, frame: Frame) -> tuple[Step, ...]:
     """Rates of the local coordinates and of the frame, twice; gravity."""
     Om0 = q.Om0.symbols
-    second = {"eu": "eud", "ep": "epd", "em": "emd", "Om0": "Om0d"}
+    second = {"eu": "eud", "ep": "epd", "em": "emd"}
     in_time = (along(q.vs.symbols, q.acc.symbols + cross(q.vs.symbols, Om0))
                | along(q.v0.symbols, q.a0.symbols + cross(q.v0.symbols, Om0))
                | along(q.u.symbols, q.eu.symbols) | along(q.psi.symbols, q.ep.symbols)
                | along(q.Om.symbols, q.A.symbols) | along(q.vm.symbols, q.am.symbols))
+    in_time |= along(Om0, q.Om0d.symbols)
     clock = Linearizer(q.space, in_time, lambda quantity: getattr(q, second[quantity.name]))
-    solve = [clock.step(step) for step in frame.velocity if isinstance(step, Solve)]
     of_y = [step for step in rates(q) if step.sets]
     modes = Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),))
+    found = [step for step in frame.velocity if isinstance(step, Solve)]
     return (*frame.velocity, modes, origin_stage(q, q.v0, q.vs), origin_stage(q, q.a0, q.acc),
-            *of_y, *solve, *map(clock.step, of_y), gravity.in_frame_axes(q))
+            *of_y, *_accelerations(q, found[0], in_time, [clock.step(step) for step in of_y]),
+            gravity.in_frame_axes(q))
+
+
+def _accelerations(q: Quantities, rate: Solve, in_time: Rules, stages: list[Stage]
+                   ) -> tuple[Step, ...]:
+    """Second rates of the local coordinates, and the frame's, which closes their sum.
+
+    The frame is where a sum over the local coordinates is zero: so is that of their rates and of
+    their second rates, ``sum L(k_j + M_j Omega_0') = 0``. What does not depend on Omega_0' is
+    computed once, for the sum and for the second rates.
+    """
+    name, weighted = (("epd", -rate.weight * sp.eye(3)) if rate.over == "rotation" else
+                      ("eud", q.fit.symbols[0] * skew(q.X.symbols)))
+    target, Om0d = getattr(q, name), q.Om0d
+    closing = next(stage for stage in stages if stage.sets[0][0] is target)
+    value, turning = closing.sets[0][1], sp.Matrix(Om0d.kept)
+    by_turning = value.jacobian(turning) * turning
+    equation = solve_matrix(rate) * Om0d.symbols
+    check_same("rate of the frame's equation", weighted * value,
+               differential(rate.summand, in_time))
+    check_same("the part of the frame in it", weighted * by_turning, equation)
+    known = closing._replace(title=closing.title + ", the frame held",
+                             sets=((target, value.subs({s: 0 for s in Om0d.kept})),))
+    solve = Solve("rate: " + rate.title, Om0d, rate.over, equation + weighted * target.symbols,
+                  sp.zeros(3, 1), rate.inverse)
+    whole = closing._replace(sets=((target, target.symbols + by_turning),))
+    return known, solve, whole, *(stage for stage in stages if stage is not closing)
 
 
 def second_derivatives(q: Quantities) -> tuple[Values, ...]:

@@ -10,16 +10,16 @@ from typing import NamedTuple
 import sympy as sp
 
 from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Call, Stage, Step
+from sebody.derive.symbolic.steps import Call, Repeat, Stage, Step
 from sebody.derive.symbolic.variation import check_same
 
 
 class Resultants(NamedTuple):
     """What the resultants contribute to a kernel."""
 
-    forces: tuple[Step, ...]        # added to Sbar y
+    forces: tuple[Step, ...]        # with Sbar y
     energy: sp.Expr                 # beyond y^T Sbar y / 2
-    stiffness: tuple[Step, ...]     # added to column j of the tangent of the forces
+    stiffness: tuple[Step, ...]     # added to the tangent of the forces
 
 
 def resultants(space: Space) -> Resultants:
@@ -34,29 +34,33 @@ def resultants(space: Space) -> Resultants:
     E = space.quantity("E_j", "scalar", "resultant", "E", "e*hn + j").symbols[0]
     Gy = space.quantity("Gy_j", "scalar", "resultant", "Gy", "e*hn + j").symbols[0]
     by_E, by_Gy, of_E, of_Gy = map(of_one, ("by_E", "by_Gy", "of_E", "of_Gy"))
+    one = space.quantity("by_stiffness", "scalar", "element", "by_Gy", "resultants")
     size = ("free", "resultants", "hn")
     return Resultants(
         forces=(
-            Call("Ghat_e y, all e", "block_times",
-                 ("Ghat", "z", "Gy", "resultants*hn", "free", "resultants*hn"),
-                 ("Ghat", "z", "Gy")),
+            Call("Ghat_e y of all e, and Sbar y", "packed_times",
+                 ("stretched", "z", "Gy", "stretching*hn"), ("stretched", "z", "Gy")),
             Call("E_e . y", "rows_times", ("E", "z", "along", *size), ("E", "z", "along")),
             Call("y . Ghat_e y", "rows_times", ("Gy", "z", "twice", *size), ("Gy", "z", "twice")),
             Stage("stress resultants: factors of their gradients", "resultant",
                   sets=((by_E, sp.Matrix([half])), (by_Gy, sp.Matrix([r + half / lam]))),
                   adds=((extra, sp.Matrix([half * (r + half / (2 * lam))])),)),
-            Call("their forces", "add_block_times", ("E", "by_E", "local", *size),
+            Stage("and of Sbar y", "element", sets=((one, sp.ones(1, 1)),)),
+            Call("forces of the resultants", "add_block_times", ("E", "by_E", "local", *size),
                  ("E", "by_E", "local")),
-            Call("and those of the geometric stiffness", "add_block_times",
-                 ("Gy", "by_Gy", "local", *size), ("Gy", "by_Gy", "local"))),
+            Call("and those of the geometric stiffness, with Sbar y", "add_block_times",
+                 ("Gy", "by_Gy", "local", "free", "stretching", "hn"), ("Gy", "by_Gy", "local"))),
         energy=extra.symbols[0],
-        stiffness=(Stage("factors of the column", "resultant",
-                         sets=((of_E, sp.Matrix([Gy])), (of_Gy, sp.Matrix([E + Gy / lam])))),
-                   *(Call(title, "add_block_times", (matrix, factor, "at(Lz, j*deep)", *size),
-                          (matrix.split("(")[-1].split(",")[0], factor, "Lz"))
-                     for title, matrix, factor in (
-                         ("change of the resultants", "E", "of_E"), ("the same", "Gy", "of_Gy"),
-                         ("geometric stiffness", "at(Ghat, j*resultants*hn)", "by_Gy")))))
+        stiffness=(
+            Call("stiffness and geometric stiffness", "add_packed",
+                 ("stretched", "by_Gy", "Lz", "deep"), ("stretched", "by_Gy", "Lz")),
+            Repeat("changes of the resultants", "j", "free", (
+                Stage("factors of the column", "resultant",
+                      sets=((of_E, sp.Matrix([Gy])), (of_Gy, sp.Matrix([E + Gy / lam])))),
+                *(Call(title, "add_block_times", (matrix, factor, "at(Lz, j*deep)", *size),
+                       (matrix, factor, "Lz"))
+                  for title, matrix, factor in (("their forces", "E", "of_E"),
+                                                ("the same", "Gy", "of_Gy")))))))
 
 
 def _prove() -> None:

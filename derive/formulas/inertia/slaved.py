@@ -14,9 +14,8 @@ _BY_Y = ("free", "slaved", "hn")    # products of the vectors Q_b y with vectors
 
 def stacked(vector: str, out: str) -> Call:
     """``Q_b x`` of all b, one after the other."""
-    return Call(f"Q_b {vector}, all b", "block_times",
-                ("followers", vector, out, "slaved*hn", "free", "slaved*hn"),
-                ("followers", vector, out))
+    return Call(f"Q_b {vector}, all b", "packed_times",
+                ("followers", vector, out, "slaved*hn"), ("followers", vector, out))
 
 
 def slaving() -> tuple[Call, ...]:

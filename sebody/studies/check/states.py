@@ -24,6 +24,7 @@ from sebody.kernels.layout import (
     RESIDUAL,
     TANGENT,
     Row,
+    bound_counts,
     carried_counts,
     first_mode,
     first_rotation,
@@ -110,8 +111,9 @@ class Case(NamedTuple):
         counts = superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n)
         option = INERTIA_OPTIONS.get(getattr(self.module, "INERTIA", ""))
         if option is not None and option.field:
-            return counts | floating_counts(self.planar, self.n, self.slaved, self.resultants,
-                                            self.damped)
+            return counts | bound_counts(
+                self.n_positions, self.n_rotations, self.planar) | floating_counts(
+                self.planar, self.n, self.slaved, self.resultants, self.damped)
         return counts | carried_counts(self.planar, self.n, self.damped)
 
     @property

@@ -1,0 +1,103 @@
+"""Forces and energies of option C, step by step.
+
+Contractions of the constants with coordinates are products with stacked matrices, whose zeros are
+left out.
+"""
+
+from sebody.derive.formulas.inertia import floating_field as field
+from sebody.derive.formulas.inertia import slaved
+from sebody.derive.formulas.inertia.floating_quantities import FloatingQuantities
+from sebody.derive.formulas.inertia.rates import MOVING, STRAINED, energies_stage, form_value
+from sebody.derive.symbolic.steps import Call, Stage, Step
+
+ROWS = ("y", "z"), ("eta", "zd"), ("etad", "zdd")     # local coordinates and those of the products
+
+
+def forces(f: FloatingQuantities) -> tuple[Step, ...]:
+    """Local forces: integrals, then factors of the columns, then their products."""
+    weighted = [f.quantities.j, f.quantities.u, f.quantities.w]     # the first products
+    return (
+        *(free(*rows) for rows in ROWS), *slaved.slaving(), *_contractions(f),
+        f.integrals, f.moving,
+        Stage("factors of the force on a coordinate", "element",
+              sets=(*f.factors("by_moment_columns", f.groups["moment_columns"]),
+                    *f.factors("by_products", weighted))),
+        Call("force on the coordinates: first moments, couplings, inertia at rest",
+             "columns_times", ("moment_columns", "by_moment_columns", "local", "N", str(f.lines)),
+             ("moment_columns", "by_moment_columns", "local")),
+        Call("of the deformed body", "add_block_times",
+             ("products", "by_products", "local", "N", str(f.pairs + 2 * f.turns), "hN"),
+             ("products", "by_products", "local")),
+        added("inertia force of deformation, Mbar zddot", "Mz", "zdd"),
+        added("damping force, Cbar ydot", "Cz", "zd"),
+        *f.stress.forces, slaved.pulled_back("local"),
+        Stage("force and moment on the frame, in axes of the body", "element",
+              sets=((f.on_origin, field.on_origin(f.motion, f.sums)),
+                    (f.on_frame, field.on_frame(f.motion, f.sums)))),
+        conjugate("local", "s"))
+
+
+def _contractions(f: FloatingQuantities) -> tuple[Call, ...]:
+    """Products of the constants with z and its rates, and of those with them again."""
+    pairs, turns, lines = f.pairs, f.turns, f.lines
+    sums = [Call(f"first moments and couplings of {row}", "columns_times",
+                 ("moment_rows", row, out, str(lines), "N"), ("moment_rows", row, out))
+            for row, out in (("z", "line0"), ("zd", "line1"), ("zdd", "line2"))]
+
+    def dots(row, out, first, columns):
+        vectors = f"at(products, {first}*hN)" if first else "products"
+        return Call(f"quadratic parts, by {row}", "rows_times",
+                    (vectors, row, out, "N", str(columns), "hN"), ("products", row, out))
+    return (
+        *sums,
+        stacked("J2_kl z and K_k^T z", "of_place", "z", "products", 0, pairs + turns),
+        stacked("(K_k^T - K_k) zdot and K_k^T zdot", "of_rate", "zd", "products", pairs + turns,
+                2 * turns),
+        dots("z", "product0", 0, pairs), dots("zd", "product1", 0, pairs + turns),
+        dots("zd", "product3", pairs + 2 * turns, turns), dots("zdd", "product2", pairs, turns))
+
+
+def energy(f: FloatingQuantities) -> tuple[Step, ...]:
+    """Energies; momentum and its moment about the global origin."""
+    q = f.q
+    squared, elastic = (form_value(q, name, k).symbols[0]
+                        for name, k in (("moving", MOVING), ("elastic", STRAINED)))
+    pushed, turned = (f.turn * p for p in field.momenta(f.motion, f.sums))
+    kinetic = field.kinetic_energy(f.motion, f.sums, squared)
+
+    def square(title, vector, row, k, size, height):
+        return Call(title, "rows_times", (vector, row, f"at(squares, {k})", size, "1", height),
+                    (vector.split("(")[-1].split(",")[0], row, "squares"))
+    return (
+        stacked("momentum of deformation, Mbar zdot", "Mz", "zd", "moved", 0, 1),
+        square("twice its energy", "moved", "zd", MOVING, "N", "hN"),
+        square("twice that of Sbar y", "at(Gy, resultants*hn)", "z", STRAINED, "free", "hn"),
+        stacked("damping force, Cbar ydot", "Cz", "zd", "moved", 0, 1),
+        square("its power", "moved", "zd", 2, "free", "hn"),
+        energies_stage(q, kinetic, elastic / 2 + f.stress.energy, pushed, turned,
+                       f.turn * f.sums.c))
+
+
+def stacked(title: str, matrices: str, row: str, out: str, first: int, count: int) -> Call:
+    """Products of packed matrices with a row, one after the other from a place on."""
+    to = f"at({out}, {first}*hN)" if first else out
+    return Call(title, "packed_times", (matrices, row, to, f"{count}*hN"), (matrices, row, out))
+
+
+def added(title: str, matrix: str, row: str) -> Call:
+    """A product that is added to the local forces."""
+    return Call(title, "add_packed_times", (matrix, row, "local"), (matrix, row, "local"), 1)
+
+
+def free(row: str, to: str) -> Call:
+    """The coordinates that determine the others, in axes of the body."""
+    return Call(f"coordinates that determine the others, of {row}", "to_free",
+                (row, "axes", "order", "unordered", to, "bound", "bound_free", "free", "hN"),
+                (row, "axes", "order", "unordered", to))
+
+
+def conjugate(row: str, to: str) -> Call:
+    """Forces conjugate to all local coordinates from those on the ones that determine them."""
+    return Call("forces conjugate to y", "from_free",
+                (row, "axes_back", "order", "unordered", to, "bound", "bound_free", "free"),
+                (row, "axes_back", "order", "unordered", to))

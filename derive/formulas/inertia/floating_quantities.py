@@ -1,0 +1,101 @@
+"""Quantities of option C: where its sums, rows and factors are kept in a kernel.
+
+The frame's motion is seen in axes of the body, constant in the frame, in which its constants have
+the most zeros.
+"""
+
+import sympy as sp
+
+from sebody.derive.formulas.inertia import floating_field as field
+from sebody.derive.formulas.inertia.resultants import resultants
+from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.symbolic.spaces import Quantity
+from sebody.derive.symbolic.steps import Stage
+from sebody.kernels.layout import axes_of
+
+PLACE, RATE, SECOND = "Lz", "Lv", "La"      # local tangents, and the rows they multiply
+GEOMETRY = sp.Symbol("c_geo")
+
+
+class FloatingQuantities:
+    """Quantities of the sums and rows, and the formulas in them."""
+
+    def __init__(self, q: Quantities):
+        self.q, self.stress = q, resultants(q.space)
+        counts = axes_of(q.space.planar)
+        self.D, self.turns, self.pairs = counts["D"], counts["turns"], counts["pairs"]
+        self.lines, self.force_rows = counts["lines"], f"N + {counts['motions']}"
+        self.turn = self.of_element("turn", "rotation", "turn").symbols
+        self.felt = self.of_element("felt", "vector", "zdd", "N + {k}")
+        self.turning = self.of_element("turning", "axial", "zdd", "N + {k}", self.D)
+        self.spin = self.of_element("spin", "axial", "zd", "N + {k}")
+        self.on_origin = self.of_element("Rt", "vector", "local", "N + {k}")
+        self.on_frame = self.of_element("Rr", "axial", "local", "N + {k}", self.D)
+        self.sums, self.integrals = self.make_sums()
+        self.quantities, self.groups = self.make_row()
+        self.row = field.Row(*(quantity.symbols for quantity in self.quantities))
+        back = self.turn.T
+        self.motion = field.Motion(q.mass.symbols[0], back * q.v0.symbols, self.felt.symbols,
+                                   self.spin.symbols, self.turning.symbols)
+        self.force = field.on_coordinate(self.motion, self.row)
+        self.moving = Stage(
+            "motion of the frame in axes of the body, a factor of local tangents", "element",
+            sets=((self.felt, back * (q.a0.symbols - q.gamma.symbols)),
+                  (self.turning, back * q.Om0d.symbols), (self.spin, back * q.Om0.symbols)))
+
+    def of_element(self, name: str, kind: str, array: str = "", place: str = "{k}",
+                   first: int = 0) -> Quantity:
+        """A quantity of the element."""
+        return self.q.space.quantity(name, kind, "element", array, place, first)
+
+    def make_sums(self) -> tuple[field.Sums, Stage]:
+        """The integrals, from their parts at rest, linear and quadratic."""
+        after_turns, D = self.D + self.turns, self.D
+
+        def part(name, kind, array, first=0):
+            return self.of_element(name, kind, array, first=first).symbols
+        at_rest = part("c0", "vector", "c0"), part("J0", "inertia", "J0")
+        linear = [(part(f"S1z{t}", "vector", array), part(f"gz{t}", "axial", array, D),
+                   part(f"hz{t}", "inertia", array, after_turns))
+                  for t, array in enumerate(("line0", "line1", "line2"))]
+        jz = part("jz", "inertia", "product0")
+        jzd = part("jzd", "inertia", "product1")
+        uzd = part("uzd", "axial", "product1", self.pairs)
+        vzd = part("vzd", "axial", "product3")
+        uzdd = part("uzdd", "axial", "product2")
+        values = field.Sums(
+            at_rest[0] + linear[0][0], linear[1][0], linear[2][0], at_rest[1] + linear[0][2] + jz,
+            linear[1][2] + 2 * jzd, linear[1][1] + uzd, linear[2][1] + uzdd, vzd)
+        kinds = {"J": "inertia", "Jd": "inertia", "spun": "axial", "accelerated": "axial",
+                 "coupled": "axial"}
+        kept = [self.of_element(f"sum_{name}", kinds.get(name, "vector"))
+                for name in field.Sums._fields]
+        return field.Sums(*(k.symbols for k in kept)), Stage(
+            "integrals over the body", "element", sets=tuple(zip(kept, values, strict=True)))
+
+    def make_row(self) -> tuple[field.Row, dict[str, list[Quantity]]]:
+        """Quantities that belong to a coordinate: columns of constants and of products."""
+        kinds = {"S1": "vector", "h": "inertia", "j": "inertia", "jd": "inertia"}
+        arrays = {"moment_columns": "S1 g h", "products": "j u w v", "more": "jd wa ua"}
+        size = {"vector": self.D, "axial": self.turns, "inertia": self.pairs}
+        found, groups = {}, {}
+        for array, names in arrays.items():
+            first, groups[array] = 0, []
+            for name in names.split():
+                kind = kinds.get(name, "axial")
+                found[name] = self.q.space.quantity(f"row_{name}", kind, "shape", array,
+                                                    "{k}*hN + i", first)
+                groups[array].append(found[name])
+                first += size[kind]
+        return field.Row(**found), groups
+
+    def factors(self, out: str, rows: list[Quantity], scale: sp.Expr = sp.S.One) -> tuple:
+        """Coefficients of some rows in the force on a coordinate, one after the other."""
+        pairs, first = [], 0
+        for quantity in rows:
+            factor = self.of_element(f"{out}_{quantity.name}", quantity.kind, out, first=first)
+            derivative = quantity.symbols.applyfunc(
+                lambda s: self.force.diff(s) if isinstance(s, sp.Symbol) else sp.S.Zero)
+            pairs.append((factor, scale * derivative))
+            first += len(quantity.kept)
+        return tuple(pairs)

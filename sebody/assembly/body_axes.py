@@ -1,0 +1,111 @@
+"""Axes of a body in which its constants have the most zeros, and the order that gathers them.
+
+In axes along a beam and across it, bending in one plane, bending in the other one, torsion and
+stretching are apart: nine tenths of its constants are zeros.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from sebody.kernels.layout import Counts
+from sebody.reduction.invariants import InertiaInvariants
+
+ROUNDING = 1e-11        # of what an inertia can be: what solutions with FE matrices leave of zeros
+STIFF = 1e-13           # the same of a stiffness: strains are small differences of large forces
+COUPLED = 1e-6          # less than this part of what they can be leaves coordinates apart
+
+
+def body_axes(invariants: InertiaInvariants, counts: Counts) -> NDArray:
+    """The axes, columns, (D, D): of some candidates those with the most zeros in the mass."""
+    def filled(turn):
+        by = of_coordinates(turn.T, counts)
+        n = len(by)
+        return np.count_nonzero(_cleared(by @ invariants.Mbar[:n, :n] @ by.T, COUPLED))
+    return min(_candidates(invariants), key=filled)
+
+
+def _candidates(i: InertiaInvariants) -> Iterator[NDArray]:
+    """Those of the frame, principal axes, and axes along the motion of the modes."""
+    D = len(i.c0)
+    yield np.eye(D)
+    centre = i.c0 / i.mass
+    if D == 2:
+        for x, y in _directions(i.S1.T):
+            yield np.array([[x, -y], [y, x]])
+        return
+    principal = np.linalg.eigh(i.J0 - i.mass * (centre @ centre * np.eye(3)
+                                                - np.outer(centre, centre)))[1]
+    yield principal * np.linalg.det(principal)
+    for along in principal.T:
+        for other in _directions(np.vstack([i.S1.T, i.g.T])):
+            across = other - along * (along @ other)
+            size = np.linalg.norm(across)
+            if size > 0.5:
+                yield np.column_stack([along, across / size, np.cross(along, across / size)])
+
+
+def _directions(vectors: NDArray) -> Iterator[NDArray]:
+    """Different directions among some vectors."""
+    sizes = np.linalg.norm(vectors, axis=1)
+    found: list[NDArray] = []
+    for vector, size in zip(vectors, sizes, strict=True):
+        if size > 1e-6 * sizes.max() and all(
+                abs(vector @ other) < (1 - 1e-6) * size for other in found):
+            found.append(vector / size)
+            yield found[-1]
+
+
+def of_coordinates(rotation: NDArray, counts: Counts) -> NDArray:
+    """The rotation of all local coordinates, (n, n), from that of a vector."""
+    n, D = counts["n"], len(rotation)
+    whole = np.eye(n)
+    vectors = counts["bound"] if D == 3 else 2 * counts["N_POSITIONS"]
+    for first in range(0, vectors, D):
+        whole[first:first + D, first:first + D] = rotation
+    return whole
+
+
+def grouped(mass: NDArray, stiffness: NDArray) -> NDArray:
+    """An order of the coordinates in which those coupled by mass or stiffness are together.
+
+    Those coupled with slaved coordinates, which follow, are last.
+    """
+    free, N = len(stiffness), len(mass)
+    coupled = _cleared(mass, COUPLED) != 0.0
+    coupled[:free, :free] |= _cleared(stiffness, COUPLED) != 0.0
+    labels = connected_components(coupled, directed=False)[1]
+    slaved = np.isin(labels[:free], labels[free:N])
+    sizes = np.bincount(labels)[labels[:free]]
+    return np.lexsort((np.arange(free), labels[:free], -sizes, slaved))
+
+
+def without_rounding(values: InertiaInvariants) -> InertiaInvariants:
+    """Constants with zeros where rotations and sums leave but rounding."""
+    i, n = values, len(values.E)
+    of_z = np.sqrt(np.abs(np.diag(i.Mbar)))
+    stretch = np.sqrt(np.abs(i.Ghat).max(axis=(0, 2), initial=0.0))
+    return replace(
+        i, K=_small(i.K, of_z, ROUNDING), J2=_small(i.J2, of_z, ROUNDING),
+        Mbar=_small(i.Mbar, of_z, ROUNDING), Q=_small(i.Q, of_z[:n], ROUNDING),
+        Ghat=_small(i.Ghat, stretch, STIFF))
+
+
+def stiff_without_rounding(stiffness: NDArray) -> NDArray:
+    """The same of a stiffness or damping."""
+    return _cleared(stiffness, STIFF)
+
+
+def _cleared(matrix: NDArray, limit: float) -> NDArray:
+    """A positive semidefinite matrix without entries that are rounding."""
+    return _small(matrix, np.sqrt(np.abs(np.diag(matrix))), limit)
+
+
+def _small(matrices: NDArray, scale: NDArray, limit: float) -> NDArray:
+    """Matrices without entries that are rounding of the largest one, in units of some scales."""
+    limits = np.outer(scale, scale)
+    largest = np.abs(matrices / np.where(limits > 0, limits, 1.0)).max(initial=0.0)
+    return np.where(np.abs(matrices) > limit * largest * limits, matrices, 0.0)

@@ -1,0 +1,107 @@
+"""Packed matrices: their zeros, products with them, sums of them."""
+
+import numpy as np
+import pytest
+
+from sebody.kernels.abi import pointer_to
+from sebody.kernels.layout import packed_size, whole_vectors
+from sebody.kernels.packed import pack, unpack
+from sebody.kernels.packed_products import (
+    add_packed,
+    add_packed_times,
+    from_free,
+    packed_room,
+    packed_times,
+    to_free,
+)
+from sebody.kernels.pipeline import compiled
+
+
+@compiled
+def times(row, x, out, count, add):
+    if add:
+        add_packed_times(pointer_to(row), pointer_to(x), pointer_to(out))
+    else:
+        packed_times(pointer_to(row), pointer_to(x), pointer_to(out), count)
+
+
+@compiled
+def summed(row, factors, out, height):
+    add_packed(pointer_to(row), pointer_to(factors), pointer_to(out), height)
+
+
+@compiled
+def there_and_back(y, axes, back, order, z, forces, bound_free, end):
+    moved = np.empty(32)
+    to_free(pointer_to(y), pointer_to(axes), pointer_to(order), pointer_to(moved), pointer_to(z),
+            y.size - order.size + bound_free, bound_free, order.size, end)
+    from_free(pointer_to(z), pointer_to(back), pointer_to(order), pointer_to(moved),
+              pointer_to(forces), y.size - order.size + bound_free, bound_free, order.size)
+
+
+def stack(shape, filled, seed=0):
+    """Matrices with a part of their entries, in blocks and alone."""
+    random = np.random.default_rng(seed)
+    count, rows, columns = shape
+    matrices = random.normal(size=shape) * (random.uniform(size=shape) < filled)
+    matrices[:, :rows // 2, columns // 2:] = 0.0
+    return matrices
+
+
+SHAPES = [(0, 5, 5), (1, 1, 1), (3, 4, 9), (2, 13, 13), (9, 18, 18), (5, 61, 61)]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("filled", [0.0, 0.1, 1.0])
+def test_packed_and_unpacked(shape, filled):
+    matrices = stack(shape, filled)
+    row = pack(matrices, shape)
+    assert np.array_equal(unpack(row, shape), matrices)
+    assert len(row) == packed_size(*shape) == packed_room.py_func(*shape)
+
+
+def test_matrices_whose_strips_would_not_fit_are_packed_with_zeros():
+    """A run for every other entry would need more whole numbers than there are zeros."""
+    A = np.zeros((4, 4, 41))
+    A[np.arange(4), 0, :] = np.arange(41) % 5 == 0
+    assert np.array_equal(unpack(pack(A, A.shape), A.shape), A)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("filled", [0.1, 1.0])
+def test_products_and_sums(shape, filled):
+    count, rows, columns = shape
+    matrices, height = stack(shape, filled, 1), whole_vectors(rows)
+    row, random = pack(matrices, shape), np.random.default_rng(2)
+    x, factors = random.normal(size=columns), random.normal(size=count)
+    size = count * height
+    before = np.r_[random.normal(size=size), 7.0]
+    for add in (False, True):
+        out = before.copy()
+        times(row, x, out, size, add)
+        found = (out[:size] - add * before[:size]).reshape(count, height)
+        # sums of up to 61 products of numbers of size one
+        assert np.abs(found[:, :rows] - matrices @ x).max(initial=0.0) < 1e-13
+        assert out[size] == 7.0
+    deep = height + 8
+    sums = np.zeros((columns, deep))
+    summed(row, factors, sums.ravel(), deep)
+    expected = np.einsum("k,kij->ij", factors, matrices)
+    assert np.abs(sums[:, :rows].T - expected).max() < 1e-13
+    assert not sums[:, height:].any()
+
+
+def test_coordinates_that_determine_the_others():
+    """Three of five boundary coordinates and two modes; the way back is the transpose."""
+    random = np.random.default_rng(3)
+    A, order, y = random.normal(size=(3, 5)), np.array([3, 0, 4, 2, 1]), random.normal(size=7)
+    columns, back = np.zeros((5, 4)), np.zeros((3, 8))
+    columns[:, :3], back[:, :5] = A.T, A
+    z, forces = np.full(9, 5.0), np.zeros(12)
+    there_and_back(y, columns.ravel(), back.ravel(), order.astype(float), z, forces, 3, 8)
+    whole = np.zeros((5, 7))
+    whole[:3, :5], whole[3:, 5:] = A, np.eye(2)
+    whole = whole[order]
+    assert np.allclose(z[:5], whole @ y, rtol=1e-14)
+    assert z[5:].tolist() == [0.0, 0.0, 0.0, 5.0]
+    assert np.allclose(forces[:7], whole.T @ z[:5], rtol=1e-14)
