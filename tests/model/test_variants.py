@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import Model, harmonic, simulate
-from sebody.fem import Section, straight_beam
-from sebody.model.variants import VARIANTS, copied, keep_modes, rigid, with_options
+from sebody import InputError, Model, harmonic, simulate
+from sebody.fem import Section, planar_beam, straight_beam
+from sebody.model.variants import VARIANTS, copied, divide, keep_modes, rigid, with_options
 from sebody.reduction import craig_bampton
 
 H, STEPS = 0.01, 20
@@ -185,3 +185,155 @@ def test_rigid_bodies(original, before, names):
     found = motion(model)
     assert_same(found, motion(linkage(rigid=tuple(sorted(names)))))
     assert np.abs(found["tip.position"] - before["tip.position"]).max() > 1e-4
+
+
+@pytest.mark.parametrize("names", [("first",), ("second",)])
+def test_bodies_in_a_plane_are_rigid(names):
+    def chain(hand_made: tuple[str, ...]) -> Model:
+        model, points = Model(planar=True), np.array([[2.0, 1.0], [30.0, 25.0], [60.0, 11.0]])
+        nodes = [model.node("base", points[0])]
+        for k, name in enumerate(("first", "second")):
+            a, b = points[k:k + 2]
+            start, length = nodes[-1], np.linalg.norm(b - a)
+            if name in hand_made:
+                mass = SECTION.density * SECTION.area * length
+                J = mass * length**2 / 12 + SECTION.density * SECTION.inertia_z * length
+                nodes.append(model.attach(f"end of {name}", b, start))
+                model.rigid_body(name, start, mass, J, (a + b) / 2)
+            else:
+                fe_model = planar_beam(a, b, SECTION, 4)
+                load = np.zeros(fe_model.stiffness.shape[0])
+                load[fe_model.rows[2]] = 30.0, 80.0, 500.0
+                nodes.append(model.node(f"end of {name}", b))
+                model.superelement(name, craig_bampton(fe_model, [(0, "full"), (4, "full")], 2,
+                                                       loads={"push": load}), [start, nodes[-1]])
+            if name in hand_made and name == names[0]:
+                force, arm = np.array([30.0, 80.0]), (b - a) / 2
+                model.force(start, force, follower=True)
+                model.torque(start, 500.0 + arm[0] * force[1] - arm[1] * force[0])
+            elif name == names[0]:
+                model.body_load(name, "push")
+                model.mode_force(name, 1, 1e3, name="shaker")
+            if name == "first":
+                nodes.append(model.node("after the hinge", b, at=nodes[-1]))
+        model.revolute("base")
+        model.gravity((0.0, -9.81))
+        return model
+    found, sentence = rigid(chain(()), names[0])
+    assert sentence.endswith(f"with end of {names[0]} on rigid links; shaker left out")
+    quantities = ("base", "end of first", "after the hinge", "end of second")
+    assert_same(motion(found, quantities), motion(chain(names), quantities))
+
+
+def test_a_welded_flying_body_is_rigid_and_keeps_its_motion():
+    """Two beams without a hinge, one welded to the other, that fly and spin as one body."""
+    def pair(by_hand: bool) -> Model:
+        model, a, b, c = Model(), at(0, 0, 0), at(40, 0, 0), at(40, 30, 10)
+        model.node("c", c)      # carries the rigid body: time steps are those of its position
+        model.node("a", a)
+        if by_hand:
+            model.attach("b", b, "c")
+            rigid_beam(model, "arm", "c", b, c)
+        else:
+            model.node("b2", b)
+            model.node("b", b)
+            model.superelement("arm", reduced(b, c, 2), ["c", "b2"])
+            model.weld("b2", "b")
+        model.superelement("first", reduced(a, b, 2), ["b", "a"])
+        model.rigid_velocity(TURN @ (3.0, 0, 1), TURN @ (0.5, 2.0, -1.0), about=a)
+        return model
+    found = rigid(pair(False), "arm").model
+    assert_same(motion(found, ("a", "b", "c")), motion(pair(True), ("a", "b", "c")))
+
+
+def slender(bodies: int, elements: int = 8, planar: bool = False) -> Model:
+    """A beam between other bodies' nodes, that spins from the start."""
+    model = Model(planar=planar)
+    d = 2 if planar else 3
+    tip, base = model.node("tip", at(70, 5, 0)[:d]), model.node("base", at(0, 0, 0)[:d])
+    up = {} if planar else {"up": TURN @ (0, 1, 2)}
+    model.beam("rod", (base, tip), SECTION, elements, bodies, modes=2, damping=0.01, **up)
+    other = model.node("other", at(70, 40, 0)[:d])
+    model.beam("arm", (tip, other), SECTION, 4, 2, **up)
+    model.point_mass("weight", other, 0.7)
+    model.rigid_velocity((TURN @ (3.0, 0, 1))[:d], 2.0 if planar else TURN @ (0.5, 0.0, -1.0))
+    model.revolute(base, TURN @ (0, 0, 1))
+    model.gravity((TURN @ (0.0, -9.0, 3.0))[:d])
+    return model
+
+
+@pytest.mark.parametrize(("before", "after", "planar"), [(1, 4, False), (4, 2, False),
+                                                         (2, 1, False), (2, 4, True)])
+def test_a_beam_is_divided(before, after, planar):
+    original, expected = slender(before, planar=planar), slender(after, planar=planar)
+    names = list(expected.nodes)
+    first = motion(original, original.nodes)
+    found, sentence = divide(original, "rod", after)
+    each = {count: f"{count} superelement{'s' * (count > 1)} of {8 // count} finite elements"
+            for count in (before, after)}
+    assert sentence == f"rod has {each[after]} instead of {each[before]}"
+    assert list(found.bodies) == list(expected.bodies)
+    assert sorted(found.nodes) == sorted(names)
+    assert_same(motion(found, names), motion(expected, names))
+    for name, history in motion(original, original.nodes).items():
+        assert np.array_equal(history, first[name])
+    back = divide(found, "rod", before, elements=8).model
+    assert_same(motion(back, original.nodes), first)
+
+
+def test_what_cannot_be_changed_is_said(original):
+    cases = [
+        (keep_modes, ("third", 1), "superelement 'third' is unknown: the model has second, first"),
+        (keep_modes, ("first", 5), "it has 4: keep 0 to 4"),
+        (with_options, ("first", "mean"), "inertia 'c' needs the exact rates"),
+        (divide, ("first", 2), r"model.beam has built 0 beams 'first'.*\(it has built no beam\)"),
+    ]
+    for change, given, message in cases:
+        with pytest.raises(InputError, match=message):
+            change(original, *given)
+    pushed = copied(original)
+    pushed.mode_force("first", 2, 1.0, name="shaker")
+    with pytest.raises(InputError, match="'shaker' acts on mode 2 .*'first': keep 3 modes or more"):
+        keep_modes(pushed, "first", 2)
+
+
+def test_what_cannot_be_rigid_is_said():
+    held = linkage()
+    held.fix("elbow", "position")
+    with pytest.raises(InputError, match="positions of elbow and base are both fixed"):
+        rigid(held, "first")
+    turned = linkage()
+    turned.fix("base", "rotation")
+    turned.move("elbow", TURN @ (0, 0, 1), harmonic(0.1, 3.0), what="rotation")
+    with pytest.raises(InputError, match="rotations of elbow and base are both fixed"):
+        rigid(turned, "first")
+    thrown = linkage()
+    thrown.initial_velocity("elbow", linear=TURN @ (0, 1.0, 0))
+    with pytest.raises(InputError, match="initial velocity of elbow.position is not that of a "
+                                         "rigid motion with base"):
+        rigid(thrown, "first")
+    parallel = rigid(linkage(), "second").model
+    parallel.superelement("beside", reduced(at(40, 0, 0), at(40, 30, 10), 1), ["tip", "elbow2"])
+
+    with pytest.raises(InputError, match="joined by rigid links already"):
+        rigid(parallel, "beside")
+
+
+def test_what_a_beam_that_is_divided_must_not_lose_is_said():
+    cases = [
+        (lambda m: m.force("rod 1", TURN @ (0, 1, 0)), "acts on or holds its node 'rod 1'; build"),
+        (lambda m: m.fix("rod 1", "position"), "acts on or holds its node 'rod 1'"),
+        (lambda m: m.attach("on it", at(35, 2.5, 8), "rod 1"), "acts on or holds its node 'rod 1'"),
+        (lambda m: m.mode_force("rod 2", 0, 1.0, name="shaker"),
+         "'shaker' acts on superelement 'rod 2'"),
+    ]
+    for change, message in cases:
+        model = slender(2)
+        change(model)
+        with pytest.raises(InputError, match=f"beam 'rod' cannot be divided anew: .*{message}"):
+            divide(model, "rod", 4)
+    model = rigid(slender(2), "rod 1").model
+    with pytest.raises(InputError, match="superelement 'rod 1' was changed; divide the beam first"):
+        divide(model, "rod", 4)
+    with pytest.raises(InputError, match="8 elements cannot be divided among 3 bodies"):
+        divide(slender(2), "rod", 3)
