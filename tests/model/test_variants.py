@@ -256,7 +256,7 @@ def slender(bodies: int, elements: int = 8, planar: bool = False) -> Model:
     other = model.node("other", at(70, 40, 0)[:d])
     model.beam("arm", (tip, other), SECTION, 4, 2, **up)
     model.point_mass("weight", other, 0.7)
-    model.rigid_velocity((TURN @ (3.0, 0, 1))[:d], 2.0 if planar else TURN @ (0.5, 0.0, -1.0))
+    model.rigid_velocity(np.zeros(d), 2.0 if planar else TURN @ (0, 0, 2.0), about=base.point)
     model.revolute(base, TURN @ (0, 0, 1))
     model.gravity((TURN @ (0.0, -9.0, 3.0))[:d])
     return model
