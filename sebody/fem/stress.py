@@ -17,7 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem import mesh
 from sebody.fem.isoparametric import SOLID_KINDS, element_kind
+
+FLAT = 1e-10        # volume of an element, of its size cubed, that is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +111,12 @@ class SolidStress:
         corners = self.coordinates[self.nodes]
         slopes = element_kind(self.kind).slopes
         jacobian = (slopes.reshape(-1, slopes.shape[2]) @ corners).reshape(len(corners), -1, 3, 3)
+        size = np.abs(jacobian).max(axis=(1, 2, 3))
+        flat = np.abs(np.linalg.det(jacobian)).min(axis=1) <= FLAT * size**3
+        if flat.any():
+            k = int(np.argmax(flat))
+            raise InputError(f"element {k} of kind {self.kind!r}, with the nodes "
+                             f"{self.nodes[k].tolist()}, has no volume: correct its nodes")
         return np.linalg.inv(jacobian)
 
 
@@ -166,11 +175,13 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
     inputs.number(poisson_ratio, "poisson_ratio", above=-1, below=0.5)
     law = elasticity(youngs_modulus, poisson_ratio)
     found = []
-    for kind, nodes in cells:
+    for kind, nodes in mesh.cells(cells, len(coordinates)):
         if kind not in SOLID_KINDS:
             continue
         count = element_kind(kind).values.shape[1]
-        nodes = inputs.array(nodes, f"cells of kind {kind!r}", (None, count)).astype(int)
+        if nodes.shape[1] != count:
+            raise InputError(f"cells of kind {kind!r} have {nodes.shape[1]} nodes each: give "
+                             f"{count}, in meshio's order")
         found.append(SolidStress(kind, nodes, coordinates, law))
     if not found:
         raise InputError(f"cells have no solid elements: give cells of the kinds "

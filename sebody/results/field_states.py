@@ -25,8 +25,9 @@ class FieldStates:
         name = inputs.choice(name, "superelement", bodies) if bodies else _no_bodies(name)
         if bodies[name].body.recovery is None:
             raise InputError(f"body {name!r} is made of reduced matrices alone, so it knows "
-                             "nothing of what is inside: reduce its FE model with craig_bampton, "
-                             "or give its ReducedBody recovery=, the shapes of the FE nodes")
+                             "nothing of what is inside: reduce its FE model, by craig_bampton or "
+                             "import_body, or give its ReducedBody recovery=, the shapes of the "
+                             "FE nodes")
         if not len(recording.rows):
             raise InputError("the result has no recorded state: run the model first")
         self.name = name

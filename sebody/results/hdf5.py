@@ -3,12 +3,12 @@
 Arrays are written by blocks of rows, packed. The group ``sebody`` holds what a `Result` needs.
 """
 
-import os
-import re
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
+from io import BytesIO
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,9 +33,11 @@ def check_installed() -> None:
         raise InputError('HDF5 files need h5py: pip install "sebody[hdf5]", or take a file .npz')
 
 
-def write(path: str, members: Mapping[str, NDArray], units: Mapping[str, str],
+def write(file: BinaryIO, members: Mapping[str, NDArray], units: Mapping[str, str],
           attributes: Mapping[str, str]) -> None:
     """Write arrays and texts by name; of a name with a slash the part before it is a group.
+
+    The packed file is made in memory: the library tells a full disk in several pages.
 
     Parameters
     ----------
@@ -51,13 +53,12 @@ def write(path: str, members: Mapping[str, NDArray], units: Mapping[str, str],
     """
     import h5py
 
-    try:
-        with h5py.File(path, "w") as file:
-            file.attrs.update(attributes | {"program": f"sebody {_version()}"})
-            for name, values in members.items():
-                _write(file, name, np.asarray(values), units.get(name))
-    except (OSError, RuntimeError) as error:
-        raise _plain(error) from error
+    memory = BytesIO()
+    with h5py.File(memory, "w") as made:
+        made.attrs.update(attributes | {"program": f"sebody {_version()}"})
+        for name, values in members.items():
+            _write(made, name, np.asarray(values), units.get(name))
+    file.write(memory.getbuffer())
 
 
 def read(path: Path, group: str) -> dict[str, NDArray]:
@@ -96,12 +97,6 @@ def _write(file, name: str, values: NDArray, unit: str | None) -> None:
             made[first:first + rows] = values[first:first + rows]
     if unit is not None:
         made.attrs["units"] = unit
-
-
-def _plain(error: Exception) -> OSError:
-    """What the system said, without the library's account of its own state."""
-    number = re.search(r"errno = (\d+)", str(error))
-    return OSError(int(number[1]), os.strerror(int(number[1]))) if number else OSError(str(error))
 
 
 def _version() -> str:

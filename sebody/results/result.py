@@ -143,7 +143,7 @@ class Result(Recording):
         members = self.arrays() | packed(self)
         with replacing(path, OUTPUT[0]) as file:
             if path.suffix == hdf5.SUFFIX:
-                hdf5.write(file.name, members, {name: unit(name) for name in self.arrays()},
+                hdf5.write(file, members, {name: unit(name) for name in self.arrays()},
                            {"title": "results of a run", "superelements": ", ".join(
                                self.model.bodies), "nodes": ", ".join(self.model.nodes)})
             else:

@@ -155,3 +155,21 @@ def test_pictures_and_what_a_diagram_refuses(tmp_path):
                                (([0.0, 1.0], (0, 0, 1), 9), "count is 9, but there are 3 modes")):
         with pytest.raises(InputError, match=message):
             campbell(model, *arguments)
+
+
+def test_a_load_in_rotating_axes():
+    """``(k - m W^2 - m w^2) x - 2 i m W w z x x = f``: a mass on springs that rotate with it."""
+    model, turn = rotor(False)
+    model.force("middle", turn @ (1.0, 0, 0), NONE, name="push")
+    speed, omega = 3.0, np.array([0.0, 2.0, 30.0])
+    spin = turn @ (0, 0, speed)
+    found = frequency_response(equilibrium(model, 2, spin=spin), "push", [
+        "middle.position", "middle.velocity", "middle.acceleration"], omega, spin)
+    W = speed * np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 0]])
+    for k, w in enumerate(omega):
+        A = np.diag([150.0, 400.0, 250.0]) + MASS * (W @ W - w**2 * np.eye(3) + 2j * w * W)
+        x = np.linalg.solve(A, [1.0, 0, 0])
+        for name, value in (("position", x), ("velocity", 1j * w * x + W @ x),
+                            ("acceleration", -w**2 * x + 2j * w * W @ x + W @ W @ x)):
+            assert_allclose(found[f"middle.{name}"][k], turn @ value, rtol=1e-6,
+                            atol=1e-7 * np.abs(value).max())
