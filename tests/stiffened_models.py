@@ -6,6 +6,7 @@ They are those of `tests/analysis/test_exact_bodies.py` and `tests/benchmarks/be
 from itertools import product
 
 import numpy as np
+from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
 from sebody import Model, simulate, trapezoidal
@@ -14,7 +15,7 @@ from sebody.assembly.numbering import coordinates
 from sebody.engine.evaluate import assemble, to_body_axes
 from sebody.fem import StiffnessSection, frame, hexahedral_block, straight_beam
 from sebody.kernels.layout import RESIDUAL
-from sebody.reduction import craig_bampton
+from sebody.reduction import RigidFace, craig_bampton
 
 # So stiff along its axis that the tables' beams, which do not stretch, are met to their digits.
 SLENDER = StiffnessSection(axial=1e7, bending_y=1.0, bending_z=1.0, torsion=1.0, mass=1.0,
@@ -125,3 +126,65 @@ def accelerations(run):
 def places(run):
     """Coordinates of the positions of all nodes."""
     return [coordinates(run.numbering, node.position) for node in run.model.nodes.values()]
+
+
+def clamped_plate():
+    """A plate of hexahedra and four rigid patches at its corners; the first two are held."""
+    bricks = hexahedral_block((0, -0.25, -0.01), (1.0, 0.5, 0.02), (10, 5, 1), 1e6, 0.3, 1.0)
+    x, y, _ = bricks.coordinates.T
+    faces = []
+    for place in ((0.0, -0.25), (0.0, 0.25), (1.0, -0.25), (1.0, 0.25)):
+        near = (np.abs(x - place[0]) < 0.101) & (np.abs(y - place[1]) < 0.101)
+        faces.append(RigidFace((*place, 0.0), tuple(np.flatnonzero(near))))
+    return bricks, faces
+
+
+def plate(option, internal):
+    """It as one body."""
+    bricks, faces = clamped_plate()
+    model = Model()
+    nodes = [model.node(f"n{k}", face.point) for k, face in enumerate(faces)]
+    body = craig_bampton(bricks, [(face, "full") for face in faces], internal)
+    model.superelement("plate", body, nodes, **option)
+    for held in nodes[:2]:
+        model.fix(held)
+    return model
+
+
+def plate_frequencies(spin, modes=60):
+    """Frequencies of the plate's FE model, spinning about z, from its matrices, ascending.
+
+    Linearised about the centrifugal displacement u: ``K + K_G(u) - W^2 M_across`` and Coriolis
+    forces. The faces turn to second order under all forces on their nodes, centrifugal ones
+    included. In as many vibrations of the plate at rest.
+    """
+    bricks, faces = clamped_plate()
+    X, K, M = bricks.coordinates, bricks.stiffness, bricks.mass
+    tied = [np.zeros((K.shape[0], 6)) for _ in faces]
+    for motion, face in zip(tied, faces, strict=True):
+        for node in face.nodes:
+            arm = X[node] - face.point
+            motion[3 * node:3 * node + 3] = np.hstack([np.eye(3), -np.cross(np.eye(3), arm)])
+    ties = (3 * np.concatenate([face.nodes for face in faces])[:, None] + np.arange(3)).ravel()
+    inner = np.setdiff1d(np.arange(len(tied[0])), ties)
+    basis = np.hstack([np.eye(len(tied[0]))[:, inner], *tied[2:]])
+    count = len(X)
+    across = np.kron(np.eye(count), np.diag([1.0, 1.0, 0.0]))
+    turn = np.kron(np.eye(count), np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))
+
+    def reduced(A):
+        return basis.T @ (A @ basis)
+    stiffness, mass, centrifugal = reduced(K), reduced(M), reduced(M @ across)
+    pull = spin**2 * (M @ (across @ X.ravel()))
+    u = basis @ np.linalg.solve(stiffness - spin**2 * centrifugal, basis.T @ pull)
+    tangent = stiffness + reduced(bricks.geometric_stiffness(u)) - spin**2 * centrifugal
+    forces = (K @ u - pull - spin**2 * (M @ (across @ u))).reshape(-1, 3)
+    for k, face in enumerate(faces[2:]):
+        nodes, at = list(face.nodes), len(inner) + 6 * k + 3
+        moments = forces[nodes].T @ (X[nodes] - face.point)
+        tangent[at:at + 3, at:at + 3] += (moments + moments.T) / 2 - np.trace(moments) * np.eye(3)
+    shapes = eigh(stiffness, mass, subset_by_index=(0, modes - 1))[1]
+    C, K_r = (shapes.T @ A @ shapes for A in (2 * spin * reduced(M @ turn), tangent))
+    none, one = np.zeros_like(C), np.eye(modes)
+    values = np.linalg.eigvals(np.block([[none, one], [-K_r, -C]]))
+    return np.sort(values.imag[values.imag > 0])

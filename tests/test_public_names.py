@@ -25,7 +25,7 @@ ROOMS = {
     "sebody.reduction": {"Accuracy", "ComponentModes", "MeanFace", "ReducedBody", "RigidFace",
                          "body_weights", "component_modes", "craig_bampton", "frame_weights",
                          "reduce"},
-    "sebody.io": {"BodyFile", "Mesh", "SOURCES", "Source", "from_ngsolve", "from_skfem",
+    "sebody.io": {"BodyFile", "SOURCES", "Source", "from_ngsolve", "from_skfem",
                   "import_body", "load_body",
                   "read_body_file", "read_fe_model", "save_body", "write_sid"},
 }

@@ -148,9 +148,11 @@ def _lowest(part: Superelement, inertia: Callable[[int], NDArray]) -> float:
     moved, turned = rows_of(body)
     largest = 0.0
     for k, node in enumerate(body.position_nodes):
-        own = (turned[body.rotation_nodes.index(node)] if node in body.rotation_nodes else
-               _fit(body, moved))
-        free = null_space(np.vstack([moved[k], own]))
+        if node in body.rotation_nodes:     # held coordinates are left out
+            own = turned[body.rotation_nodes.index(node)]
+            free = np.eye(len(body.mass))[:, ~np.vstack([moved[k], own]).any(axis=0)]
+        else:
+            free = null_space(np.vstack([moved[k], _fit(body, moved)]))
         if free.shape[1]:
             largest = max(largest, eigh(free.T @ inertia(k) @ free, free.T @ body.stiffness @ free,
                                         eigvals_only=True)[-1])

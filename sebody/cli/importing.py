@@ -31,6 +31,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--units", default="", metavar="TEXT", help="units, to be kept in the file")
     parser.add_argument("--unchecked", action="store_true",
                         help="write also reduced matrices that no model would take, for inspect")
+    parser.add_argument("--lean", action="store_true",
+                        help="leave out shapes and mesh of the FE model, most of the file's size")
     parser.add_argument("--output", type=Path, required=True, metavar="BODY.npz",
                         help="body file to write")
     return parser
@@ -50,6 +52,8 @@ def run(options: argparse.Namespace) -> int:
     file = imported(read_source(options.file, options.format), interfaces, modes, options.method,
                     options.units, options.file)
     body = None if options.unchecked else file.body()
+    if options.lean:
+        file.parts["recovery"] = None
     write_body_file(file, options.output)
     for name, text in file.provenance.items():
         print(f"{name}: {text}")

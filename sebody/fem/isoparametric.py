@@ -81,9 +81,21 @@ def element_kind(name: str) -> ElementKind:
     nodes, powers, points, carried = _KINDS[name]
     inverse = np.linalg.inv(_monomials(nodes, powers))
     values = _monomials(points, powers) @ inverse
-    slopes = np.stack([_monomials(points, powers, axis) @ inverse for axis in range(3)], axis=1)
+    slopes = slopes_at(name, points)
     to_nodes = _monomials(nodes, carried) @ np.linalg.inv(_monomials(points, carried))
     return ElementKind(values, slopes, to_nodes)
+
+
+def reference_nodes(name: str) -> NDArray:
+    """Nodes of the reference element, (k, 3)."""
+    return _KINDS[name][0]
+
+
+def slopes_at(name: str, points: NDArray) -> NDArray:
+    """Derivatives of the shape functions by the element's coordinates at points, (g, 3, k)."""
+    nodes, powers, *_ = _KINDS[name]
+    inverse = np.linalg.inv(_monomials(nodes, powers))
+    return np.stack([_monomials(points, powers, axis) @ inverse for axis in range(3)], axis=1)
 
 
 def _monomials(points: NDArray, powers: Powers, derived: int | None = None) -> NDArray:

@@ -1,35 +1,21 @@
-"""Geometric stiffness of solids of any mesh: tetrahedra and hexahedra, linear and quadratic.
+"""Geometric stiffness of solids of any mesh, integrated as FE programs integrate the stiffness.
 
 The order of the nodes is meshio's, which is VTK's and that of CalculiX and Abaqus.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.errors import InputError
+from sebody.fem.isoparametric import slopes_at
 from sebody.fem.model import assemble
 from sebody.fem.stress import elasticity
 
-_CORNERS = np.array([(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1),
-                     (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)], dtype=float)
-_HEX_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4),
-              (0, 4), (1, 5), (2, 6), (3, 7)]
-TETRAHEDRON_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
-_TET_CORNERS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
-
-
-class Kind(NamedTuple):
-    """A kind of cell: its nodes on the reference cell, points and weights, slopes of its shapes."""
-
-    nodes: NDArray                                  # (a, 3)
-    points: NDArray                                 # (g, 3)
-    weights: NDArray                                # (g,)
-    slopes: Callable[[NDArray], NDArray]            # (a, 3) at a point
+TETRAHEDRON_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]   # middles of tetra10
 
 
 class SolidPrestress:
@@ -105,28 +91,19 @@ class SolidPrestress:
         return sparse.csc_array(sparse.coo_array((np.concatenate(entries), places), shape=shape))
 
 
-def reference_nodes(kind: str) -> NDArray:
-    """Nodes of the reference cell of a kind, (a, 3); InputError for an unknown one."""
-    return _known(kind).nodes
-
-
 def knows(kind: str) -> bool:
-    """Whether there are shapes of this kind of cell."""
-    return kind in KINDS
-
-
-def _known(kind: str) -> Kind:
-    if kind not in KINDS:
-        raise InputError(f"cells of kind {kind!r} have no geometric stiffness here: use "
-                         f"{', '.join(KINDS)}, or none")
-    return KINDS[kind]
+    """Whether there is a full integration of this kind of cell."""
+    return kind in _RULES
 
 
 def _group(points: NDArray, kind: str, nodes: NDArray, youngs_modulus: float, poisson_ratio: float
            ) -> tuple[NDArray, NDArray, NDArray, tuple[float, float]]:
     """Nodes (e, a), slopes (e, g, a, 3), volumes (e, g) of the points, Lame's constants."""
-    cell = _known(kind)
-    of_reference = np.array([cell.slopes(point) for point in cell.points])      # (g, a, 3)
+    if kind not in _RULES:
+        raise InputError(f"cells of kind {kind!r} have no geometric stiffness here: use "
+                         f"{', '.join(_RULES)}, or none")
+    places, weights = _RULES[kind]
+    of_reference = slopes_at(kind, places).transpose(0, 2, 1)                   # (g, a, 3)
     jacobians = np.einsum("gai,eak->egik", of_reference, points[nodes])         # x_k by xi_i
     determinants = np.linalg.det(jacobians)
     if (determinants <= 0).any():
@@ -135,43 +112,7 @@ def _group(points: NDArray, kind: str, nodes: NDArray, youngs_modulus: float, po
                          "turned inside out: correct the mesh or the order of its nodes")
     slopes = np.einsum("egki,gai->egak", np.linalg.inv(jacobians), of_reference)
     law = elasticity(youngs_modulus, poisson_ratio)
-    return nodes, slopes, determinants * cell.weights, (law[0, 1], law[3, 3])
-
-
-def _linear_hexahedron(point: NDArray) -> NDArray:
-    factors = 1 + _CORNERS * point
-    return np.column_stack([_CORNERS[:, i] * factors[:, j] * factors[:, k] for i, j, k in (
-        (0, 1, 2), (1, 2, 0), (2, 0, 1))]) / 8
-
-
-def _serendipity(point: NDArray) -> NDArray:
-    """Slopes of the twenty shapes: corners ``prod(1 + c x) (c . x - 2) / 8``, middles ``/ 4``."""
-    found = np.zeros((20, 3))
-    for a, corner in enumerate(_CORNERS):
-        factors = 1 + corner * point
-        rest = corner @ point - 2
-        for i in range(3):
-            others = np.prod(np.delete(factors, i))
-            found[a, i] = corner[i] * others * (rest + factors[i]) / 8
-    for a, (first, second) in enumerate(_HEX_EDGES, 8):
-        middle = (_CORNERS[first] + _CORNERS[second]) / 2
-        values = np.where(middle == 0, 1 - point**2, 1 + middle * point)
-        rates = np.where(middle == 0, -2 * point, middle)
-        for i in range(3):
-            found[a, i] = rates[i] * np.prod(np.delete(values, i)) / 4
-    return found
-
-
-def _linear_tetrahedron(point: NDArray) -> NDArray:
-    return np.array([(-1, -1, -1), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
-
-
-def _quadratic_tetrahedron(point: NDArray) -> NDArray:
-    values = np.array([1 - point.sum(), *point])
-    rates = _linear_tetrahedron(point)
-    corners = (4 * values - 1)[:, None] * rates
-    middles = [4 * (values[i] * rates[j] + values[j] * rates[i]) for i, j in TETRAHEDRON_EDGES]
-    return np.vstack([corners, middles])
+    return nodes, slopes, determinants * weights, (law[0, 1], law[3, 3])
 
 
 def _gauss(count: int) -> tuple[NDArray, NDArray]:
@@ -180,17 +121,19 @@ def _gauss(count: int) -> tuple[NDArray, NDArray]:
             np.array([a * b * c for a, b, c in product(weights, repeat=3)]))
 
 
-def _middles(corners: NDArray, edges: list[tuple[int, int]]) -> NDArray:
-    return np.vstack([corners, [(corners[i] + corners[j]) / 2 for i, j in edges]])
+def _prism(count: int) -> tuple[NDArray, NDArray]:
+    """Three points in the triangle, Gauss's along the axis."""
+    triangle = ((1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3))
+    pairs = list(zip(*np.polynomial.legendre.leggauss(count), strict=True))
+    return (np.array([(*place, z) for z, _ in pairs for place in triangle]),
+            np.array([weight / 6 for _, weight in pairs for _ in triangle]))
 
 
 _NEAR, _FAR = (5 - np.sqrt(5)) / 20, (5 + 3 * np.sqrt(5)) / 20
 _FOUR = np.array([(_NEAR, _NEAR, _NEAR), (_FAR, _NEAR, _NEAR), (_NEAR, _FAR, _NEAR),
                   (_NEAR, _NEAR, _FAR)])
-KINDS = {
-    "tetra": Kind(_TET_CORNERS, np.full((1, 3), 0.25), np.full(1, 1 / 6), _linear_tetrahedron),
-    "tetra10": Kind(_middles(_TET_CORNERS, TETRAHEDRON_EDGES), _FOUR, np.full(4, 1 / 24),
-                    _quadratic_tetrahedron),
-    "hexahedron": Kind(_CORNERS, *_gauss(2), _linear_hexahedron),
-    "hexahedron20": Kind(_middles(_CORNERS, _HEX_EDGES), *_gauss(3), _serendipity),
-}
+# points and weights of the full integration that FE programs use
+_RULES = {"tetra": (np.full((1, 3), 0.25), np.full(1, 1 / 6)),
+          "tetra10": (_FOUR, np.full(4, 1 / 24)), "hexahedron": _gauss(2),
+          "hexahedron20": _gauss(3), "hexahedron27": _gauss(3), "wedge": _prism(2),
+          "wedge15": _prism(3)}

@@ -86,7 +86,9 @@ def _substructure(path: Path) -> tuple[list[int], list[list[int]], dict]:
         directions.append(own)
     if len(set(labels)) < len(labels):
         twice = next(label for label in labels if labels.count(label) > 1)
-        raise InputError(f"{path} names node {twice} twice: {_SUBSTRUCTURE}")
+        raise InputError(f"{path} names node {twice} twice, as CalculiX does: its *SUBSTRUCTURE "
+                         "GENERATE writes no mass and a stiffness that is not condensed, so use "
+                         f"*FREQUENCY, SOLVER=MATRIXSTORAGE; in Abaqus {_SUBSTRUCTURE}")
     return labels, directions, matrices
 
 

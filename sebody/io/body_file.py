@@ -33,21 +33,6 @@ _REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
-    """Cells of an FE model, for pictures.
-
-    Parameters
-    ----------
-    points : (n, 3), planar (n, 2)
-        Nodes [length].
-    cells : dict of (n_cells, k) by meshio's name of the cell
-    """
-
-    points: NDArray
-    cells: Mapping[str, NDArray]
-
-
-@dataclass(frozen=True, eq=False)
 class BodyFile:
     """What a body file holds, as found: the matrices may be wrong in any way.
 
@@ -61,14 +46,18 @@ class BodyFile:
         In words; the program has none.
     provenance : dict of str
         What the body was made from and how.
-    mesh : Mesh, optional
     """
 
     parts: dict[str, Any]
     names: tuple[str, ...]
     units: str = ""
     provenance: Mapping[str, str] = field(default_factory=dict)
-    mesh: Mesh | None = None
+
+    @property
+    def mesh(self) -> tuple[NDArray, tuple[tuple[str, NDArray], ...]] | None:
+        """FE nodes (n, 3), planar (n, 2), and elements by kind, if the body knows its shapes."""
+        recovery = self.parts.get("recovery")
+        return recovery and (recovery.points, recovery.cells)
 
     def body(self) -> ReducedBody:
         """The body, checked.
@@ -83,7 +72,7 @@ class BodyFile:
 
 def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None, *,
               units: str = "", provenance: Mapping[str, str] | None = None,
-              mesh: Mesh | None = None) -> Path:
+              recovery: bool = True) -> Path:
     """Write a reduced body to an npz file; an older file stays until the new one is complete.
 
     Parameters
@@ -94,8 +83,9 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
         Units of its numbers, in words.
     provenance : dict of str, optional
         What the body was made from and how.
-    mesh : Mesh, optional
-        For pictures.
+    recovery : bool
+        Whether shapes and mesh of the FE model are kept, most of the file's size; without them
+        there are no displacements inside the body.
 
     Raises
     ------
@@ -107,7 +97,9 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     inputs.instance(body, "body", ReducedBody, "give a ReducedBody")
     names = checked_names(names, len(body.keeps))
     parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
-    return write_body_file(BodyFile(parts, names, units, provenance or {}, mesh), path)
+    if not inputs.flag(recovery, "recovery"):
+        parts["recovery"] = None
+    return write_body_file(BodyFile(parts, names, units, provenance or {}), path)
 
 
 def load_body(path: str | Path) -> ReducedBody:
@@ -133,9 +125,6 @@ def write_body_file(file: BodyFile, path: str | Path) -> Path:
     arrays: dict[str, NDArray] = {}
     texts: dict[str, Any] = {}
     _flatten(file.parts, "", arrays, texts)
-    if file.mesh is not None:
-        arrays["mesh.points"] = file.mesh.points
-        arrays |= {f"mesh.cells.{kind}": cells for kind, cells in file.mesh.cells.items()}
     notes = {"format": FORMAT, "version": VERSION, "names": list(file.names), "units": file.units,
              "provenance": dict(file.provenance), "body": texts}
     with replacing(path, TARGET[0]) as stream:
@@ -240,10 +229,7 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
     missing = {"stiffness", "mass", "coordinates", "keeps"} - set(parts)
     if missing:
         raise KeyError(missing)
-    cells = {name.removeprefix("mesh.cells."): array for name, array in arrays.items()
-             if name.startswith("mesh.cells.")}
-    mesh = Mesh(arrays["mesh.points"], cells) if "mesh.points" in arrays else None
-    return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"], mesh)
+    return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"])
 
 
 def _restored(value: Any, arrays: dict[str, NDArray]) -> Any:

@@ -10,7 +10,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.files import check_target
-from sebody.io.body_file import TARGET, BodyFile, Mesh, write_body_file
+from sebody.io.body_file import TARGET, BodyFile, write_body_file
 from sebody.io.interfaces import Interface, boundary_items, parsed
 from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
@@ -101,8 +101,7 @@ def imported(reading: Reading, interfaces: list[Interface], modes: int | Accurac
                   "FE matrices": f"{model.stiffness.shape[0]} rows, |K R| of rigid "
                   f"motions up to {rigid_residual(model):.4e} of a row's entries", **reading.notes}
     parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
-    mesh = Mesh(model.coordinates, dict(model.cells))
-    return BodyFile(parts, names, units or model.units, provenance, mesh)
+    return BodyFile(parts, names, units or model.units, provenance)
 
 
 def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accuracy,

@@ -90,4 +90,4 @@ def chosen_interfaces(file: BodyFile, labels: Sequence[str], names: Sequence[str
                if parts.get(name) is not None}
     return BodyFile({**parts, **changed, "coordinates": parts["coordinates"][order],
                      "keeps": tuple(keeps[k] for k in order)}, tuple(names), file.units,
-                    file.provenance, file.mesh)
+                    file.provenance)

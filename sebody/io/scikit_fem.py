@@ -8,8 +8,9 @@ from scipy import sparse
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.isoparametric import reference_nodes
 from sebody.fem.model import FEModel, fe_matrix
-from sebody.fem.solids import SolidPrestress, knows, reference_nodes
+from sebody.fem.solids import SolidPrestress, knows
 from sebody.fem.stress import solid_stress
 
 _REMEDY = ("give a Basis of an ElementVector of Lagrange elements of order one or two, such as "

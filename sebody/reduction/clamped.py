@@ -38,8 +38,6 @@ class ClampedInterior:
         Unit of the displacement over that of each DOF.
     name : function, optional
         Name of the DOF of a row, for messages.
-    places : (n, D), optional
-        Of each DOF.
 
     Raises
     ------
@@ -50,7 +48,7 @@ class ClampedInterior:
     def __init__(self, stiffness: sparse.csc_array, mass: sparse.csc_array, held: NDArray,
                  means: sparse.csr_array | None = None, rigid: NDArray | None = None,
                  lengths: NDArray | None = None,
-                 name: Callable[[int], str] = "row {}".format, places: NDArray | None = None):
+                 name: Callable[[int], str] = "row {}".format):
         size = stiffness.shape[0]
         self.internal = internal = np.setdiff1d(np.arange(size), held)
         self._size = size
@@ -66,8 +64,7 @@ class ClampedInterior:
             self._free = self._free / lengths[internal, None]
         self._check_held(free[internal], name)
         self._factor = FactoredStiffness(self._stiffness, free[internal],
-                                         lambda row: name(internal[row]), _REMEDY,
-                                         None if places is None else places[internal])
+                                         lambda row: name(internal[row]), _REMEDY)
         self._border()
         self._known: tuple[NDArray, NDArray] | None = None
 

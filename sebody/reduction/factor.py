@@ -9,13 +9,12 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
 from sebody.errors import InputError
-from sebody.reduction.dissection import dissection
 
 _SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which a stiffness is singular
 _STRAIN = 1e-6  # of a motion without strain, relative to the summands of its forces
 _STILL = 1e-8  # motion of held rows that is rounding, relative to the extent of the body
 _SUSPECT = 1e-11  # lowest eigenvalue above which no pivot is looked at
-_SMALL = 5000  # DOFs up to which minimum degree is as good an order as dissection
+_SMALL = 5000  # DOFs up to which pivots are looked at in any case
 _SHOWN, _LISTED = 5, 60  # nodes that a message names, DOFs that it looks for them at
 
 
@@ -35,8 +34,6 @@ class FactoredStiffness:
         Name of the DOF of a row, for messages.
     remedy : str
         What to do about other motions without strain.
-    places : (n, D), optional
-        Of each DOF: large matrices are then dissected by planes.
 
     Raises
     ------
@@ -45,21 +42,15 @@ class FactoredStiffness:
     """
 
     def __init__(self, stiffness: sparse.csc_array, free: NDArray, name: Callable[[int], str],
-                 remedy: str, places: NDArray | None = None):
+                 remedy: str):
         self._kept = np.arange(stiffness.shape[0])
         if free.shape[1]:
             order = linalg.qr(free.T, mode="r", pivoting=True)[1]
             self._kept = np.setdiff1d(self._kept, order[:free.shape[1]])
             stiffness = stiffness[self._kept][:, self._kept]
-        ordering = "MMD_AT_PLUS_A"
-        if places is not None and len(self._kept) > _SMALL:
-            order = dissection(stiffness, places[self._kept])
-            self._kept, stiffness = self._kept[order], stiffness[order][:, order]
-            ordering = "NATURAL"
         self._factor = None
         if len(self._kept):
-            self._factor = _factorise(stiffness, lambda row: name(int(self._kept[row])), remedy,
-                                      ordering)
+            self._factor = _factorise(stiffness, lambda row: name(int(self._kept[row])), remedy)
 
     def solve(self, forces: NDArray) -> NDArray:
         """Displacements (n,) or (n, k) of forces, 0 at pinned DOFs."""
@@ -87,8 +78,7 @@ def is_strainless(stiffness: sparse.csc_array, motions: NDArray) -> bool:
     return bool(np.all(np.abs(stiffness @ motions).max(axis=0, initial=0.0) <= _STRAIN * summands))
 
 
-def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: str,
-               ordering: str) -> SuperLU:
+def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: str) -> SuperLU:
     """Factor a stiffness, refusing one that leaves a motion free."""
     # SciPy 1.11 selects rows with 64-bit indices, which its SuperLU does not accept
     short = (array.astype(np.intc) for array in (stiffness.indices, stiffness.indptr))
@@ -97,12 +87,12 @@ def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: 
     ratios = np.ones(len(diagonal))
     if np.all(diagonal > 0):
         try:
-            factor = _lu(matrix, ordering)
+            factor = _lu(matrix)
             if len(diagonal) > _SMALL and _softest(factor, diagonal) > _SUSPECT:
                 return factor
         except RuntimeError:        # a pivot of exactly zero: find it beside a touch of stiffness
             touch = sparse.diags_array(_SINGULAR / 10 * diagonal, format="csc")
-            factor = _lu(matrix + touch, ordering)
+            factor = _lu(matrix + touch)
         ratios = factor.U.diagonal()[factor.perm_c] / diagonal
         if ratios.min() > _SINGULAR:
             return factor
@@ -111,8 +101,8 @@ def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: 
         f"mechanism inside): {_suspects(stiffness, ratios, name)}; {remedy}")
 
 
-def _lu(matrix: sparse.csc_array, ordering: str) -> SuperLU:
-    return splu(matrix, ordering, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+def _lu(matrix: sparse.csc_array) -> SuperLU:
+    return splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def _softest(factor: SuperLU, diagonal: NDArray) -> float:

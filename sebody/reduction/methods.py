@@ -129,7 +129,7 @@ def clamped(fe_model: FEModel, edge: Boundary
     ties = edge.ties
     stiffness, mass = (ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
     interior = ClampedInterior(stiffness, mass, edge.held, edge.means, ties.rigid, ties.lengths,
-                               ties.name, ties.places)
+                               ties.name)
     static = static_modes(stiffness, interior, *edge.unit_motions())
     rigid = ties.rigid / ties.lengths[:, None]
     if is_strainless(stiffness, rigid):
@@ -167,7 +167,7 @@ class _FreeModes:
         self.rigid = linalg.solve_triangular(factor, rigid.T, trans="T").T
         momenta = sparse.csr_array((mass @ self.rigid).T)
         free = ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
-                               ties.lengths, ties.name, ties.places)
+                               ties.lengths, ties.name)
         self.elastic = free.vibrations(check_count(modes, free, "body has {} elastic modes"))[1]
 
     def component(self, static: ComponentModes, interior: ClampedInterior) -> ComponentModes:

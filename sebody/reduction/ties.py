@@ -24,8 +24,6 @@ class Ties:
     ----------
     independent : (n_dofs,) of int
         Independent DOF of each FE DOF; -1 on rigid faces.
-    places : (size, D)
-        Of each independent DOF [length].
     lengths : (size,)
         1 for translations, the extent of the model for rotations.
     rigid : (size, 6), planar (size, 3)
@@ -46,13 +44,6 @@ class Ties:
         self.size = self._loose + (dimension + self._angles) * len(self._faces)
         self._matrix = self._tie() if self._faces else None
         self.lengths, self.rigid = self._rigid()
-        self.places = np.zeros((self.size, dimension))
-        nodes, kinds = np.nonzero(fe_model.rows >= 0)
-        own = self.independent[fe_model.rows[nodes, kinds]]
-        self.places[own[own >= 0]] = fe_model.coordinates[nodes[own >= 0]]
-        for face in self._faces:
-            self.places[self.face_rows(face, "translation")] = face.point
-            self.places[self.face_rows(face, "rotation")] = face.point
 
     def project(self, matrix: sparse.csc_array) -> sparse.csc_array:
         """``T^T A T`` of an FE matrix A."""

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 COLORS = (ACCENT, "#2a7f62", INK, "#d99a2b", "#6a4c93", "#3d8fb5", "#8c564b", "#7f7f7f")
 DASHES = 0, (5, 3)      # of curves that may lie on others
 ON_TOP = "external work"            # which is all kinetic energy in many models
+DEEPEST = 1e-18         # of the highest density: what is below is rounding
 LEGEND = 10             # most curves that are named
 SIZE = 4.9, 3.0         # of a panel [inch]
 
@@ -135,6 +136,8 @@ def _draw_panel(axes: "Axes", panel: Panel, named: bool) -> None:
             axes.plot(curve.x[:1], curve.y[:1], "o", color=color, markersize=4, zorder=4)
     if panel.kind == "spectrum":
         axes.set_yscale("log")
+        low, high = axes.get_ylim()
+        axes.set_ylim(bottom=max(low, DEEPEST * high))
         axes.margins(x=0.01)
     elif panel.kind == "phase":
         _keep_shape(axes, panel)

@@ -22,6 +22,7 @@ COLORS = ("#4c78a8", "#e4873f", "#5a9e6f", "#b65d7c", "#8a6fb0", "#c8a23c", "#4a
 ROD, SPRING = "#8d97aa", "#2a7f62"
 LINK = 0.007            # half the width of links, of the model's extent
 MARKS = {"ground": ("^", PALE), "drive": ("o", ACCENT), "mass": ("o", INK)}
+BEHIND = 0.05           # by which faces that face away are put back, of the model's extent
 ROOM = 1.08             # of the picture, over what moves
 
 
@@ -153,9 +154,10 @@ def _faces(drawn: Scenery, eye: _Eye, k: int) -> tuple[list[NDArray], NDArray]:
     polygons, colors, depths = [], [], []
     for number, body in enumerate(drawn.bodies):
         corners = eye.seen(vertices(body, k))[body.surface.triangles]
+        away = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] < 0
         colors.append(_shaded(corners, COLORS[number % len(COLORS)]))
         polygons += list(corners[..., :2])
-        depths.append(corners[..., 2].mean(axis=1))
+        depths.append(corners[..., 2].mean(axis=1) - BEHIND * away)
     for link in drawn.links:
         if link.kind != "spring":
             ends = eye.seen(np.array([drawn.nodes[name].position[k] for name in link.ends]))

@@ -35,7 +35,7 @@ class Surface(NamedTuple):
     turns: NDArray          # (N, stations, 3) rotations likewise
     stations: NDArray       # (vertices,) of int
     offsets: NDArray        # (vertices, 3) from the station, turning with it
-    triangles: NDArray      # (triangles, 3) of vertices
+    triangles: NDArray      # (triangles, 3) of vertices; those of beams and solids face outwards
     edges: NDArray          # (edges, 2) of vertices: those of elements
     nodes: NDArray          # (stations, 2) FE nodes that a station is between
     shares: NDArray         # (stations,) part of the way from the first to the second
@@ -79,8 +79,10 @@ def outer_faces(cells: tuple[tuple[str, NDArray], ...]) -> list[NDArray]:
 def box(sides: NDArray, centre: NDArray, axes: NDArray) -> Surface:
     """A rigid box; `axes` has the directions of its sides as columns."""
     corners = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) / 2
-    quads = np.array([(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4),
+    quads = np.array([(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2),
                       (1, 3, 7, 5)])
+    if np.linalg.det(axes) < 0:
+        axes = axes * [1.0, 1.0, -1.0]
     points = centre + (corners * sides) @ axes.T
     none = np.zeros((0, 8, 3))
     return Surface(points, none, none, np.arange(8), np.zeros((8, 3)), _triangles(quads),
@@ -107,6 +109,7 @@ def _beams(points: NDArray, moves: NDArray, turns: NDArray, pairs: NDArray,
     if outlines is None:
         half = THIN * np.ptp(points, axis=0).max()
         outlines = _square(points[pairs[:, 1]] - points[pairs[:, 0]], half)
+    outlines = _turning(outlines, points[pairs[:, 1]] - points[pairs[:, 0]])
     pieces = max(1, -(-PIECES // len(pairs)))
     s = np.linspace(0.0, 1.0, pieces + 1)
     along = _between(points[None], np.zeros((1, *points.shape)), points, pairs, s)[0][0]
@@ -118,12 +121,19 @@ def _beams(points: NDArray, moves: NDArray, turns: NDArray, pairs: NDArray,
     b = a + corners
     sides = np.stack([a, np.roll(a, -1, axis=1), np.roll(b, -1, axis=1), b], axis=-1)
     degree = np.bincount(pairs.ravel(), minlength=len(points))
-    ends = [corners * ring[k, at] + _cap(outlines[k]) for k, pair in enumerate(pairs)
-            for at, node in ((0, pair[0]), (-1, pair[1])) if degree[node] != 2]
+    ends = [corners * ring[k, at] + _cap(outlines[k])[:, ::way] for k, pair in enumerate(pairs)
+            for at, node, way in ((0, pair[0], -1), (-1, pair[1], 1)) if degree[node] != 2]
     triangles = np.concatenate([_triangles(sides.reshape(-1, 4)), *ends])
     return Surface(along, moved, turned, np.repeat(np.arange(rings), corners), offsets,
                    triangles, np.zeros((0, 2), dtype=int), np.repeat(pairs, pieces + 1, axis=0),
                    np.tile(s, len(pairs)))
+
+
+def _turning(outlines: NDArray, lines: NDArray) -> NDArray:
+    """Outlines (n, corners, 3) that run about their lines, so that sides face outwards."""
+    areas = np.cross(outlines, np.roll(outlines, -1, axis=1)).sum(axis=1)
+    return np.where((np.einsum("ni,ni->n", areas, lines) < 0)[:, None, None],
+                    outlines[:, ::-1], outlines)
 
 
 def _between(moves: NDArray, turns: NDArray, points: NDArray, pairs: NDArray, s: NDArray

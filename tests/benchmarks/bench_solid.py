@@ -21,7 +21,6 @@ from scipy.sparse.linalg import splu
 from sebody.fem import FEModel
 from sebody.io import from_skfem
 from sebody.reduction import MeanFace, craig_bampton
-from sebody.reduction.dissection import dissection
 
 DIVISIONS, MODES = (61, 18, 18), 30
 STEEL, DENSITY = (2.1e11, 0.3), 7800.0
@@ -77,23 +76,12 @@ def factors(model: FEModel) -> dict:
     held = model.rows[list(model.node_set("start"))].ravel()
     inside = np.setdiff1d(np.arange(model.stiffness.shape[0]), held)
     matrix = model.stiffness[inside][:, inside]
-    places = np.zeros((model.stiffness.shape[0], 3))
-    places[model.rows] = model.coordinates[:, None]
-    places = places[inside]
-
-    def superlu(ordering: str) -> object:
-        order = dissection(matrix, places) if ordering == "NATURAL" else np.arange(len(inside))
-        return splu(matrix[order][:, order], ordering, diag_pivot_thresh=0.0,
-                    options={"SymmetricMode": True})
-
-    found = {}
-    for name, ordering in (("SuperLU, dissection", "NATURAL"),
-                           ("SuperLU, minimum degree", "MMD_AT_PLUS_A")):
-        factor, found[name] = timed(lambda ordering=ordering: superlu(ordering))
-        found[name]["entries"] = factor.nnz
-        _, solve = timed(lambda factor=factor: factor.solve(np.ones(len(inside))))
-        found[name]["solve"] = solve["processor_seconds"]
-        del factor
+    name = "SuperLU, minimum degree"
+    factor, measured = timed(lambda: splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+                                          options={"SymmetricMode": True}))
+    _, solve = timed(lambda: factor.solve(np.ones(len(inside))))
+    found = {name: {**measured, "entries": factor.nnz, "solve": solve["processor_seconds"]}}
+    del factor
     try:
         import cvxopt
         import cvxopt.cholmod

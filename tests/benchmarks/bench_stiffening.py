@@ -39,6 +39,8 @@ from stiffened_models import (
     linkage,
     nearest,
     places,
+    plate,
+    plate_frequencies,
 )
 
 OPTIONS = {"B": {"inertia": "b"}, "D": {"inertia": "d"},
@@ -303,6 +305,16 @@ def bent(option: dict) -> Values:
     return found
 
 
+def corner_plate(option: dict) -> Values:
+    """Largest relative error of four frequencies of a plate with four interfaces."""
+    first, found = plate_frequencies(0.0)[0], {}
+    for share in (0.5, 1.0):
+        spin, exact = (0.0, 0.0, share * first), plate_frequencies(share * first)[:4]
+        one = modes(equilibrium(plate(option, 8), 2, spin=spin), spin).omega[:4]
+        found[f"at {share:g} omega 1"] = np.abs(one / exact - 1).max()
+    return found
+
+
 def four_bodies(option: dict) -> Values:
     """Division: four bodies with two modes at eta = 6."""
     model = Model()
@@ -357,6 +369,8 @@ def cases() -> dict[str, tuple[Values, Callable[[dict], Values]]]:
         "more boundary nodes at eta 6": (beams, many_nodes),
         "elbow, 3 nodes, 6 modes: errors": (
             {f"at {s:g} omega 1": 0.0 for s in (0.21, 0.42, 0.63)}, bent),
+        "plate on four interfaces, 8 modes: errors": (
+            {f"at {s:g} omega 1": 0.0 for s in (0.5, 1.0)}, corner_plate),
         "four bodies with 2 modes at eta 6": (SPINNING, four_bodies),
     }
 

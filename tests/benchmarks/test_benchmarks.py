@@ -49,13 +49,6 @@ def test_set_ups_are_timed_by_scene(capsys):
     assert len(found) == len(bench.SCENES) and found["planar-hinged-beam"] > 0.0
 
 
-def test_options_are_compared_on_one_body(capsys):
-    imported("bench_one_body").main(["--json"], "stretch")
-    row, = json.loads(capsys.readouterr().out)
-    assert row["C, stiffening"] == pytest.approx(row["exact"], rel=1e-3)
-    assert row["B"] == pytest.approx(0.35, abs=2e-3)
-
-
 def test_variable_steps_are_compared_with_the_best_fixed_step():
     (error, steps, spent, best), = imported("bench_accuracy").compare(
         planar_hinged_beam.build, 0.5, 0.05, 16, (1e-2,), 1)
@@ -104,6 +97,24 @@ def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
     for row in (beam, weak):
         assert row["true"] <= bench.TOLERANCE and row["free"] <= bench.TOLERANCE
         assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
+
+
+def test_beams_are_compared_by_method():
+    rows = imported("bench_modes").beam_table((0, 1))
+    free = {(row["method"], row["modes"]): row["free-free"] for row in rows}
+    assert abs(free["rubin", 1][0] - 22.37329) < 1e-4 and abs(free["guyan", 0][0] - 26.833) < 1e-2
+    assert len(rows) == 7
+
+
+def test_a_solid_is_reduced(capsys):
+    pytest.importorskip("skfem")
+    bench = imported("bench_solid")
+    # fine enough that the patches have faces
+    bench.main(["--json"], divisions=(9, 3, 3), modes=2)
+    found = json.loads(capsys.readouterr().out)
+    assert found["dofs"] == 480 and found["order"] == 26 and found["reduced"]["seconds"] > 0.0
+    found = bench.factors(bench.curved_bar((6, 2, 2)))
+    assert found["SuperLU, minimum degree"]["entries"] > 0
 
 
 def test_recovered_stresses_are_compared_with_full_solutions():

@@ -10,7 +10,7 @@ from scipy import sparse
 from sebody.errors import InputError
 from sebody.fem import FEModel, hexahedral_block, straight_beam
 from sebody.fem.section import Section
-from sebody.reduction import RigidFace, craig_bampton
+from sebody.reduction import MeanFace, RigidFace, craig_bampton
 
 STEEL = (210e3, 0.3, 7.85e-9)
 SQUARE = Section(9.0, 6.75, 6.75, 11.387, 2.1e6, 0.3, 7.8e-3)
@@ -96,6 +96,25 @@ def test_a_solid_with_a_reference_node_is_the_solid_with_a_rigid_face():
     shape = found.displacements(np.eye(16)[9]).reshape(-1, 6)
     assert_array_equal(shape[face], 0.0)    # nodes without DOFs
     assert_allclose(shape[reference], np.eye(6)[3], atol=1e-14)     # its own rotation about x
+
+
+def test_interfaces_need_the_dofs_they_keep():
+    """In mixed models nodes may lack what an interface keeps; the message names both."""
+    point = np.array([43.0, 7.5, 5.0])
+    model, whole, face = block_with_reference(point)
+    model = replace(model, labels=100 + np.arange(len(model.coordinates)))
+    left = np.flatnonzero(whole.coordinates[:, 0] < 1.1).tolist()
+    slaved = 100 + int(face[0])
+    for items, words in (
+            ([(0, "full")], "boundary node 100 has no rx, ry, rz; it keeps 'full': keep what it "),
+            ([(int(face[0]), "translation")], f"boundary node {slaved} has no x, y, z; it keeps"),
+            ([(MeanFace(face.tolist(), weights="equal"), "full")],
+             f"node {slaved} of a mean face has no x, y, z; name nodes that have them")):
+        with pytest.raises(InputError, match=words):
+            craig_bampton(model, items, 0)
+    # the three translations that a solid node of a mixed model has are enough
+    body = craig_bampton(model, [(left[0], "translation"), (len(model.coordinates) - 1, "full")], 2)
+    assert body.keeps == ("translation", "full")
 
 
 def lumped(count, turning):

@@ -8,7 +8,7 @@ import pytest
 
 from sebody import InputError, Model, WriteError
 from sebody.fem import Section, hexahedral_block, planar_beam
-from sebody.io import Mesh, load_body, read_body_file, save_body
+from sebody.io import load_body, read_body_file, save_body
 from sebody.reduction import RigidFace, craig_bampton
 
 SECTION = Section(area=2.0, inertia_y=0.3, inertia_z=0.4, torsion=0.2, youngs_modulus=1e4,
@@ -39,12 +39,13 @@ def same(one, other):
 def test_a_body_comes_back_as_it_was(make, tmp_path):
     body = make()
     names = tuple("abc"[:len(body.keeps)])
-    save_body(body, tmp_path / "body.npz", names, units="mm, t, s", provenance={"source": "here"},
-              mesh=Mesh(body.recovery.coordinates, {"line": np.array([[0, 1]])}))
+    save_body(body, tmp_path / "body.npz", names, units="mm, t, s", provenance={"source": "here"})
     assert same(body, load_body(tmp_path / "body.npz"))
     file = read_body_file(tmp_path / "body.npz")
     assert (file.names, file.units, file.provenance) == (names, "mm, t, s", {"source": "here"})
-    np.testing.assert_array_equal(file.mesh.cells["line"], [[0, 1]])
+    np.testing.assert_array_equal(file.mesh[0], body.recovery.points)
+    lean = load_body(save_body(body, tmp_path / "lean.npz", recovery=False))
+    assert lean.recovery is None and same(lean.invariants, body.invariants)
 
 
 def test_a_model_takes_the_file(tmp_path):

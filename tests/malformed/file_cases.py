@@ -302,7 +302,7 @@ MATRIX_MARKET = {
     "no mass": Case("se_M.mtx does not exist", gone("se_M.mtx")),
     "NaN": Case("is nan: the matrix must be finite", lines_of(
         "se_K.mtx", lambda ls: [*ls[:-1], ls[-1].rsplit(" ", 1)[0] + " nan"])),
-    "half of it": Case("", lambda folder: mmwrite(
+    "half of it": Case("stiffness is not symmetric: stiffness[", lambda folder: mmwrite(
         folder / "se_K.mtx", sparse.coo_matrix(BLOCK.stiffness * np.triu(np.ones((48, 48)))
                                                + sparse.eye(48, k=-1)), symmetry="general")),
     "complex": Case("numbers of type complex", lambda folder: mmwrite(
@@ -323,7 +323,8 @@ SUBSTRUCTURE = {
     "unsymmetric": Case("se.mtx, line 3: the substructure is unsymmetric", replaced(
         "se.mtx", "LINEAR", "LINEAR, UNSYM")),
     "a node more": Case("names 2 of 3 nodes", replaced("se.mtx", "         2,", "         3,")),
-    "a node twice": Case("names node 4 twice", replaced("se.mtx", "          7", "          4")),
+    "a node twice": Case("names node 4 twice, as CalculiX does", replaced(
+        "se.mtx", "          7", "          4")),
     "no deck": Case("has no coordinates: put the deck with *NODE beside it", gone("se.inp")),
     "a node without place": Case("has rows of node 7, whose place is not given", replaced(
         "se.inp", "7, 1.", "8, 1.")),
@@ -343,7 +344,7 @@ SUBSTRUCTURE = {
     "modes": Case("are reduced already: leave modes out", options={"modes": 4}),
 }
 OP4 = {
-    "cut": Case("", cut("se.op4", 0.7)),
+    "cut": Case("se.op4 is damaged or of another kind", cut("se.op4", 0.7)),
     "another byte order": Case("se.op4", swapped("se.op4")),
     "no mass": Case("has no pair of matrices KXX and MXX, or KAAX and MAAX; it has kaax",
                     replaced("se.op4", "MAAX", "LOAD")),

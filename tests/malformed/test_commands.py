@@ -82,6 +82,18 @@ REFUSED = [
     (("list", "beam"), "scene 'beam' is unknown"), (("list", "none.py"), "none.py cannot be read"),
     (("list", "box", "chain"), "unrecognized arguments: chain"),
     (("list", "--all"), "unrecognized arguments: --all"),
+    (("list", "broken.npz"), "broken.npz is damaged or no results file"),
+    *(((command, "a.npz"), "required: --output") for command in ("plot", "animate", "report")),
+    *(((command, given, "--output", f"a{end}"), said)
+      for command, end in (("plot", ".svg"), ("animate", ".html"), ("report", ".html"))
+      for given, said in (("none.npz", "results file none.npz does not exist"),
+                          ("broken.npz", "broken.npz is damaged or no results file"),
+                          ("folder.npz", "folder.npz is a folder"), ("", "give the path"))),
+    *(((command, "broken.npz", "--output", path), said)
+      for command, end in (("plot", ".png"), ("animate", ".gif"), ("report", ".html"))
+      for path, said in ((f"a{end}x", "must end in ."), (f"none/a{end}", "folder none of the"),
+                         (LONG + end, "cannot be a file"), ("broken.npz", "must end in ."))),
+    (("animate", "a.npz", "--output", "a.html", "--speed", "fast"), "invalid float value: 'fast'"),
     (("check", "nothing"), "kernel 'nothing' is unknown: there are"),
     (("check", ""), "kernel '' is unknown"), (("check", "--all"), "unrecognized arguments"),
     (("bench", "beam"), "there is no benchmark of scene 'beam': use"),

@@ -59,8 +59,7 @@ def model_of(picture):
 def test_the_page_of_a_minute(beam, folder, chrome):
     path = animate(beam, folder / "beam.html", title="a beam <&> 'hinge'")
     assert path.stat().st_size < LIMIT
-    seconds = min(chrome.open(path) for _ in range(2))      # of a machine that others use
-    assert seconds < OPENED
+    assert chrome.open(path) < OPENED
     one, other = (model_of(go(chrome, part)) for part in (0.05, 0.11))
     assert np.mean(np.abs(one - other).max(axis=2) > 30) > 0.002
     assert chrome.value("document.querySelector('h1').textContent") == "a beam <&> 'hinge'"

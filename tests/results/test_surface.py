@@ -1,5 +1,6 @@
 """Surfaces of bodies against their FE models, and numbers in blocks against those given."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -18,7 +19,7 @@ from sebody.fem import (
 from sebody.reduction import RigidFace, craig_bampton
 from sebody.results.blocks import Blocks
 from sebody.results.scenery import scenery, vertices
-from sebody.results.surface import FACES, _cap, outer_faces, surface_of
+from sebody.results.surface import FACES, _cap, box, outer_faces, surface_of
 
 STEEL = 2.1e6, 0.3, 7.8e-3
 TURN = np.array([[2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [-1.0, 2.0, 2.0]]) / 3.0
@@ -73,6 +74,26 @@ def test_ends_of_sections_that_are_not_convex():
     a, b, c = outline[_cap(outline)].transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     assert areas.sum() == pytest.approx(section.area)
+
+
+def volume(surface):
+    """By the divergence theorem: faces that face inwards would take from it."""
+    vertices = surface.points[surface.stations] + surface.offsets
+    a, b, c = vertices[surface.triangles].transpose(1, 0, 2)
+    return np.einsum("ni,ni->", a, np.cross(b, c)) / 6
+
+
+def test_surfaces_face_outwards():
+    section = i_profile(3.0, 2.0, 0.2, 0.3, *STEEL)
+    for one in (section, replace(section, outline=section.outline[::-1])):
+        found, _ = surface(straight_beam((1, 2, 3), (5, 7, -3), one, 3), (0, 3))
+        assert volume(found) == pytest.approx(section.area * np.sqrt(77))
+    block = hexahedral_block((0, 1, 2), (2, 3, 4), (2, 3, 4), 1e6, 0.3, 1.0)
+    ends = [RigidFace((x, 2.5, 4), np.flatnonzero(block.coordinates[:, 0] == x)) for x in (0, 2)]
+    assert volume(surface(block, ends)[0]) == pytest.approx(24.0)
+    for axes in (TURN, TURN[:, ::-1]):          # of either hand
+        assert volume(box(np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0]), axes)) == (
+            pytest.approx(6.0))
 
 
 def test_sections_turn_with_the_body():

@@ -37,7 +37,7 @@ def draw(file: BodyFile, centre: NDArray, path: Path) -> None:
     for name, keep, point in zip(file.names, file.parts["keeps"], points, strict=True):
         axes.text(*point, f"  {name} ({keep})", color=INK, fontsize=8)
     axes.set_aspect("equal")
-    everything = points if file.mesh is None else np.vstack([points, file.mesh.points])
+    everything = points if file.mesh is None else np.vstack([points, file.mesh[0]])
     axes.set_title(" x ".join(f"{size:.5g}" for size in np.ptp(everything, axis=0)), loc="left",
                    fontsize=9)
     axes.legend(frameon=False, fontsize=8, loc="upper right")
@@ -50,9 +50,10 @@ def draw(file: BodyFile, centre: NDArray, path: Path) -> None:
 def _draw_edges(axes, file: BodyFile, planar: bool) -> None:
     if file.mesh is None:
         return
-    edges = np.array(list(_edges(file))).reshape(-1, 2)
+    nodes, cells = file.mesh
+    edges = np.array(list(_edges(cells)), dtype=int).reshape(-1, 2)
     edges = np.unique(np.sort(edges, axis=1), axis=0)
-    lines = file.mesh.points[edges[::len(edges) // MOST_EDGES + 1]]
+    lines = nodes[edges[::len(edges) // MOST_EDGES + 1]]
     if planar:
         from matplotlib.collections import LineCollection as Lines
     else:
@@ -60,7 +61,7 @@ def _draw_edges(axes, file: BodyFile, planar: bool) -> None:
     axes.add_collection(Lines(list(lines), colors=PALE, linewidths=0.4))
 
 
-def _edges(file: BodyFile) -> Iterator[tuple[int, int]]:
-    for kind, cells in file.mesh.cells.items():
+def _edges(cells: tuple[tuple[str, NDArray], ...]) -> Iterator[tuple[int, int]]:
+    for kind, nodes in cells:
         for a, b in EDGES.get(kind.rstrip("0123456789"), []):
-            yield from zip(cells[:, a].tolist(), cells[:, b].tolist(), strict=True)
+            yield from zip(nodes[:, a].tolist(), nodes[:, b].tolist(), strict=True)

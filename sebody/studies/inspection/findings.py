@@ -19,6 +19,7 @@ from sebody.studies.inspection.measures import Matrices
 _DIGITS = 1e-8
 _GEOMETRY = 1e-6    # of R^T M R, relative to the mass: of files with eight digits or more
 _LUMPED = 1e-3      # distance of the frame from the centre of mass, relative to the body's size
+_MASSLESS = 1e-12   # lowest eigenvalue of the unit-free mass, relative to the largest
 _STIFF = 1e4        # highest over lowest flexible frequency
 
 
@@ -81,6 +82,11 @@ def _mass(numbers: dict) -> list[Finding]:
         found.append(Finding("defect", f"the mass matrix is indefinite: {lowest['lowest']:.3e} of "
                              f"its largest eigenvalue, mostly in {lowest['worst']}",
                              "check the order of its rows and the digits of the file"))
+    elif lowest["lowest"] < _MASSLESS:
+        found.append(Finding("caution", "the mass matrix is singular, mostly in "
+                             f"{lowest['worst']}: some motion has no inertia",
+                             "give it mass, or hold it by joints; damping by a ratio and SID need "
+                             "inertia of every coordinate"))
     if numbers["mass_geometry_defect"] > _GEOMETRY:
         found.append(Finding(
             "defect", "rigid motion has no inertia that a body can have: R^T M R is off by "

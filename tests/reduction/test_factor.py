@@ -1,0 +1,41 @@
+"""Large stiffness matrices, whose pivots are not looked at unless they are suspect."""
+
+import re
+
+import numpy as np
+import pytest
+
+from sebody.errors import InputError
+from sebody.fem import FEModel, hexahedral_block
+from sebody.fem.selection import nodes_on_plane
+from sebody.reduction import MeanFace, craig_bampton, factor
+
+STEEL = (2.1e6, 0.3, 7.8e-3)
+BLOCK = hexahedral_block([1, 2, 3], [6, 4, 4], (5, 3, 3), *STEEL)
+
+
+def test_pivots_that_nobody_looks_at_change_nothing(monkeypatch):
+    ends = [(MeanFace(nodes_on_plane(BLOCK, [x, 0, 0], [1, 0, 0])), "full") for x in (1, 7)]
+    expected = craig_bampton(BLOCK, ends, 3)
+    monkeypatch.setattr(factor, "_SMALL", 100)
+    found = craig_bampton(BLOCK, ends, 3)
+    for name in ("stiffness", "mass"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+
+
+def test_loose_parts_of_large_models_are_named(monkeypatch):
+    monkeypatch.setattr(factor, "_SMALL", 100)
+    other = hexahedral_block([20, 2, 3], [1, 1, 1], (1, 1, 1), *STEEL)
+    n, size = len(BLOCK.coordinates), 3 * len(BLOCK.coordinates)
+    K, M = (np.zeros((size + 24, size + 24)) for _ in range(2))
+    for whole, name in ((K, "stiffness"), (M, "mass")):
+        whole[:size, :size] = getattr(BLOCK, name).toarray()
+        whole[size:, size:] = getattr(other, name).toarray()
+    model = FEModel(K, M, np.vstack([BLOCK.coordinates, other.coordinates]), BLOCK.node_dofs,
+                    labels=np.arange(n + 8) + 1, cells=BLOCK.cells)
+    left = MeanFace(nodes_on_plane(BLOCK, [1, 0, 0], [1, 0, 0]))
+    # some of its DOFs may be among those that are pinned
+    with pytest.raises(InputError, match=r"a part of (1[89]|2\d) DOFs is loose, that ") as told:
+        craig_bampton(model, [(left, "full")], 2)
+    named = {int(word) for word in re.findall(r"node (\d+)", str(told.value))}
+    assert named and named <= set(range(n + 1, n + 9))
