@@ -24,13 +24,16 @@ _ASYMMETRY = 1e-8  # of a geometric stiffness, relative to its largest entry
 
 
 def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
-                   component: ComponentModes, interior: ClampedInterior) -> ReducedBody:
+                   component: ComponentModes, interior: ClampedInterior, forces: NDArray
+                   ) -> ReducedBody:
     """The body with its shapes, exact inertia if the FE model has a mass field, and stiffening.
 
     Parameters
     ----------
     component : ComponentModes
         Shapes of the reduced coordinates, in the DOFs that the boundary leaves independent.
+    forces : (n, k)
+        Loads on these DOFs, in the order of the body's.
     """
     shapes = boundary.ties.spread(component.basis)
     invariants = None
@@ -40,7 +43,7 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     notes = (*body.notes, _inertia_note(fe_model), _stiffening_note(invariants))
     recovery = _recovery(fe_model, shapes)
     if fe_model.stress:
-        static = static_correction(fe_model, boundary, component, interior, body)
+        static = static_correction(fe_model, boundary, component, interior, body, forces)
         recovery = replace(recovery, static=fe_model.by_nodes(boundary.ties.spread(static)))
     return replace(body, invariants=invariants, recovery=recovery, notes=notes)
 

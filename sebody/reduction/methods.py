@@ -118,7 +118,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     if method == "macneal":
         body = with_shapes(body, fe_model, edge, component)
     else:
-        body = with_constants(body, fe_model, edge, component, interior)
+        body = with_constants(body, fe_model, edge, component, interior, forces)
     return body if recover is None else body.recovering(recover)
 
 

@@ -34,10 +34,11 @@ class Recovery:
         As in `FEModel`.
     stress : tuple of SolidStress, BeamStress or StressModes
         What stresses the displacements cause, of those of the first n shapes.
-    static : (n_nodes k, n_b + pairs), optional
+    static : (n_nodes k, n_b + pairs + loads), optional
         Static displacements, in addition to the shapes, under the loads of unit inertia: of unit
         accelerations of the n_b boundary coordinates, then of unit products of angular velocities
-        ``w_k w_l``, k <= l; see `sebody.reduction.static_correction`.
+        ``w_k w_l``, k <= l; then under the loads of the body. See
+        `sebody.reduction.static_correction`.
     nodes : (n_nodes,) of int, optional
         Their numbers in the FE model, of which these are a part; ascending.
     """

@@ -5,8 +5,8 @@ them is held. With the residual flexibility of the clamped body,
 
     B = S_II^-1 - sum phi phi^T / omega^2    over the modes kept,
 
-the displacement under the inertia forces ``-M a`` is ``Phi y - B M a``: the modes' own part stays
-as the equations of motion make it, all others answer as they would to a load that changes slowly.
+the displacement under loads p and the inertia ``-M a`` is ``Phi y + B (p - M a)``: the modes' own
+part stays as the equations of motion make it, all others answer as to a load that changes slowly.
 This is the method of mode acceleration (R.R. Craig and A.J. Kurdila, Fundamentals of Structural
 Dynamics, 2nd ed., 2006, section 11.4). The accelerations are those of the boundary, which the
 constraint modes carry inside, and the centripetal ones of the undeformed body; Coriolis' and those
@@ -25,21 +25,27 @@ from sebody.reduction.integrals import MassIntegrals
 
 
 def static_correction(fe_model: FEModel, boundary: Boundary, component: ComponentModes,
-                      interior: ClampedInterior, body: ReducedBody) -> NDArray:
-    """Displacements of the DOFs that the boundary leaves independent, under loads of unit inertia.
+                      interior: ClampedInterior, body: ReducedBody, forces: NDArray) -> NDArray:
+    """Displacements of the DOFs that the boundary leaves independent, under unit loads.
 
     The loads are ``M`` times the constraint modes, for unit accelerations of the n_b boundary
     coordinates, and minus those of centripetal accelerations of unit ``w_k w_l``, k <= l, about the
     mean of the boundary nodes; the latter are 0 of FE models whose points of mass are not known.
+    Then come the loads on the body itself.
+
+    Parameters
+    ----------
+    forces : (n, k)
+        These loads.
 
     Returns
     -------
-    (n, n_b + pairs)
+    (n, n_b + pairs + k)
     """
     ties, held = boundary.ties, len(body.stiffness) - body.modes
     modes = component.basis[:, held:]
     loads = np.hstack([ties.project(fe_model.mass) @ component.basis[:, :held],
-                       ties.gather(_spin_loads(fe_model, body))])
+                       ties.gather(_spin_loads(fe_model, body)), forces])
     loads[boundary.held] = 0.0
     return (interior.displacement(loads)
             - modes @ ((modes.T @ loads) / component.omega_squared[:, None]))

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.results.body_loads import load_amplitudes
 from sebody.results.motion import BodyMotion, body_motion
 from sebody.results.recording import Recording
 from sebody.results.stresses import Stresses
@@ -117,8 +118,9 @@ class FieldStates:
         """
         static = inputs.flag(static, "static")
         if static not in self._stresses:
+            loads = load_amplitudes(self._recording, self._body, self.motion) if static else None
             self._stresses[static] = Stresses(self._body, self.motion,
-                                              self._recording.model.gravity_field, static)
+                                              self._recording.model.gravity_field, loads)
         return self._stresses[static]
 
     def number(self, place: int) -> int:

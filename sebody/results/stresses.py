@@ -5,8 +5,8 @@ The displacements whose stresses are taken are those of the reduced coordinates,
 * Coordinates that follow in second order shorten a bent body without straining it, so they are
   left out. With inertia option C the resultants ``s_e = lam_e E_e^T y + y^T Ghat_e y / 2`` carry
   what bending adds to them: y moves on by ``S^+ E_e y^T Ghat_e y / 2``.
-* The static answer of the modes left out to the body's inertia and weight is added, see
-  `sebody.reduction.static_correction`.
+* The static answer of the modes left out to the body's inertia and weight, and to the loads on the
+  body itself, is added, see `sebody.reduction.static_correction`.
 """
 
 from functools import cached_property
@@ -36,8 +36,9 @@ class Stresses:
         In all recorded states.
     gravity : (D,)
         In global axes.
-    static : bool
-        Whether the static answer of the modes left out is added.
+    loads : (n, loads of the body), optional
+        Their amplitudes in all recorded states, if the static answer of the modes left out is
+        added.
 
     Raises
     ------
@@ -45,7 +46,8 @@ class Stresses:
         A body whose FE model has no stress operator.
     """
 
-    def __init__(self, body: Superelement, motion: BodyMotion, gravity: NDArray, static: bool):
+    def __init__(self, body: Superelement, motion: BodyMotion, gravity: NDArray,
+                 loads: NDArray | None):
         self._body, self._motion, self._gravity = body, motion, gravity
         self._recovery: Recovery = body.body.recovery
         if not self._recovery.stress:
@@ -60,9 +62,9 @@ class Stresses:
         count = len(self._recovery.coordinates)
         self._shapes = [self._recovery.shapes[:, :n].reshape(count, width, n)]
         self._amplitudes = [self._recovery.in_fe_axes(self._strained())]
-        if static and self._recovery.static is not None:
+        if loads is not None and self._recovery.static is not None:
             self._shapes.append(self._recovery.static.reshape(count, width, -1))
-            self._amplitudes.append(self._inertia())
+            self._amplitudes.append(np.hstack([self._inertia(), loads]))
 
     @property
     def states_at_once(self) -> int:

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, Result
 from sebody.analysis import equilibrium
 from sebody.fem import StressModes, hexahedral_block, rectangle, straight_beam
+from sebody.fem.loads import pressure
 from sebody.reduction import RigidFace, craig_bampton
 
 E, NU, RHO = 2.1e11, 0.3, 7800.0
@@ -92,7 +93,7 @@ def held(body, points):
     return model
 
 
-def full_solution(fe, ends, points):
+def full_solution(fe, ends, points, more=0.0):
     """Displacements of the whole FE model under the same loads, the end face tied."""
     free = np.setdiff1d(np.arange(len(fe.coordinates)), np.concatenate(ends))
     inner = (3 * free[:, None] + np.arange(3)).ravel()
@@ -101,7 +102,7 @@ def full_solution(fe, ends, points):
         arm = fe.coordinates[node] - points[1]
         tied[3 * node:3 * node + 3] = np.hstack([np.eye(3), -np.cross(np.eye(3), arm)])
     T = np.hstack([np.eye(len(tied))[:, inner], tied])
-    loads = fe.mass @ np.tile(GRAVITY, len(fe.coordinates))
+    loads = fe.mass @ np.tile(GRAVITY, len(fe.coordinates)) + more
     reduced = T.T @ loads + np.r_[np.zeros(len(inner)), FORCE, 0, 0, 0]
     return T @ np.linalg.solve(T.T @ fe.stiffness @ T, reduced)
 
@@ -218,3 +219,25 @@ def test_stress_modes_of_another_program():
     bare = replace(body, recovery=replace(shapes, stress=()))
     with pytest.raises(InputError, match="'block' knows no stresses: reduce an FE model that has"):
         equilibrium(held(bare, points), 1).field("block").von_mises()
+
+
+def test_the_static_answer_to_loads_on_the_body(tmp_path):
+    """Pressure on a side, with few modes: the stresses of the whole FE model."""
+    fe, _, ends, points = block(0)
+    side = np.flatnonzero(np.abs(fe.coordinates[:, 2] - 3.8) < 1e-9)
+    p = pressure(fe, side, 50.0)
+    faces = [(RigidFace(point, tuple(nodes)), "full")
+             for point, nodes in zip(points, ends, strict=True)]
+    body = craig_bampton(fe, faces, 1, loads={"other": 0.3 * p[::-1], "wind": p})
+    model = held(body, points)
+    model.body_load("block", "wind", [(0, 2.0), (1, 2.0)])
+    result = equilibrium(model, 1)
+    one, = fe.stress
+    u = full_solution(fe, ends, points, 2.0 * p).reshape(-1, 3, 1)
+    expected = one.stress(u)[..., 0].reshape(-1, 6)
+    largest = np.abs(expected).max()
+    for source in (result, Result.load(result.save(tmp_path / "r.npz"))):
+        field = source.field("block")
+        assert_allclose(field.stress(at="points"), expected, rtol=0, atol=1e-5 * largest)
+    plain = field.stress(at="points", static=False)
+    assert np.abs(plain - expected).max() > 1e-3 * largest

@@ -1,0 +1,32 @@
+"""Amplitudes of the loads on a superelement itself, from the forces of their elements."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.model.parts import Superelement
+from sebody.results.motion import BodyMotion
+from sebody.results.recording import Recording
+
+
+def load_amplitudes(recording: Recording, body: Superelement, motion: BodyMotion) -> NDArray:
+    """Amplitudes in all recorded states, (n, loads), in the order of the body's loads.
+
+    A load ``P = Phi^T p`` gives the residual ``-a R_0 P_i`` at positions and ``-a P_k`` at modes:
+    projected on P this is the amplitude a, also of a result that has lost its functions.
+    """
+    names = list(body.body.loads)
+    found = np.zeros((len(recording.rows), len(names)))
+    for element in recording.model.loads:
+        if element.body is not body:
+            continue
+        P = np.asarray(element.constants["P"])
+        first = recording.numbering.forces_at[id(element)]
+        forces = recording.forces.elements[:, first:first + len(P)]
+        count, D = len(body.positions), motion.origin.shape[1]
+        local = forces[:, :count * D].reshape(-1, count, D) @ motion.rotation
+        modes = len(P) - body.body.modes
+        known = np.r_[P[:count * D], P[modes:]]
+        whole = np.hstack([local.reshape(-1, count * D), forces[:, modes:]])
+        k = next(k for k, name in enumerate(names) if np.array_equal(body.body.loads[name], P))
+        found[:, k] -= whole @ known / max(known @ known, 1e-300)
+    return found
