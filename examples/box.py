@@ -32,7 +32,7 @@ def build(layout: str = "small", modes: int = 6, elements: int = 4,
     elements : int
         Finite elements a member.
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     """
     keeps = {"small": "translation", "full": "full"}
     keep = keeps[inputs.choice(layout, "layout", keeps)]

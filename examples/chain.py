@@ -33,7 +33,7 @@ def build(links: int = 16, modes: int = 4, inertia: str | None = None) -> Scene:
     modes : int
         Internal modes a link.
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     """
     links = inputs.integer(links, "links", least=1)
     body, model = link_body(modes), Model()

@@ -11,7 +11,7 @@ TORQUE = [(0.0, 0.0), (2.5, 1.2e4), (5.0, 1.2e4), (7.5, 0.0)]
 
 def build(frame: str = "converged_mean", inertia: str | None = None, modes: int = 4,
           elements: int = 20, frame_node: int = 0, bodies: int = 1,
-          stiffening: bool | None = None) -> Scene:
+          stiffening: bool | None = None, torque: float = 1.2e4) -> Scene:
     """The scene: beam of length 100 sqrt(2) along (1, 1, 0), hinged about z at its base.
 
     Parameters
@@ -19,7 +19,7 @@ def build(frame: str = "converged_mean", inertia: str | None = None, modes: int 
     frame : str
         Frame of the bodies: converged_mean, mean, mean_small, or node (attached to a node).
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     modes : int
         Internal modes a body.
     elements : int
@@ -30,13 +30,15 @@ def build(frame: str = "converged_mean", inertia: str | None = None, modes: int 
         Number of equal superelements the beam is divided into.
     stiffening : bool
         With option c: whether stresses stiffen the bodies; by default all but nonlinear beams.
+    torque : float
+        Largest torque at the hinge.
     """
     model = Model()
     base, tip = model.node("base", (0.0, 0.0, 0.0)), model.node("tip", (100.0, 100.0, 0.0))
     model.beam("beam", (base, tip), SECTION, elements, bodies, modes, frame=frame, inertia=inertia,
                stiffening=stiffening, frame_node=frame_node)
     model.revolute(base, axis=(0, 0, 1))
-    model.torque(base, (0, 0, 1), TORQUE)
+    model.torque(base, (0, 0, 1), [(t, value * (torque / 1.2e4)) for t, value in TORQUE])
     return Scene("hinged-beam", "the paper's hinged beam, spun up by a torque at its base",
                  model, h=0.01, t_end=30.0)
 

@@ -19,7 +19,7 @@ STEPS = 20                      # in a period of the first free vibration
 
 
 def build(body: str = "", turn: float = 60.0, frame: str = "converged_mean",
-          inertia: str = "b") -> Scene:
+          inertia: str | None = None) -> Scene:
     """The scene, at rest, its crank and rocker normal to the coupler.
 
     Parameters
@@ -31,7 +31,7 @@ def build(body: str = "", turn: float = 60.0, frame: str = "converged_mean",
     frame : str
         Frame of the coupler: converged_mean, mean, node, ...
     inertia : str
-        Inertia option of the coupler: a, b or c.
+        Inertia option of the coupler: a, b, c or d; by default the best it can have.
     """
     turn = inputs.number(turn, "turn", above=0)
     coupler = load_body(body) if body else block()

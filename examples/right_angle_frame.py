@@ -28,7 +28,7 @@ def build(layout: str = "small", modes: int = 6, elements: int = 10,
     elements : int
         Finite elements a leg.
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     """
     keeps = {"small": "translation", "full": "full"}
     keep = keeps[inputs.choice(layout, "layout", keeps)]

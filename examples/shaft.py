@@ -29,7 +29,7 @@ def build(layout: str = "small", modes: int = 8, elements: int = 16,
     elements : int
         Finite elements, an even number.
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     """
     keeps = {"small": "rotation", "full": "full"}
     keep = keeps[inputs.choice(layout, "layout", keeps)]

@@ -33,7 +33,7 @@ def build(bodies: int = 1, modes: int = 5, elements: int = ELEMENTS,
     frame : str
         Frame of the bodies: converged_mean, or node (attached to their first node).
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     stiffening : bool
         With option c: whether stresses stiffen the bodies; by default all but nonlinear beams.
     """

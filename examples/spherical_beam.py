@@ -22,7 +22,7 @@ def build(frame: str = "converged_mean", inertia: str | None = None, modes: int 
     frame : str
         Frame of the bodies: converged_mean, mean, mean_small, or node (attached to a node).
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     modes : int
         Internal modes a body.
     elements : int

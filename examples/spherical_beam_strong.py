@@ -24,7 +24,7 @@ def build(F0: float = 2800.0, frame: str = "converged_mean", inertia: str | None
     frame : str
         Frame of the bodies: converged_mean, mean, mean_small, or node (attached to a node).
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     modes : int
         Internal modes a body.
     elements : int

@@ -34,7 +34,7 @@ def build(case: str = "kane", bodies: int = 8, modes: int = 0, elements: int = 3
     frame : str
         Frame of the bodies: converged_mean, or node (attached to their first node).
     inertia : str
-        Inertia option: a or b of the paper, c of the displacement field; the best by default.
+        Inertia option: a or b of the paper, c or d; by default the best the body can have.
     stiffening : bool
         With option c: whether stresses stiffen the bodies; by default all but nonlinear beams.
 

@@ -1,5 +1,6 @@
 """The editable install: found from anywhere, also beside a clone."""
 
+import re
 import subprocess
 import sys
 import tomllib
@@ -8,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+from sebody.io import SOURCES
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("sebody", "derive", "generated", "examples")
@@ -88,3 +91,18 @@ def test_the_wheel_holds_files_that_are_no_modules(tmp_path):
         held = set(wheel.namelist())
     files = {str(path.relative_to(ROOT)) for path in (ROOT / "sebody/results/page").iterdir()}
     assert len(files) >= 13 and files <= held
+
+
+def test_messages_and_pages_name_extras_that_exist():
+    """As `pip install "sebody[...]"`, in quotes, which some shells need."""
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"][
+        "optional-dependencies"]
+    texts = [path.read_text() for folder in ("sebody", "derive", "examples")
+             for pattern in ("*.py", "*.md") for path in (ROOT / folder).rglob(pattern)]
+    named = [name for text in texts for name in re.findall(r'pip install (\S*sebody\S*)', text)]
+    assert len(named) > 8
+    for name in named:
+        quoted = re.match(r'"sebody\[({\w+\.extra}|\w+)\]"', name)
+        assert quoted, name
+        assert quoted[1] in extras or quoted[1] == "{source.extra}"
+    assert {source.extra for source in SOURCES} - {""} <= set(extras)

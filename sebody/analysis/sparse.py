@@ -43,7 +43,7 @@ class _Dense:
         self._factors, self._exchanges, zero = dgetrf(matrix.toarray(order="F"), overwrite_a=True)
         if zero:
             raise RuntimeError("a pivot is exactly zero")
-        self.pivots, self.unknowns = np.abs(self._factors.diagonal()), np.arange(matrix.shape[0])
+        self.pivots = np.abs(self._factors.diagonal())
 
     def solve(self, right: NDArray) -> NDArray:
         return dgetrs(self._factors, self._exchanges, right)[0]
@@ -59,10 +59,6 @@ class _Sparse:
     @cached_property
     def pivots(self) -> NDArray:
         return np.abs(self._factors.U.diagonal())
-
-    @property
-    def unknowns(self) -> NDArray:
-        return np.argsort(self._factors.perm_c)
 
 
 class Scaled:
@@ -105,13 +101,6 @@ class Scaled:
             return False
         pivots = self.factors.pivots
         return bool(pivots.min() >= share * pivots.max())
-
-    @property
-    def weakest(self) -> int | None:
-        """The unknown of the smallest pivot, None if a pivot is exactly zero."""
-        if self.factors is None:
-            return None
-        return int(self.factors.unknowns[np.argmin(self.factors.pivots)])
 
     def solve(self, right: NDArray) -> NDArray:
         """Solution by the factors."""

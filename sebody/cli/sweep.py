@@ -133,7 +133,7 @@ def _written(table: "Table", stem: Path) -> list[str]:
     try:
         frame = table.to_pandas()
     except InputError:
-        print("no CSV or Parquet table: pip install \"sebody[tables]\"", file=sys.stderr)
+        print('no CSV or Parquet table: pip install "sebody[tables]"', file=sys.stderr)
     else:
         lines.append(f"table: {_frame(frame, stem)}")
     try:
@@ -142,7 +142,7 @@ def _written(table: "Table", stem: Path) -> list[str]:
         draw(table, _beside(stem, ".png"))
         lines.append(f"picture: {_beside(stem, '.png')}")
     except ImportError:
-        print("no picture: pip install \"sebody[plot]\"", file=sys.stderr)
+        print('no picture: pip install "sebody[plot]"', file=sys.stderr)
     return lines
 
 

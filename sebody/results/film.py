@@ -36,7 +36,7 @@ def check_film(suffix: str) -> None:
     """
     check_matplotlib()
     if suffix == ".mp4" and (find_spec("imageio") is None or find_spec("imageio_ffmpeg") is None):
-        raise InputError("films of kind mp4 need imageio with ffmpeg: pip install sebody[film]; "
+        raise InputError('films of kind mp4 need imageio with ffmpeg: pip install "sebody[film]"; '
                          "gif needs matplotlib alone")
 
 

@@ -50,7 +50,7 @@ def check_matplotlib() -> None:
         matplotlib is missing.
     """
     if find_spec("matplotlib") is None:
-        raise InputError("pictures need matplotlib: pip install sebody[plot]")
+        raise InputError('pictures need matplotlib: pip install "sebody[plot]"')
 
 
 def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:

@@ -150,7 +150,7 @@ def _why(part: str, owners: dict[str, list[str]]) -> str:
     if part.startswith("modes of "):
         return "amplitudes of the internal modes that the reduction has kept"
     if part.startswith("multipliers of "):
-        return "equations: what this joins cannot share its coordinates"
+        return "an equation each, as the nodes it joins cannot share these coordinates"
     nodes = owners.get(part, [])
     shared = f"; {', '.join(nodes)} share it, which takes no equation" * (len(nodes) > 1)
     return f"the {part.rpartition('.')[2]} is neither fixed nor prescribed{shared}"

@@ -205,6 +205,7 @@ def test_example_of_the_readme(capsys):
     exec(code, names)
     assert "steps                3000 (0 cut), to t = 30" in capsys.readouterr().out
     result = names["result"]
+    text += (ROOT / "sebody" / "model" / "README.md").read_text()
     assert len(result.t) == len(reference("hinged_beam")["t"])
     assert tip_error("hinged_beam", result.t, result["tip.position"]) <= 1.0e-3
     for name in re.findall(r'result\["(.*?)"\]', text):
@@ -213,9 +214,25 @@ def test_example_of_the_readme(capsys):
         assert names["model"].element(name).name == name
 
 
+PAGES = [ROOT / "README.md", *(page for folder in ("sebody", "derive", "tests")
+                               for page in sorted((ROOT / folder).rglob("*.md")))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_and_scenes_of_a_page_exist(page):
+    text = page.read_text()
+    assert set(re.findall(r"sebody (?:run|sweep) ([a-z][\w-]*)", text)) <= set(scenes())
+    for link, anchor in re.findall(r"\]\(([^)#:]*)(?:#([^)]*))?\)", text):
+        target = page.parent / link if link else page
+        assert target.exists(), link
+        if anchor:
+            headings = re.findall(r"^#+ (.*)$", target.read_text(), re.M)
+            assert anchor in {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-")
+                              for heading in headings}, f"{link}#{anchor}"
+
+
 def test_names_in_the_readme_exist():
     text = (ROOT / "README.md").read_text()
-    assert set(re.findall(r"sebody run ([a-z][\w-]*)", text)) <= set(scenes())
     for folder in re.findall(r"^\| .*?`([a-z/]+/)`", text, re.M):
         assert (ROOT / folder).is_dir()
     for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):

@@ -213,7 +213,7 @@ def test_results_of_one_state(tmp_path):
 
 def test_missing_packages(beam, tmp_path, monkeypatch):
     monkeypatch.setattr(film, "find_spec", lambda name: None)
-    with pytest.raises(InputError, match=r"mp4 need imageio with ffmpeg: pip install sebody\[film"):
+    with pytest.raises(InputError, match=r'need imageio with ffmpeg: pip install "sebody\[film\]'):
         animate(beam, tmp_path / "a.mp4")
 
 

@@ -119,7 +119,7 @@ def test_files_that_cannot_be_written(tmp_path, name, message):
 
 def test_matplotlib_is_missing(tmp_path, monkeypatch):
     monkeypatch.setattr(plot, "find_spec", lambda name: None)
-    with pytest.raises(InputError, match=r"need matplotlib: pip install sebody\[plot\]"):
+    with pytest.raises(InputError, match=r'need matplotlib: pip install "sebody\[plot\]"'):
         plot.check_picture(tmp_path / "beam.png")
 
 

@@ -83,7 +83,7 @@ def test_unknown_scene_is_named(capsys):
 
 
 def test_missing_peer_is_named(alone):
-    with pytest.raises(InputError, match="Exudyn is not installed: pip install exudyn"):
+    with pytest.raises(InputError, match=r'Exudyn is not installed: pip install "sebody\[bench\]"'):
         peer.measure("chain")
 
 

@@ -44,7 +44,7 @@ def measure(scene: str) -> list[Measurement]:
         Exudyn is not installed.
     """
     if not available():
-        raise InputError("Exudyn is not installed: pip install exudyn")
+        raise InputError('Exudyn is not installed: pip install "sebody[bench]"')
     sys.exudynFast = True       # read by Exudyn when it is first imported
     models = import_module("sebody.studies.bench.peer_models")
     mechanisms = import_module("sebody.studies.bench.peer_mechanisms")

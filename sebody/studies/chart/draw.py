@@ -11,6 +11,7 @@ COLORS = {"frames and inertia": "#c8452d", "modes": "#2a7f62", "modes, B": "#7fc
           "bodies": "#3c6fb6", "steps": "#b58a1b", "nonlinear beams": "#1f2a44",
           "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
 MOST_NAMES = 7      # of the front that are written beside their points
+APART = 0.8         # of the error of the named point before: nearer names would cover one another
 EDGE = 6.0          # dots between the axis and a name
 
 
@@ -30,6 +31,7 @@ def draw(scene: str, points: list[Point], line: list[Point], limit: float,
                       "^" if family == "Exudyn" else "o", color=color, markersize=5, label=family)
     axes.step([p.cost for p in line], [p.error for p in line], where="post", color="#1f2a44",
               linewidth=0.8, zorder=1)
+    line = _apart(line)
     every = max(1, -(-len(line) // MOST_NAMES))
     names = [axes.annotate(point.label, (point.cost, point.error), (-3, -4), fontsize=8, ha="right",
                            va="top", textcoords="offset points", color="#1f2a44", zorder=4,
@@ -49,6 +51,15 @@ def draw(scene: str, points: list[Point], line: list[Point], limit: float,
     axes.margins(x=0.1)
     _make_room(figure, axes, names)
     write_picture(figure, path, 130)
+
+
+def _apart(line: list[Point]) -> list[Point]:
+    """Points of the front that are named: none that is hardly better than a cheaper one."""
+    found: list[Point] = []
+    for point in line:
+        if not found or point.error < APART * found[-1].error:
+            found.append(point)
+    return found
 
 
 def _make_room(figure, axes, names: list) -> None:

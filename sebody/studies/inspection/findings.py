@@ -163,6 +163,7 @@ def _steps(numbers: dict) -> list[Finding]:
 
 def _constants(file: BodyFile) -> list[Finding]:
     if file.parts.get("invariants") is None:
-        return [Finding("caution", "no constants of exact inertia: inertia options A and B only",
+        return [Finding("caution", "no constants of exact inertia: inertia option D, or A and "
+                        "B, without stiffening",
                         "import the FE model with its mesh, not reduced matrices alone")]
     return []

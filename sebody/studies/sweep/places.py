@@ -58,7 +58,7 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Run]:
     try:
         from distributed import Client, LocalCluster
     except ImportError as error:
-        raise InputError("--cluster and --workers need Dask: pip install \"sebody[cluster]\""
+        raise InputError('--cluster and --workers need Dask: pip install "sebody[cluster]"'
                          ) from error
     own = None
     try:

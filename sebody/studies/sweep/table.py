@@ -126,7 +126,7 @@ class Table:
         try:
             import pandas
         except ImportError as error:
-            raise InputError("tables as data frames need pandas: pip install \"sebody[tables]\""
+            raise InputError('tables as data frames need pandas: pip install "sebody[tables]"'
                              ) from error
         return pandas.DataFrame({name: [str(v) for v in values] if values.dtype == object
                                  and name not in self.parameters else values
