@@ -319,6 +319,19 @@ def test_what_cannot_be_rigid_is_said():
         rigid(parallel, "beside")
 
 
+def test_a_held_node_without_rotation_cannot_carry_a_rigid_body():
+    model, body = Model(), straight_beam(at(0, 0, 0), at(40, 0, 0), SECTION, 2)
+    model.node("base", at(0, 0, 0))
+    model.node("tip", at(40, 0, 0))
+    model.superelement("beam", craig_bampton(body, [(0, "translation"), (2, "full")], 0),
+                       ["base", "tip"])
+    assert "on node tip, with base on rigid links" in rigid(model, "beam").change
+    model.fix("base", "position")
+    with pytest.raises(InputError, match="'beam' cannot be made rigid: it does not keep both "
+                                         "position and rotation at base, which is held"):
+        rigid(model, "beam")
+
+
 def test_what_a_beam_that_is_divided_must_not_lose_is_said():
     cases = [
         (lambda m: m.force("rod 1", TURN @ (0, 1, 0)), "acts on or holds its node 'rod 1'; build"),

@@ -12,7 +12,7 @@ from sebody.model.variants.hanging import hang, is_held
 from sebody.reduction import ReducedBody
 from sebody.reduction.summary import place
 
-_SAME = 1e-9    # relative difference of velocities that is rounding
+_SAME = 1e-9    # relative difference of velocities and places that is rounding
 
 
 def rigid(model: Mechanism, name: str) -> Variant:
@@ -55,8 +55,14 @@ def rigid(model: Mechanism, name: str) -> Variant:
     links = (f", with {', '.join(node.name for node in followers)} on rigid links"
              if followers else "")
     ending = f"; {', '.join(left)} left out" if left else ""
-    return Variant(made, f"{name} is rigid: mass {mass:.4g}, centre of mass "
-                         f"{place(centre + offset)}, on node {carrier.name}{links}{ending}")
+    where = place(_shown(centre + offset, made.size()))
+    return Variant(made, f"{name} is rigid: mass {mass:.4g}, centre of mass {where}, on node "
+                         f"{carrier.name}{links}{ending}")
+
+
+def _shown(point: NDArray, size: float) -> NDArray:
+    """A point whose coordinates are zero where they are rounding."""
+    return np.where(np.abs(point) < _SAME * size, 0.0, point)
 
 
 def rigid_constants(body: ReducedBody) -> tuple[float, NDArray | float, NDArray]:
@@ -79,9 +85,9 @@ def _carrier(body: Superelement) -> Node:
     full = [node for node, keep in own
             if keep == "full" and (not still or node.position is still[0].position)]
     if not full:
-        raise InputError(f"{what}: " + (f"{still[0].name}, which is held," if still else "no node")
-                         + " keeps both its position and its rotation there; reduce the body with "
-                         "'full' at a node")
+        raise InputError(f"{what}: it does not keep both position and rotation at "
+                         + (f"{still[0].name}, which is held" if still else "any node")
+                         + "; reduce it with 'full' there")
     return full[0]
 
 
