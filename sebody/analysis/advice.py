@@ -7,7 +7,7 @@ is put together, and what errs most is taken back until the whole is enough. The
 
 import warnings
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +65,8 @@ class Advice:
     tolerance : float
     table : tuple of Trial
         All runs, in their order; the first is the reference.
+    untried : tuple of str
+        Bodies that were left as they are because the search had taken long enough.
     """
 
     model: Model
@@ -73,19 +75,22 @@ class Advice:
     error: float
     tolerance: float
     table: tuple[Trial, ...]
+    untried: tuple[str, ...] = ()
 
     def summary(self) -> str:
         """The changes, the time they save, and the error."""
         reference, chosen = self.table[0], self.table[-1]
         return "\n".join([
-            *self.changes, f"step {self.step:g}",
+            *self.changes,
+            *([f"not tried: {', '.join(self.untried)}; raise the budget"] if self.untried else []),
+            f"step {self.step:g}",
             f"a run takes {chosen.seconds:.3g} s, the reference {reference.seconds:.3g} s; "
             f"{len(self.table)} runs",
             f"confirmed error {self.error:.2g} <= {self.tolerance:g}"])
 
 
 def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str],
-           tolerance: float = 1e-3) -> Advice:
+           tolerance: float = 1e-3, budget: float = 20.0) -> Advice:
     """Find which bodies may be rigid, how many modes others need, and which step is enough.
 
     Parameters
@@ -101,6 +106,8 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
         its largest change from the start.
     tolerance : float
         Largest error.
+    budget : float
+        No further body is tried once the runs have taken so many times the time of the first.
 
     Returns
     -------
@@ -122,9 +129,15 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
         raise InputError(f"t_end is {t_end:g}, {t_end / h:.6g} steps of {h:g}: give a whole number "
                          "of steps")
     search = _Search(h, t_end, names, inputs.number(tolerance, "tolerance", above=0, below=1))
+    budget = inputs.number(budget, "budget", above=0)
     search.start(model)
-    changes = {name: found for name in model.bodies if (found := _enough(search, model, name))}
-    return _together(search, model, changes)
+    changes, untried = {}, []
+    for name in model.bodies:
+        if search.spent() > budget:
+            untried.append(name)
+        elif found := _enough(search, model, name):
+            changes[name] = found
+    return replace(_together(search, model, changes), untried=tuple(untried))
 
 
 @dataclass
@@ -156,6 +169,10 @@ class _Search:
             raise InputError(f"with the step {fine:g} the whole model has an error of about "
                              f"{self.own_error:.2g} from the step: give a smaller h, or a larger "
                              f"tolerance than {self.tolerance:g}")
+
+    def spent(self) -> float:
+        """Time of all runs, relative to that of the reference."""
+        return sum(trial.seconds for trial in self.table) / self.table[0].seconds
 
     def error(self, model: Model, change: str, step: float) -> float:
         """Error of a variant that is run, with that of the reference."""

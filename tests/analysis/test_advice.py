@@ -61,6 +61,13 @@ def test_the_soft_body_stays_flexible_with_as_many_modes_as_needed():
     assert modes[0] < modes[1]
 
 
+def test_a_search_ends_with_its_budget():
+    advice = advise(crane(), H, T_END, "tip.position", 1e-2, budget=1.0)
+    assert advice.untried == ("soft", "stout")      # two runs before the first body
+    assert list(advice.model.bodies) == ["soft", "stout"]
+    assert "not tried: soft, stout; raise the budget" in advice.summary().splitlines()
+
+
 @pytest.mark.parametrize(("given", "message"), [
     ({"quantities": "top.position"}, "'top.position' is unknown: did you mean 'tip.position'"),
     ({"tolerance": 1e-9}, "the whole model has an error of about .* from the step: give a smaller"),
