@@ -171,7 +171,7 @@ def test_erratum_1_power_of_the_printed_kernel(printed_kernel):
 
 def energy_spread(kernel, h):
     """Spread of the energy of the freely spinning hinged beam, 8 < t < 12."""
-    scene = build()
+    scene = build(inertia="b")
     scene.model.bodies["beam"].kernel = kernel
     result = Simulation(scene.model, h, generalized_alpha(0.9, 1e-10)).run_to(12.0).result()
     energy = (result["energy.kinetic"] + result["energy.strain"])[result.t > 8.0]

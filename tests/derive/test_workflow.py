@@ -48,7 +48,7 @@ kept = np.linspace(0, 4, count).round().astype(int)
 body = craig_bampton(fe_model, [(int(k), "full") for k in kept], 0)
 model = Model(planar=True)
 nodes = [model.node(f"n{k}", fe_model.coordinates[k, :2]) for k in kept]
-model.superelement("beam", body, nodes, frame="positions")
+model.superelement("beam", body, nodes, frame="positions", inertia="b")
 model.force(nodes[-1], (0.0, 1.0))
 system, numbering = build(model)
 q = np.zeros(numbering.total)
