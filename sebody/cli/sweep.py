@@ -40,6 +40,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                              "at_time(QUANTITY,T); of the length of vectors maximum(norm ...)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         dest="changes", help="a parameter of the scene that does not vary")
+    parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
+    parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--output", type=Path, metavar="SWEEP",
                         help="write SWEEP.npz, with pandas SWEEP.csv or .parquet, with matplotlib "
                              "SWEEP.png; a sweep that was interrupted goes on from SWEEP.npz")
@@ -62,6 +64,9 @@ def run(options: argparse.Namespace) -> int:
                                else options.output)
     if stem:
         check_picture(_beside(stem, ".png"))
+    fixed = given_arguments(options.scene, build, options.changes)
+    fixed |= {name: value for name in ("t_end", "step")
+              if (value := getattr(options, name)) is not None}
     bar = Progress()
 
     def progress(part: float) -> None:
@@ -72,7 +77,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             table = sweep(build, _outputs(options.keep, build, options), listed, sampled,
                           options.runs, options.seed, options.sampler, options.sobol,
-                          given_arguments(options.scene, build, options.changes),
+                          fixed,
                           stem and _beside(stem, ".npz"), options.threads, options.cluster,
                           options.workers, progress)
         except KeyboardInterrupt:

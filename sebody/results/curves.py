@@ -161,14 +161,14 @@ def _phase(results: Mapping[str, Result], word: str, across: str, up: str) -> li
     if up in (*AXES, NORM) or up.isdecimal():
         up = f"{across.rpartition('.')[0]}.{up}"        # tip.position.x:y
     curves = []
-    for label, result in results.items():
-        curves.append(Curve(label, *(_one(result, word, side) for side in (across, up))))
+    for label in results:
+        curves.append(Curve(label, *(_one(results, label, word, side) for side in (across, up))))
     return [Panel(f"{up} over {across}", across, up, curves, "phase")]
 
 
-def _one(result: Result, word: str, side: str) -> NDArray:
+def _one(results: Mapping[str, Result], label: str, word: str, side: str) -> NDArray:
     """The numbers of one side of a phase plot."""
-    found = values(result, side)
+    found = _values_of(results, label, side)
     if len(found.labels) > 1:
         raise InputError(f"{word}: {side} has the components {', '.join(found.labels)}: a phase "
                          f"plot takes one of them, such as {side}.{found.labels[0]}")
@@ -176,7 +176,7 @@ def _one(result: Result, word: str, side: str) -> NDArray:
 
 
 def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
-    found = {label: values(result, word) for label, result in results.items()}
+    found = {label: _values_of(results, label, word) for label in results}
     first = next(iter(found.values()))
     if len(results) == 1:
         t = next(iter(results.values())).t
@@ -195,6 +195,16 @@ def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
                                 one.numbers[:, one.labels.index(component)]))
         made.append(Panel(name, "time", _plain(name), curves))
     return made
+
+
+def _values_of(results: Mapping[str, Result], label: str, word: str) -> Values:
+    """`values`; where results are compared, an error names the one without the quantity."""
+    try:
+        return values(results[label], word)
+    except InputError as error:
+        if len(results) == 1:
+            raise
+        raise InputError(f"{label}: {error}") from error
 
 
 def _plain(name: str) -> str:

@@ -61,8 +61,8 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
         raise
     except (BadZipFile, zlib.error, ValueError, KeyError, IndexError, TypeError, EOFError
             ) as error:
-        raise InputError(f"{path} is damaged or no results file: give one written by Result.save"
-                         ) from error
+        raise InputError(f"{path} is damaged or no results file: give one written by Result.save; "
+                         "'sebody inspect' reads body files") from error
     except OSError as error:
         raise InputError(f"results file {path} cannot be read ({error.strerror}): give another "
                          "one") from error

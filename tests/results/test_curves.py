@@ -135,3 +135,10 @@ def test_every_name_can_be_asked_for_and_drawn(build, h):
             if f"{node}.{quantity}" not in known:
                 with pytest.raises(InputError):
                     result[f"{node}.{quantity}"]
+
+
+def test_of_compared_results_the_one_without_the_quantity_is_named(beam):
+    other = simulate(hinged_beam.build(modes=1, elements=4).model, 0.02, 0.1)
+    for word in ("beam.modes.1", "energy.strain:beam.modes.1"):
+        with pytest.raises(InputError, match="^coarse: beam.modes"):
+            panels({"fine": beam, "coarse": other}, [word])

@@ -134,6 +134,10 @@ REFUSED = {
     "number": ({"listed": {"length": [1.0]}, "runs": 5}, "nothing is sampled"),
     "mass": ({"listed": {"bob.mass": [1.0, -1.0]}}, "bob.mass of run 1 is -1"),
     "step": ({"listed": {"step": [-0.1]}}, "the time step"),
+    "end": ({"listed": {"length": [1.0]}, "fixed": {"t_end": -1.0}}, "t_end is -1.0"),
+    "no step": ({"listed": {"step": [0.0]}}, "the time step is 0.0: give a positive"),
+    "set": ({"listed": {"length": [1.0]}, "fixed": {"length": 2.0}},
+            "length varies and is set to 2.0: leave out one of them"),
     "output": ({"listed": {"length": [1.0]}, "outputs": {"x": final("top.position")}},
                "did you mean 'tip.position'"),
     "one index": ({"sampled": {"length": Distribution("uniform", (1, 2))}, "sobol_n": 64},
@@ -173,6 +177,12 @@ def test_the_command(tmp_path, capsys):
     assert (tmp_path / "SWEEP.png").stat().st_size > 5000
     assert main([*command[:-1], "biggest(tip.velocity)"]) == 2
     assert "of the kinds maximum, minimum" in capsys.readouterr().err
+    assert main(["sweep", str(scene), "--vary", "length=1,2", "--t-end", "0.1", "--step", "0.005",
+                 "--output", str(tmp_path / "SHORT"), "--keep", "final(tip.position)"]) == 0
+    short = Table.load(tmp_path / "SHORT.npz")
+    assert short.parameters.keys() == {"length"}
+    expected = simulate(build(2.0).model, 0.005, 0.1)["tip.position"][-1]
+    assert np.array_equal(short["final(tip.position)"][1], expected)
     assert main(["sweep", str(scene), "--vary", "length=1,2", "--keep", "at_time(tip.position)"
                  ]) == 2
     assert "at_time takes a time" in capsys.readouterr().err

@@ -69,9 +69,9 @@ def _energy(force: float, **parameters) -> float:
 def small_increments() -> Finding:
     """Forces of (20), in which increments of the frame are small, against those of (19)."""
     finding = Finding(
-        "(20) against (19)",
-        "Leaving out what is of second order in the elastic rotation makes forces wrong by its "
-        "square: 3e-3 of the force at 0.3 rad, and they are no longer the gradient of an energy.",
+        "small increments of frames, (20) for (19)",
+        "Equation (20) of the paper leaves out of (19) what is of second order in the elastic "
+        "rotation: forces are wrong by its square, 3e-3 at 0.3 rad, and no gradient of an energy.",
         "Ships (20) as frame 'mean_small' for comparison; the default frame is exact.",
         "elastic rotation [rad]", "difference of the forces", logarithmic="xy")
     angles = np.geomspace(0.01, 0.8, 9)

@@ -55,7 +55,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     sobol_n : int, optional
         In place of `runs`: the design of Sobol's indices, with this base number.
     fixed : mapping
-        Further arguments of `build`.
+        What does not vary: ``step``, ``t_end``, ``rho`` and further arguments of `build`.
     output : path, optional
         File of the table, which a sweep that was interrupted goes on from.
     threads : int
@@ -77,6 +77,8 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
         raise InputError("--sobol compares sampled parameters: leave out --vary")
     if not made.columns:
         raise InputError("nothing varies: give --vary NAME=VALUES or --sample NAME=DISTRIBUTION")
+    if both := sorted(set(fixed) & set(made.columns)):
+        raise InputError(f"{both[0]} varies and is set to {fixed[both[0]]}: leave out one of them")
     plan = Plan(uuid4().hex, build, tuple(fixed.items()), tuple(outputs.items()))
     structural = set(made.columns) & {*OF_RUN, *signature(build).parameters}
     check_plan(plan, made.columns, structural)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.analysis.ensembles import Ensemble, Output
 from sebody.analysis.schemes import generalized_alpha
 from sebody.errors import SebodyError
@@ -26,7 +27,7 @@ class Plan(NamedTuple):
 
     name: str                       # of this sweep: another process gets a new `build` every time
     build: Callable[..., Any]       # returns a Scene
-    fixed: tuple[tuple[str, Any], ...]      # arguments of `build` that do not vary
+    fixed: tuple[tuple[str, Any], ...]      # of the run and of `build`, that do not vary
     outputs: tuple[tuple[str, Output], ...]
 
 
@@ -77,11 +78,12 @@ def _ensemble(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensem
 
 
 def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble, float]:
-    given = dict(structure)
+    given = {**dict(plan.fixed), **dict(structure)}
     of_run = {name: given.pop(name) for name in OF_RUN if name in given}
-    scene = plan.build(**dict(plan.fixed), **given)
+    scene = plan.build(**given)
     scheme = generalized_alpha(of_run["rho"]) if "rho" in of_run else None
-    h, t_end = of_run.get("step", scene.h), of_run.get("t_end", scene.t_end)
+    h = inputs.number(of_run.get("step", scene.h), "the time step", above=0)
+    t_end = inputs.number(of_run.get("t_end", scene.t_end), "t_end", least=0)
     steps = round(t_end / h)
     return Ensemble(scene.model, h, scheme), steps * h
 

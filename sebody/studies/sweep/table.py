@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import pandas
 
 VERSION = 1
+ROUNDING = 1e-13         # of the largest component
 QUANTILES = (0.05, 0.5, 0.95)
 
 
@@ -101,6 +102,11 @@ class Table:
         return {name: np.nanquantile(self.columns()[name][self.good].astype(float), QUANTILES)
                 for name in outputs}
 
+    def rounding(self, column: str) -> float:
+        """What is rounding in a column of the outputs: components of a vector share their size."""
+        values = np.abs(self.outputs[column.partition("[")[0]][self.good])
+        return ROUNDING * float(np.max(values, initial=0.0))
+
     def summary(self) -> str:
         """Numbers of runs, and quantiles of the outputs, as text."""
         failed = self.done & ~self.good
@@ -111,7 +117,8 @@ class Table:
         if found:
             width = max(map(len, found))
             lines.append(f"{'output':{width}} {'5 %':>12} {'median':>12} {'95 %':>12}")
-            lines += [f"{name:{width}} " + " ".join(f"{q:12.6g}" for q in values)
+            lines += [f"{name:{width}} " + " ".join(
+                f"{q if abs(q) > self.rounding(name) else 0.0:12.6g}" for q in values)
                       for name, values in found.items()]
         return "\n".join(lines)
 
