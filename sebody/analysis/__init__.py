@@ -1,5 +1,6 @@
 """What a user runs: simulations, equilibria, small motion about a state, restarts."""
 
+from sebody.analysis.advice import Advice, advise
 from sebody.analysis.campbell import Campbell, campbell
 from sebody.analysis.ensembles import (
     Ensemble,
@@ -26,6 +27,7 @@ from sebody.analysis.restart import resume, save_state
 from sebody.analysis.statics import equilibrium
 
 __all__ = [
+    "Advice",
     "Campbell",
     "Ensemble",
     "FrequencyResponse",
@@ -34,6 +36,7 @@ __all__ = [
     "Outcome",
     "Output",
     "Vibrations",
+    "advise",
     "at_time",
     "campbell",
     "equilibrium",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model, simulate
-from sebody.analysis.advice import advise
+from sebody.analysis import advise
 from sebody.fem import Section, planar_beam
 from sebody.reduction import craig_bampton
 
