@@ -198,7 +198,7 @@ def _pairs(fe_model: FEModel, items: Items) -> list[BoundaryItem]:
     _check_shared(fe_model, pairs)
     for item, keep in pairs:
         if isinstance(item, RigidFace):
-            _check_rigid(fe_model, item, keep)
+            _check_rigid(fe_model, item)
         elif isinstance(item, MeanFace):
             _check_dofs(fe_model, "node {} of a mean face", item.nodes, "translation",
                         "name nodes that have them")
@@ -254,7 +254,7 @@ def _check_dofs(fe_model: FEModel, what: str, nodes: Iterable[int], kind: str, r
             raise InputError(f"{called} has no {', '.join(missing)}; {remedy}")
 
 
-def _check_rigid(fe_model: FEModel, face: RigidFace, keep: str) -> None:
+def _check_rigid(fe_model: FEModel, face: RigidFace) -> None:
     dimension = fe_model.coordinates.shape[1]
     if face.point.shape != (dimension,):
         raise InputError(f"point of a rigid face is {face.point}: give {dimension} finite numbers")
