@@ -14,8 +14,9 @@ import numpy as np
 from sebody import Model
 from sebody.analysis import final
 from sebody.scenes.scene import Scene
-from sebody.studies.sweep import batches, design, places
+from sebody.studies.sweep import batches, places
 from sebody.studies.sweep.axes import Distribution
+from sebody.studies.sweep.design import design
 
 MEMBERS, TASKS = 100, 200
 OUTPUTS = (("tip", final("tip.position")),)
@@ -33,9 +34,9 @@ def build(length: float = 1.0) -> Scene:
 
 def tasks(count: int) -> list[list[batches.Batch]]:
     """Tasks of a hundred runs that differ in the spring's stiffness."""
-    made = design.design({}, {"spring.stiffness": Distribution("uniform", (50.0, 120.0))},
+    made = design({}, {"spring.stiffness": Distribution("uniform", (50.0, 120.0))},
                          count * MEMBERS, 1)
-    return batches.tasks_of(batches.Plan(build, (), OUTPUTS), made.columns, set(),
+    return batches.tasks_of(batches.Plan("spring", build, (), OUTPUTS), made.columns, set(),
                             np.arange(made.runs), MEMBERS)
 
 
@@ -58,7 +59,7 @@ def cluster(count: int) -> dict[str, float]:
 def structures(count: int) -> dict[str, float]:
     """Milliseconds a run that builds its model anew, and of these what the model itself takes."""
     lengths = {"length": np.linspace(1.0, 2.0, count).astype(object)}
-    todo = batches.tasks_of(batches.Plan(build, (), OUTPUTS), lengths, {"length"},
+    todo = batches.tasks_of(batches.Plan("lengths", build, (), OUTPUTS), lengths, {"length"},
                             np.arange(count), count)
     batches.run_task(todo[0][:1])
     began = time.perf_counter()

@@ -132,3 +132,11 @@ def test_inertia_options_are_compared(capsys):
     assert (name, row["coordinates"], row["resultants"]) == ("planar 8", 8, 1)
     assert all(min(row[what].values()) > 0.0 for what in ("residual", "matrix"))
     assert list(row["residual"]) == ["b", "plain c", "c"]
+
+
+def test_sweeps_are_timed_beside_their_runs(monkeypatch, capsys):
+    bench = imported("bench_sweep")
+    monkeypatch.setattr(bench, "cluster", lambda count: {})     # processes take seconds to start
+    bench.main(["--json"], count=2)
+    row = json.loads(capsys.readouterr().out)["structures, ms"]
+    assert row["run"] > row["of it the model"] > 0.0

@@ -4,7 +4,6 @@ What a process has built it keeps: batches of one model use one ensemble.
 """
 
 from collections.abc import Callable, Mapping
-from functools import lru_cache
 from threading import Lock
 from typing import Any, NamedTuple
 
@@ -20,11 +19,13 @@ KEPT = 32               # ensembles that a process keeps
 OF_RUN = ("step", "t_end", "rho")       # parameters that are of the run, not of the scene
 
 _lock = Lock()
+_kept: dict[tuple, tuple[Ensemble, float]] = {}
 
 
 class Plan(NamedTuple):
     """What all runs of a sweep have in common."""
 
+    name: str                       # of this sweep: another process gets a new `build` every time
     build: Callable[..., Any]       # returns a Scene
     fixed: tuple[tuple[str, Any], ...]      # of the run and of `build`, that do not vary
     outputs: tuple[tuple[str, Output], ...]
@@ -67,11 +68,15 @@ def _run(batch: Batch) -> Answer:
 
 
 def _ensemble(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble, float]:
+    key = plan.name, structure
     with _lock:
-        return _built(plan, structure)
+        found = _kept.pop(key, None) or _built(plan, structure)
+        _kept[key] = found          # the last one used is the last one given up
+        while len(_kept) > KEPT:
+            _kept.pop(next(iter(_kept)))
+        return found
 
 
-@lru_cache(maxsize=KEPT)
 def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble, float]:
     given = {**dict(plan.fixed), **dict(structure)}
     of_run = {name: given.pop(name) for name in OF_RUN if name in given}
