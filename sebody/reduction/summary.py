@@ -52,5 +52,6 @@ def mode_lines(stiffness: NDArray, mass: NDArray, rigid: NDArray, modes: int) ->
 
 
 def place(point: NDArray) -> str:
-    """A point in brackets."""
-    return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
+    """A point in brackets; what is rounding of its distance from the origin is shown as zero."""
+    rounding = 1e-13 * np.linalg.norm(point)
+    return "(" + ", ".join(f"{x if abs(x) > rounding else 0.0:.6g}" for x in point) + ")"

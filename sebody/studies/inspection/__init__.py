@@ -15,6 +15,8 @@ from sebody.studies.inspection.repair import free_rigid_motion
 
 __all__ = ["Inspection", "free_rigid_motion", "inspect", "report", "to_json"]
 
+_ROUNDING = 1e-13       # of sums over an FE model, of their largest part
+
 
 class Inspection(NamedTuple):
     """Numbers by name, findings and the verdict on a body."""
@@ -72,7 +74,7 @@ def report(inspection: Inspection) -> str:
 
 def _layout(file: BodyFile) -> list[tuple[str, str]]:
     coordinates = file.parts["coordinates"]
-    rows = [("made from", f"{name}: {text}") for name, text in file.provenance.items()]
+    rows = list(file.provenance.items())
     rows.append(("units", file.units or "not said"))
     rows += [("interface", f"{name} keeps {keep}, at {_row(point)}") for name, keep, point
              in zip(file.names, file.parts["keeps"], coordinates, strict=True)]
@@ -117,7 +119,10 @@ def _number(value: float) -> str:
 
 
 def _row(values) -> str:
-    return "  ".join(map(_number, values)) or "none"
+    """Numbers of one kind; what is rounding of the largest is shown as zero."""
+    values = np.asarray(values, dtype=float)
+    rounding = _ROUNDING * np.abs(values).max(initial=0.0)
+    return "  ".join(map(_number, np.where(np.abs(values) > rounding, values, 0.0))) or "none"
 
 
 def _plain(value):
