@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Sequence
 
 from sebody.cli import (
+    advise,
     animate,
     atlas,
     bench,
@@ -26,8 +27,8 @@ from sebody.cli import (
 from sebody.errors import InputError, SebodyError
 
 # in the order of the help
-COMMANDS = (run, sweep, listing, plot, animate, report, importing, inspect, check, bench, chart,
-            atlas, warm)
+COMMANDS = (run, sweep, advise, listing, plot, animate, report, importing, inspect, check, bench,
+            chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

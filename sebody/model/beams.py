@@ -1,6 +1,7 @@
 """Straight beams as superelements."""
 
 from collections.abc import Sequence
+from copy import deepcopy
 from itertools import pairwise
 
 from numpy.typing import ArrayLike
@@ -13,7 +14,7 @@ from sebody.model.bodies import superelement
 from sebody.model.inputs import known
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import node
-from sebody.model.parts import Node
+from sebody.model.parts import Beam, Node
 from sebody.reduction import ReducedBody, craig_bampton
 
 
@@ -81,18 +82,21 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
         raise InputError(f"beam {name!r}: up is for beams in space, leave it out")
     if elements % bodies:
         raise InputError(undivided)
+    options = {"modes": modes, "up": up, "damping": damping, "stiffening": stiffening, **placing}
     step, each = (last.point - first.point) / bodies, elements // bodies
     if each == 1 and stiffening is None:
         stiffening = False
     nodes = [first, *(node(model, f"{name} {k}", first.point + k * step)
                       for k in range(1, bodies)), last]
-    body = None
+    body, parts = None, []
     for k, pair in enumerate(pairwise(nodes)):
         if body is None or callable(section):
             part = part_of(section, k / bodies, (k + 1) / bodies)
             body = _part(model, pair, part, each, modes, up, damping)
-        superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, pair,
-                     stiffening=stiffening, **placing)
+        parts.append(superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, pair,
+                                  stiffening=stiffening, **placing))
+    model.beams.append(Beam(name, tuple(nodes), section, elements, deepcopy(options), tuple(parts),
+                            tuple(part.body for part in parts)))
     return nodes
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.parts import (
+    Beam,
     Connection,
     Element,
     Joint,
@@ -39,6 +40,7 @@ class Mechanism:
     loads: list[Element] = field(default_factory=list, init=False)  # springs and dampers, too
     grounds: list[Node] = field(default_factory=list, init=False)   # fixed ends of joints
     connections: list[Connection] = field(default_factory=list, init=False)     # no equations
+    beams: list[Beam] = field(default_factory=list, init=False)     # how they were built
     own_names: set[str] = field(default_factory=set, init=False)    # names given by the user
     default_names: Counter[str] = field(default_factory=Counter, init=False)    # how often wanted
     gravity_field: NDArray = field(init=False)

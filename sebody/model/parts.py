@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody.fem.section import AnySection
 from sebody.model.histories import History
 from sebody.reduction import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
@@ -137,6 +138,18 @@ class Element:
     def direction(self) -> NDArray:
         """Direction of a force or torque."""
         return self.constants["d"]
+
+
+class Beam(NamedTuple):
+    """How a beam of superelements was built."""
+
+    name: str
+    nodes: tuple[Node, ...]             # from end to end
+    section: AnySection
+    elements: int
+    options: Mapping[str, object]       # the further arguments of `Model.beam`
+    parts: tuple[Superelement, ...]
+    bodies: tuple[ReducedBody, ...]     # of these parts, as built
 
 
 class Axes(NamedTuple):

@@ -38,6 +38,16 @@ def test_run_saves_and_draws(tmp_path, capsys):
     assert lines[-2:] == [f"histories            {output}", f"picture              {picture}"]
 
 
+def test_advise_prints_what_is_enough(capsys):
+    assert main(["advise", "hinged-beam", "--t-end", "1", "--quantity", "tip.position",
+                 "--tolerance", "0.02"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["error", "step", "seconds", "change"]
+    assert lines[1].split() == ["0", "0.0025", lines[1].split()[2], "all", "as", "it", "is"]
+    error = float(lines[-1].removeprefix("confirmed error ").removesuffix(" <= 0.02"))
+    assert 0 < error <= 0.02
+
+
 def test_run_with_other_parameters(capsys):
     assert main(["run", "hinged-beam", "--t-end", "0.1", "--step", "0.005", "--rho", "0.5",
                      "--set", "modes=0", "--set", "elements=4", "--set", "frame=node"]) == 0

@@ -1,0 +1,85 @@
+"""A model's copy, which shares nothing with it that can change, and a superelement's exchange."""
+
+from copy import deepcopy
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from sebody.errors import InputError
+from sebody.kernels.names import body_load_kind
+from sebody.model.bodies import superelement
+from sebody.model.frames import FRAMES
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Superelement
+from sebody.reduction import ReducedBody
+
+
+class Variant(NamedTuple):
+    """A changed copy of a model, and what was changed in a sentence."""
+
+    model: Mechanism
+    change: str
+
+
+def copied(model: Mechanism) -> Mechanism:
+    """A copy of a model.
+
+    Reduced bodies, sections, histories and compiled functions of users never change: both models
+    have them.
+    """
+    elements = (*model.constraints, *model.loads)
+    constant = [body.body for body in model.bodies.values()]
+    constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
+    constant += [one for element in elements for one in (element.history, element.function)
+                 if one is not None]
+    constant += [motion.history for triplet in model.triplets() for motion in triplet.motions]
+    return deepcopy(model, {id(one): one for one in constant})
+
+
+def placed(model: Mechanism, name: str) -> Superelement:
+    """A superelement by its name.
+
+    Raises
+    ------
+    InputError
+        There is none of this name.
+    """
+    if not isinstance(name, str) or name not in model.bodies:
+        raise InputError(f"superelement {name!r} is unknown: the model has "
+                         f"{', '.join(model.bodies) or 'none'}")
+    return model.bodies[name]
+
+
+def loads_on(model: Mechanism, body: Superelement) -> list[Element]:
+    """Loads on a superelement itself or on its modes."""
+    return [one for one in model.loads
+            if one.body is body or (one.mode is not None and one.mode[0] == body.name)]
+
+
+def load_name(load: Element) -> str:
+    """Name that the load of a body has there."""
+    return next(name for name, vector in load.body.body.loads.items()
+                if np.array_equal(vector, load.constants["P"]))
+
+
+def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
+             inertia: str | None, stiffening: bool | None) -> Superelement:
+    """Put a reduced body, or other options, in the place of a superelement of the model.
+
+    Loads on the body follow. The body may have fewer modes than the one before.
+    """
+    order = list(model.bodies)
+    del model.bodies[old.name]
+    model.own_names.discard(old.name)
+    made = superelement(model, old.name, body, old.nodes, frame=frame, inertia=inertia,
+                        frame_node=old.body.position_nodes[int(np.argmax(old.alpha))]
+                        if FRAMES[old.frame].on_one_node else 0, stiffening=stiffening)
+    made.mode_rates = old.mode_rates[:body.modes].copy()
+    model.bodies = {name: model.bodies[name] for name in order}
+    kind = body_load_kind(FRAMES[frame].kernel, model.planar)
+    model.loads = [
+        replace(one, kind=kind, places=made.places, body=made,
+                constants={"P": body.loads[load_name(one)]}) if one.body is old else one
+        for one in model.loads]
+    return made

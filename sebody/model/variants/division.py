@@ -1,0 +1,133 @@
+"""Another number of superelements in a beam."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.model.beams import beam
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Beam, Node, Triplet
+from sebody.model.variants.copying import Variant, copied, loads_on
+
+
+def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None) -> Variant:
+    """The model with a beam of another number of superelements.
+
+    Parameters
+    ----------
+    name : str
+        Of a beam that `Model.beam` has built.
+    bodies : int
+        Superelements from end to end.
+    elements : int, optional
+        Finite elements from end to end; as before by default.
+
+    Returns
+    -------
+    Variant
+
+    Raises
+    ------
+    InputError
+        No such beam, one whose bodies were changed since or bear loads of their own, a node
+        between its ends that something else needs, or elements that cannot be divided so.
+    """
+    _described(model, name)
+    made = copied(model)
+    old = _described(made, name)
+    between = old.nodes[1:-1]
+    nodes, placed = list(made.nodes), list(made.bodies)
+    for node in between:
+        del made.nodes[node.name]
+    for part in old.parts:
+        del made.bodies[part.name]
+        made.own_names.discard(part.name)
+    made.beams.remove(old)
+    made.connections = [one for one in made.connections
+                        if not any(one.node is node for node in between)]
+    elements = old.elements if elements is None else elements
+    found = beam(made, name, (old.nodes[0], old.nodes[-1]), old.section, elements, bodies,
+                 **old.options)
+    new = made.beams[-1]
+    _start_like(found, old.nodes)
+    ends = max(nodes.index(old.nodes[k].name) for k in (0, -1))
+    made.nodes = _in_place(made.nodes, nodes, [n.name for n in found[1:-1]],
+                           nodes.index(between[0].name) if between else ends + 1)
+    made.bodies = _in_place(made.bodies, placed, [p.name for p in new.parts],
+                            placed.index(old.parts[0].name))
+    return Variant(made, f"{name} has {_counted(new)} instead of {_counted(old)}")
+
+
+def _counted(one: Beam) -> str:
+    bodies = len(one.parts)
+    each = one.elements // bodies
+    return (f"{bodies} superelement{'s' * (bodies > 1)} of {each} finite "
+            f"element{'s' * (each > 1)}")
+
+
+def _described(model: Mechanism, name: str) -> Beam:
+    """How a beam was built; refused if it cannot be built anew."""
+    found = [one for one in model.beams if one.name == name]
+    if len(found) != 1:
+        names = ", ".join(dict.fromkeys(one.name for one in model.beams)) or "no beam"
+        raise InputError(f"model.beam has built {len(found)} beams {name!r}, where one is wanted "
+                         f"(it has built {names}): divide other bodies by building the model anew, "
+                         "with a body for each part")
+    own = found[0]
+    what = f"beam {name!r} cannot be divided anew: "
+    for part, body in zip(own.parts, own.bodies, strict=True):
+        if model.bodies.get(part.name) is not part or part.body is not body:
+            raise InputError(f"{what}superelement {part.name!r} was changed; divide the beam first")
+        if np.any(part.mode_rates):
+            raise InputError(f"{what}modes of {part.name!r} have initial velocities")
+        for load in loads_on(model, part):
+            raise InputError(f"{what}{load.name!r} acts on superelement {part.name!r}; apply it to "
+                             "nodes")
+    used = _used(model, own)
+    for node in own.nodes[1:-1]:
+        if used & {id(node), id(node.position), id(node.rotation)} or any(
+                t.fixed or t.given for t in (node.position, node.rotation)):
+            raise InputError(f"{what}something else acts on or holds its node {node.name!r}; build "
+                             "two beams that meet there")
+    return own
+
+
+def _used(model: Mechanism, own: Beam) -> set[int]:
+    """Nodes and triplets, by id, that anything but a beam needs."""
+    found: set[int] = set()
+    for element in (*model.constraints, *model.loads, *model.rigid_bodies.values()):
+        found |= {id(place.node) for place in element.places}
+    for joint in model.joints:
+        found |= {id(joint.node), id(joint.to)}
+    for body in model.bodies.values():
+        if body not in own.parts:
+            found |= {id(node) for node in body.nodes}
+    for one in model.connections:
+        found |= {id(one.node), id(one.to)}
+    for triplet in model.triplets():
+        if triplet.root is not None:
+            found |= {id(parent) for parent in triplet.parents()}
+    for node in (*model.nodes.values(), *model.grounds):
+        if node not in own.nodes:
+            found |= {id(t) for t in (node.position, node.rotation) if t is not None}
+    return found
+
+
+def _start_like(nodes: list[Node], before: tuple[Node, ...]) -> None:
+    """Start new nodes with the initial velocities there, linear between the nodes before."""
+    for k, node in enumerate(nodes[1:-1], 1):
+        place = k * (len(before) - 1) / (len(nodes) - 1)
+        first = min(int(place), len(before) - 2)
+        for kind in ("position", "rotation"):
+            ends: list[Triplet] = [getattr(before[first + i], kind) for i in (0, 1)]
+            getattr(node, kind).rate = _between(ends[0].rate, ends[1].rate, place - first)
+
+
+def _between(first: NDArray, last: NDArray, part: float) -> NDArray:
+    return (1 - part) * first + part * last
+
+
+def _in_place(found: dict, order: list[str], new: list[str], at: int) -> dict:
+    """Entries in the order of before, the new ones together at a place of this order."""
+    names = dict.fromkeys((*order[:at], *new, *order[at:]))
+    return {name: found[name] for name in names if name in found}

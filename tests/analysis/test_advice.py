@@ -1,0 +1,80 @@
+"""Advice on how much of a model is needed: what it chooses is within the tolerance."""
+
+import numpy as np
+import pytest
+
+from sebody import InputError, Model, simulate
+from sebody.analysis.advice import advise
+from sebody.fem import Section, planar_beam
+from sebody.reduction import craig_bampton
+
+H, T_END = 0.01, 0.4
+STIFF, SOFT = (Section(area=a, inertia_y=i, inertia_z=i, torsion=2 * i, youngs_modulus=2.1e6,
+                       poisson_ratio=0.3, density=7.8e-3) for a, i in ((9.0, 400.0), (0.2, 0.02)))
+POINTS = np.array([[2.0, 1.0], [12.0, 9.0], [50.0, 2.0]])
+
+
+def crane(still: bool = False) -> Model:
+    """A stout arm that a torque turns, and on it, welded, a soft one with a weight."""
+    model = Model(planar=True)
+    tip, base, elbow = (model.node(n, POINTS[k]) for n, k in (("tip", 2), ("base", 0),
+                                                              ("elbow", 1)))
+    for name, section, ends in (("soft", SOFT, (elbow, tip)), ("stout", STIFF, (base, elbow))):
+        fe_model = planar_beam(*(n.point for n in ends), section, 6)
+        model.superelement(name, craig_bampton(fe_model, [(0, "full"), (6, "full")], 4), ends)
+    model.point_mass("weight", tip, 0.02)
+    model.revolute(base)
+    if not still:
+        model.torque(base, 1.0, [(0, 0), (0.1, 3000.0), (0.3, -3000.0), (0.4, 0.0)])
+    return model
+
+
+def error(found: Model, step: float, quantity: str) -> float:
+    """Against the whole model at a step half as long as the reference's."""
+    one = simulate(found, step, T_END)
+    whole = simulate(crane(), H / 8, T_END, output_every=round(8 * step / H))
+    off, moved = one[quantity] - whole[quantity], whole[quantity] - whole[quantity][0]
+    return np.linalg.norm(off, axis=1).max() / np.linalg.norm(moved, axis=1).max()
+
+
+@pytest.mark.parametrize("tolerance", [0.05, 1e-2, 1e-3])
+def test_what_is_chosen_is_within_the_tolerance(tolerance):
+    model = crane()
+    advice = advise(model, H, T_END, "tip.position", tolerance)
+    assert list(model.bodies) == ["soft", "stout"]
+    confirmed = error(advice.model, advice.step, "tip.position")
+    assert confirmed <= tolerance
+    assert abs(confirmed - advice.error) <= 0.1 * tolerance     # the two references' steps
+    # a short arm of a thousand times the stiffness: it bends by 1e-5 of what the soft one does
+    assert "stout" in advice.model.rigid_bodies
+    last = advice.summary().splitlines()[-1]
+    assert last == f"confirmed error {advice.error:.2g} <= {tolerance:g}"
+    assert len(advice.table) <= 20
+    # a longer step is not enough
+    tried = [trial for trial in advice.table if trial.step > advice.step]
+    assert all(trial.error > tolerance for trial in tried)
+
+
+def test_the_soft_body_stays_flexible_with_as_many_modes_as_needed():
+    modes = [advise(crane(), H, T_END, "tip.position", tolerance).model.bodies["soft"].body.modes
+             for tolerance in (0.05, 1e-3)]
+    assert modes[0] < modes[1]
+
+
+def test_a_search_ends_with_its_budget():
+    advice = advise(crane(), H, T_END, "tip.position", 1e-2, budget=1.0)
+    assert advice.untried == ("soft", "stout")      # two runs before the first body
+    assert list(advice.model.bodies) == ["soft", "stout"]
+    assert "not tried: soft, stout; raise the budget" in advice.summary().splitlines()
+
+
+@pytest.mark.parametrize(("given", "message"), [
+    ({"quantities": "top.position"}, "'top.position' is unknown: did you mean 'tip.position'"),
+    ({"tolerance": 1e-9}, "the whole model has an error of about .* from the step: give a smaller"),
+    ({"t_end": 0.405}, "t_end is 0.405, 40.5 steps of 0.01: give a whole number of steps"),
+    ({"model": crane(still=True)}, "quantity 'tip.position' does not change"),
+])
+def test_what_cannot_be_advised_is_said(given, message):
+    whole = {"model": crane(), "h": H, "t_end": T_END, "quantities": "tip.position"} | given
+    with pytest.raises(InputError, match=message):
+        advise(**whole)
