@@ -234,3 +234,15 @@ def test_the_model_is_left_as_it_was(hinged):
     hinged.run({name: [VARIED[name]] for name in ("beam.mass", "motor.table", "gravity")}, T_END,
                {"end": final("tip.position")})
     assert np.array_equal(single(hinged.model, {})["tip.position"], before)
+
+
+def test_a_body_with_loads_of_its_own_is_not_exchanged():
+    body, made = beam_body(), Model()
+    loaded = craig_bampton(straight_beam((0, 0, 0), (100.0, 0, 0), SECTION, elements=6),
+                           [(0, "full"), (6, "full")], modes=2,
+                           loads={"weight": np.ones(42)})
+    ends = [made.node(name, point) for name, point in zip("ab", loaded.coordinates, strict=True)]
+    made.superelement("beam", loaded, ends)
+    made.body_load("beam", "weight")
+    with pytest.raises(InputError, match="'beam' has loads of its own.*build a model for each"):
+        Ensemble(made, H).run({"beam.body": [body]}, T_END, {"end": final("b.position")})

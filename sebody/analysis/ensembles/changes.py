@@ -171,6 +171,9 @@ def body_factor(quantity: str) -> Callable[[Model, Superelement, str], Handle]:
 
 def whole_body(model: Model, body: Superelement, name: str) -> Handle:
     """Another reduced body in the place of a superelement's."""
+    if any(load.body is body for load in model.loads):
+        raise InputError(f"{name}: superelement {body.name!r} has loads of its own, whose vectors "
+                         "belong to its body: build a model for each body")
     order = list(model.bodies)
 
     def put(made: Superelement) -> None:
