@@ -147,6 +147,7 @@ def test_outputs_are_made_of_the_history(hinged, monkeypatch, numbers):
     q = "tip.velocity"
     outputs = {"history": q, "max": maximum(q), "min": minimum(q), "rms": rms(q),
                "int": integral(q), "end": final(q), "at": at_time(q, 0.01037),
+               "on": at_time(q, 0.004),
                "speed": maximum(q, norm=True)}
     found = hinged.run({"motor.amplitude": [0.9]}, T_END, outputs)
     v, t = found["history"][0], found.t
@@ -156,7 +157,7 @@ def test_outputs_are_made_of_the_history(hinged, monkeypatch, numbers):
     square = ((v[1:]**2 + v[:-1]**2) / 2 * np.diff(t)[:, None]).sum(axis=0)
     expected = {"max": v.max(axis=0), "min": v.min(axis=0), "int": area,
                 "rms": np.sqrt(square / t[-1]), "end": v[-1],
-                "at": [np.interp(0.01037, t, v[:, k]) for k in range(3)],
+                "on": v[4], "at": [np.interp(0.01037, t, v[:, k]) for k in range(3)],
                 "speed": np.linalg.norm(v, axis=1).max()}
     for name, value in expected.items():
         assert np.allclose(found[name][0], value, rtol=1e-12, atol=1e-12 * np.abs(v).max()), name

@@ -58,6 +58,14 @@ class Copies:
         self.solved = np.arange(one.numbering.total) < one.numbering.free
         self.exchanges = RowExchanges(self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
+        self._record: Record | None = None
+
+    def record(self, rows: int, every: int) -> Record:
+        """Room for recorded states, the same for all runs: fresh memory costs as much as a start.
+        """
+        if self._record is None or self._record.rows.shape[0] != rows:
+            self._record = Record.of(self.state, rows, every)
+        return self._record
 
     def begin(self, change: NDArray) -> bool:
         """Begin a run; False if Python's own start is needed.
@@ -147,7 +155,8 @@ class Course:
         """Run to a grid step, or until a step fails; False if it was stopped before."""
         run, state = self.run, self.run.state
         rows = max(2, min(last // self.every + 1, MOST_NUMBERS // state.now.size))
-        record = Record.of(state, rows, self.every)
+        record = run.record(rows, self.every) if isinstance(run, Copies) else Record.of(
+            state, rows, self.every)
         state.control[RECORDED] = 0
         write_record(state, record)
         reached, code = 0, DONE

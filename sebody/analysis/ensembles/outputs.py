@@ -129,7 +129,7 @@ class Fold:
         self._integral(t, values**2, first)
 
     def _final(self, t: NDArray, values: NDArray, first: bool) -> None:
-        self._kept = values[-1]
+        self._kept = values[-1].copy()      # the rows of states are written to again
 
     def _at(self, t: NDArray, values: NDArray, first: bool) -> None:
         time = self.output.time
@@ -137,7 +137,7 @@ class Fold:
         if self._kept is not None or k == len(t):
             return
         if k == 0 or t[k] <= time:
-            self._kept = values[k]
+            self._kept = values[k].copy()
             return
         part = (time - t[k - 1]) / (t[k] - t[k - 1])
         self._kept = values[k - 1] + part * (values[k] - values[k - 1])

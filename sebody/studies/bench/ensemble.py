@@ -84,9 +84,5 @@ def _peer(runs: int) -> Measurement:
 
 
 def _peer_runs(count: int) -> int:
-    import sys
-
-    sys.exudynFast = True
-    from sebody.studies.bench import peer_models
-
-    return [peer_models.spatial_beams(0.01, 2, T_END).unknowns for _ in range(count)][0]
+    models = peer.imported("peer_models")
+    return [models.spatial_beams(0.01, 2, T_END).unknowns for _ in range(count)][0]

@@ -8,10 +8,13 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError
 from importlib.metadata import version as installed_version
 from importlib.util import find_spec
+from io import StringIO
+from types import ModuleType
 
 from sebody.errors import InputError
 from sebody.studies.bench.measurement import Measurement
@@ -45,9 +48,7 @@ def measure(scene: str) -> list[Measurement]:
     """
     if not available():
         raise InputError('Exudyn is not installed: pip install "sebody[bench]"')
-    sys.exudynFast = True       # read by Exudyn when it is first imported
-    models = import_module("sebody.studies.bench.peer_models")
-    mechanisms = import_module("sebody.studies.bench.peer_mechanisms")
+    models, mechanisms = imported("peer_models"), imported("peer_mechanisms")
     if scene == "hinged-beam":
         runs = [_beam(scene, f"{NAME} reduced, 12 + 4 coordinates", models.reduced_beam, h)
                 for h in (0.02, 0.01, 0.005)]
@@ -75,6 +76,13 @@ def measure(scene: str) -> list[Measurement]:
                 "slider-crank": [(f"{NAME} beams in a plane, 4 elements", mechanisms.slider_crank,
                                   2e-5)]}
     return [_timed(scene, *variant) for variant in variants[scene]]
+
+
+def imported(name: str) -> ModuleType:
+    """A module of this folder that imports Exudyn, which prints when it is first imported."""
+    sys.exudynFast = True
+    with redirect_stdout(StringIO()):       # what is printed may be JSON
+        return import_module(f"sebody.studies.bench.{name}")
 
 
 def _beam(scene: str, variant: str, model: Callable, h: float) -> Measurement:
