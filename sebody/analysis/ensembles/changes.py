@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.bodies import superelement
 from sebody.model.histories import History, history
 from sebody.model.model import Model
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
+from sebody.model.variants.copying import exchange
 from sebody.reduction import ReducedBody
 from sebody.reduction.scaling import scaled
 
@@ -174,26 +174,16 @@ def whole_body(model: Model, body: Superelement, name: str) -> Handle:
     if any(load.body is body for load in model.loads):
         raise InputError(f"{name}: superelement {body.name!r} has loads of its own, whose vectors "
                          "belong to its body: build a model for each body")
-    order = list(model.bodies)
-
-    def put(made: Superelement) -> None:
-        placed = model.bodies | {body.name: made}
-        model.bodies = {one: placed[one] for one in order}
+    bodies = dict(model.bodies)
 
     def assign(value: ReducedBody) -> None:
         _check_like(name, value, body.body)
-        others = {n: b for n, b in model.bodies.items() if n != body.name}
-        model.bodies = others
-        model.own_names.discard(body.name)
-        try:
-            made = superelement(model, body.name, value, body.nodes, frame=body.frame,
-                                inertia=body.inertia, stiffening=body.stiffening,
-                                frame_node=int(np.argmax(body.alpha)))
-        finally:
-            model.own_names.add(body.name)
-            put(body)
-        put(replace(made, mode_rates=body.mode_rates))
-    return Handle(body.body, assign, lambda: put(body), BODIES)
+        exchange(model, body, value, body.frame, body.inertia, body.stiffening)
+
+    def put_back() -> None:
+        model.bodies = dict(bodies)
+        model.own_names.add(body.name)
+    return Handle(body.body, assign, put_back, BODIES)
 
 
 def _check_like(name: str, value: ReducedBody, base: ReducedBody) -> None:
