@@ -111,12 +111,6 @@ def by_sums(force: sp.Matrix, s: Sums, change: Sums) -> sp.Matrix:
     return differential(force, rules)
 
 
-def symbolic_sums() -> Sums:
-    """Every sum as a symbol of its own."""
-    return Sums(*(_inertia(name) if name in ("J", "Jd") else _vector(name)
-                  for name in Sums._fields))
-
-
 def _vector(name: str) -> sp.Matrix:
     return sp.Matrix(sp.symbols(f"{name}_:3"))
 
