@@ -16,7 +16,7 @@ from sebody.analysis.advice.indicators.recorded import Recorded
 UNSURE = 30.0       # factor by which an indicator must exclude what is not tried
 SURE = 3.0          # the same once a run has shown its scale
 ORDER = 2           # of the time integration
-SEEN = 1.2          # the same of a step that some choice was run with
+SEEN = 1.2          # the same of a step that one choice was run with; none of two
 CAUTION = 0.03      # least share of an error that its largest contribution is said to make
 
 
@@ -45,7 +45,7 @@ class Estimates:
         self._raw: dict[tuple[int, Form], dict[str, float]] = {}
         self._factors: dict[Hashable, float] = {}
         self._measured: dict[tuple[int, Form], float] = {}
-        self._seen: dict[Step, float] = {}      # contributions of steps that were run
+        self._seen: dict[Step, list[float]] = {}      # contributions of steps that were run
 
     def raw(self, k: int, form: Form) -> dict[str, float]:
         """What the indicators say of a form of the k-th part."""
@@ -64,7 +64,8 @@ class Estimates:
     def of_step(self, step: Step) -> list[Contribution]:
         """Contribution of a step."""
         if step in self._seen:
-            return [Contribution(step, self._seen[step], SEEN)]
+            errors = self._seen[step]
+            return [Contribution(step, errors[-1], SEEN if len(errors) == 1 else 1.0)]
         h, error = min(self._steps.items(), key=lambda item: abs(item[0] - step.h))
         return [self._corrected("step", error * (step.h / h)**ORDER)]
 
@@ -91,9 +92,9 @@ class Estimates:
         found = self.contributions(choice)
         scaled = self._learn(found, error)
         step = next(one for one in found if one.kind in ("step", choice.step))
-        if scaled == step.kind:
-            self._seen[choice.step] = max(
-                error - sum(one.error for one in found if one is not step), CAUTION * error)
+        if scaled in (step.kind, None):
+            rest = sum(one.error for one in found if one is not step)
+            self._seen.setdefault(choice.step, []).append(max(error - rest, CAUTION * error))
 
     def _learn(self, found: list[Contribution], error: float) -> Hashable | None:
         """Scale the largest contribution that was not measured, so that the sum is the error."""

@@ -5,9 +5,10 @@ from sebody.analysis.advice.indicators.linearity import linearity
 from sebody.analysis.advice.indicators.omission import omission
 from sebody.analysis.advice.indicators.recorded import Recorded
 from sebody.analysis.advice.indicators.rigidity import rigidity
-from sebody.analysis.advice.indicators.stiffening import stiffening
+from sebody.analysis.advice.indicators.stiffening import spin, stiffening
 
-INDICATORS = {"modes": omission, "division": linearity, "stiffening": stiffening}
+INDICATORS = {"modes": omission, "division": linearity, "stiffening": stiffening,
+              "inertia": spin}
 
 
 def contributions(recorded: Recorded, part: Part, form: Form) -> dict[str, float]:
