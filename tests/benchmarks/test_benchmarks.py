@@ -140,3 +140,17 @@ def test_sweeps_are_timed_beside_their_runs(monkeypatch, capsys):
     bench.main(["--json"], count=2)
     row = json.loads(capsys.readouterr().out)["structures, ms"]
     assert row["run"] > row["of it the model"] > 0.0
+
+
+def test_scenes_for_advice_are_fixed():
+    """Twelve, six of them held back; each is made anew, its quantities are of parts it has."""
+    scenes = imported("advice_scenes").SCENES
+    assert len({scene.name for scene in scenes}) == 12
+    assert sum(scene.tuning for scene in scenes) == 6
+    for scene in scenes:
+        model = scene.build()
+        assert model.bodies and scene.build() is not model
+        assert round(scene.t_end / scene.h) * scene.h == pytest.approx(scene.t_end)
+        parts = {*model.nodes, *(one.name for one in model.elements())}
+        assert {quantity.rpartition(".")[0] for quantity in scene.quantities
+                if quantity != "frequency 1"} <= parts

@@ -2,7 +2,6 @@
 
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from sebody.analysis.schemes import generalized_alpha, hht
@@ -16,19 +15,6 @@ SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
           "slider-crank": "pin.rotation", "spin-up": "tip.position"}
 STEPS = {0.25: "4 h", 0.5: "2 h", 1.0: "h", 2.0: "h/2", 4.0: "h/4"}     # finer: name
 COARSEST = 4        # histories are compared on a grid of so many of the scene's own steps
-
-
-@dataclass(frozen=True)
-class Point:
-    """A point of a chart: a variant with its error and cost, both from the same runs."""
-
-    family: str
-    label: str
-    error: float                # relative L2, never below that of the reference
-    cost: float                 # computing seconds a simulated second
-    unknowns: int
-    h: float
-    iterations: float
 
 
 class Variant(NamedTuple):
