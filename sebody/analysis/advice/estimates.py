@@ -2,7 +2,8 @@
 
 The error of a choice is the sum of what its forms and its step contribute. An indicator may be off
 by `UNSURE`; once a run has shown what a contribution is, others of its kind are scaled alike, and
-may be off by `SURE`. Measured contributions are taken as they are.
+may be off by `SURE`, or by `SHARED` where several made the error of the run. Measured contributions
+are taken as they are.
 """
 
 from collections.abc import Hashable
@@ -17,7 +18,10 @@ UNSURE = 30.0       # factor by which an indicator must exclude what is not trie
 SURE = 3.0          # the same once a run has shown its scale
 ORDER = 2           # of the time integration
 SEEN = 1.2          # the same of a step that one choice was run with; none of two
-CAUTION = 0.03      # least share of an error that its largest contribution is said to make
+SHARED = 10.0       # the same where it was a part of an error among others
+MAIN, KNOWN = 0.7, 0.1      # shares of an error from which the scale of a contribution is known
+HALVINGS = 80       # of the range of a factor, in logarithms
+CAUTION = 0.03      # least share of an error that what was not measured is said to make
 
 
 class Contribution(NamedTuple):
@@ -44,6 +48,7 @@ class Estimates:
         self._recorded, self._parts, self._steps = recorded, parts, step_errors
         self._raw: dict[tuple[int, Form], dict[str, float]] = {}
         self._factors: dict[Hashable, float] = {}
+        self._doubts: dict[Hashable, float] = {}
         self._measured: dict[tuple[int, Form], float] = {}
         self._seen: dict[Step, list[float]] = {}      # contributions of steps that were run
 
@@ -70,8 +75,8 @@ class Estimates:
         return [self._corrected("step", error * (step.h / h)**ORDER)]
 
     def _corrected(self, kind: Hashable, error: float) -> Contribution:
-        known = kind in self._factors
-        return Contribution(kind, self._factors.get(kind, 1.0) * error, SURE if known else UNSURE)
+        return Contribution(kind, self._factors.get(kind, 1.0) * error,
+                            self._doubts.get(kind, UNSURE))
 
     def contributions(self, choice: Choice) -> list[Contribution]:
         """All contributions to the error of a choice."""
@@ -90,22 +95,37 @@ class Estimates:
     def learn(self, choice: Choice, error: float) -> None:
         """Take the measured error of a choice."""
         found = self.contributions(choice)
-        scaled = self._learn(found, error)
+        self._learn(found, error)
         step = next(one for one in found if one.kind in ("step", choice.step))
-        if scaled in (step.kind, None):
+        if step.error > expected(found) / 2:
             rest = sum(one.error for one in found if one is not step)
             self._seen.setdefault(choice.step, []).append(max(error - rest, CAUTION * error))
 
-    def _learn(self, found: list[Contribution], error: float) -> Hashable | None:
-        """Scale the largest contribution that was not measured, so that the sum is the error."""
+    def _learn(self, found: list[Contribution], error: float) -> None:
+        """Scale what was not measured, the larger the more, so that the sum is the error."""
         open_ones = [one for one in found if one.doubt > 1.0 and one.error > 0.0]
         if not open_ones:
-            return None
-        largest = max(open_ones, key=lambda one: one.error)
-        rest = sum(one.error for one in found) - largest.error
-        share = max(error - rest, CAUTION * error)
-        self._factors[largest.kind] = self._factors.get(largest.kind, 1.0) * share / largest.error
-        return largest.kind
+            return
+        rest = expected(found) - expected(open_ones)
+        wanted, largest = max(error - rest, CAUTION * error), max(one.error for one in open_ones)
+        shares = [one.error / largest for one in open_ones]
+        power = _power([one.error for one in open_ones], shares, wanted)
+        for one, share in zip(open_ones, shares, strict=True):
+            scaled = one.error * power**share
+            self._factors[one.kind] = self._factors.get(one.kind, 1.0) * power**share
+            if scaled > KNOWN * wanted:
+                doubt = SURE if scaled > MAIN * wanted else SHARED
+                self._doubts[one.kind] = min(self._doubts.get(one.kind, UNSURE), doubt)
+
+
+def _power(errors: list[float], shares: list[float], wanted: float) -> float:
+    """The factor that, to the power of its share on each error, makes their sum what is wanted."""
+    low, high = 1e-12, 1e12
+    for _ in range(HALVINGS):
+        middle = (low * high)**0.5
+        total = sum(error * middle**share for error, share in zip(errors, shares, strict=True))
+        low, high = (middle, high) if total < wanted else (low, middle)
+    return low
 
 
 def expected(found: list[Contribution]) -> float:
