@@ -9,9 +9,11 @@ are taken as they are.
 from collections.abc import Hashable
 from typing import NamedTuple
 
+import numpy as np
+
+from sebody.analysis.advice.axes import contributions
 from sebody.analysis.advice.changes import Choice, Step
 from sebody.analysis.advice.forms import Form, Part
-from sebody.analysis.advice.indicators import contributions
 from sebody.analysis.advice.indicators.recorded import Recorded
 
 UNSURE = 30.0       # factor by which an indicator must exclude what is not tried
@@ -40,14 +42,15 @@ class Estimates:
     recorded : Recorded
         The reference run.
     parts : list of Part
-    step_errors : dict of float to float
+    step_errors : dict of Step to float
         Measured errors of the richest model by its steps.
     """
 
-    def __init__(self, recorded: Recorded, parts: list[Part], step_errors: dict[float, float]):
+    def __init__(self, recorded: Recorded, parts: list[Part], step_errors: dict[Step, float]):
         self._recorded, self._parts, self._steps = recorded, parts, step_errors
         self._raw: dict[tuple[int, Form], dict[str, float]] = {}
         self._factors: dict[Hashable, float] = {}
+        self._combined: dict[tuple[Form, ...], float] = {}
         self._doubts: dict[Hashable, float] = {}
         self._measured: dict[tuple[int, Form], float] = {}
         self._seen: dict[Step, list[float]] = {}      # contributions of steps that were run
@@ -68,11 +71,25 @@ class Estimates:
 
     def of_step(self, step: Step) -> list[Contribution]:
         """Contribution of a step."""
+        if step in self._steps and step.local is None and step not in self._seen:
+            return [Contribution(step, self._steps[step], SURE)]
         if step in self._seen:
             errors = self._seen[step]
             return [Contribution(step, errors[-1], SEEN if len(errors) == 1 else 1.0)]
-        h, error = min(self._steps.items(), key=lambda item: abs(item[0] - step.h))
-        return [self._corrected("step", error * (step.h / h)**ORDER)]
+        known = {one: error for one, error in self._steps.items()
+                 if (one.local is None) == (step.local is None)}
+        if not known:
+            return [Contribution(step, float("inf"), 1.0)]
+        if step.local is None:
+            one = min(known, key=lambda other: abs(np.log(other.h / step.h)))
+            return [self._corrected("step", known[one] * (step.h / one.h)**ORDER)]
+        one = min(known, key=lambda other: abs(np.log(other.local / step.local)))
+        return [self._corrected("variable steps", known[one] * (
+            step.local / one.local)**(ORDER / (ORDER + 1)))]
+
+    def learn_step(self, step: Step, error: float) -> None:
+        """Take the measured error of the richest model with a step."""
+        self._steps[step] = error
 
     def _corrected(self, kind: Hashable, error: float) -> Contribution:
         return Contribution(kind, self._factors.get(kind, 1.0) * error,
@@ -80,25 +97,32 @@ class Estimates:
 
     def contributions(self, choice: Choice) -> list[Contribution]:
         """All contributions to the error of a choice."""
-        return [*(one for k, form in enumerate(choice.forms) for one in self.of_form(k, form)),
-                *self.of_step(choice.step)]
+        if choice.forms in self._combined:
+            found = [Contribution(choice.forms, self._combined[choice.forms], 1.0)]
+        else:
+            found = [one for k, form in enumerate(choice.forms) for one in self.of_form(k, form)]
+        return [*found, *self.of_step(choice.step)]
 
     def learn_form(self, k: int, form: Form, error: float) -> None:
-        """Take the measured error of a form, tried alone."""
-        self._learn(self.of_form(k, form), error)
+        """Take the measured error of a form, tried alone; infinite if it does not run."""
+        if error < float("inf"):
+            self._learn(self.of_form(k, form), error)
         self._measured[k, form] = error
 
-    def exclude(self, k: int, form: Form) -> None:
-        """A form that does not run."""
-        self._measured[k, form] = float("inf")
-
     def learn(self, choice: Choice, error: float) -> None:
-        """Take the measured error of a choice."""
+        """Take the measured error of a choice.
+
+        What a fixed step that the richest model ran with does not explain is that of its forms
+        together.
+        """
         found = self.contributions(choice)
+        step, rest = found[-1], expected(found[:-1])
+        known = choice.step in self._steps and choice.step.local is None
+        if known and error - SEEN * step.error > SURE * rest:
+            self._combined[choice.forms] = error - step.error
+            return
         self._learn(found, error)
-        step = next(one for one in found if one.kind in ("step", choice.step))
         if step.error > expected(found) / 2:
-            rest = sum(one.error for one in found if one is not step)
             self._seen.setdefault(choice.step, []).append(max(error - rest, CAUTION * error))
 
     def _learn(self, found: list[Contribution], error: float) -> None:

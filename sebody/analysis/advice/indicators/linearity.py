@@ -5,8 +5,9 @@ import numpy as np
 from sebody.analysis.advice.forms import Form, Part
 from sebody.analysis.advice.indicators.carried import carried
 from sebody.analysis.advice.indicators.recorded import Recorded
-from sebody.analysis.advice.indicators.vibration import strain_force
+from sebody.analysis.advice.indicators.vibration import detuned, strain_force
 
+DAMPED = 0.3        # of a vibration, by which damping that is made otherwise changes it at most
 MISSED = 0.5        # of the square of a local rotation, by which the deformation is off
 
 
@@ -20,11 +21,15 @@ def linearity(recorded: Recorded, part: Part, form: Form) -> float:
     """Error from the local rotations theta in a form: ``theta^2 / 2`` of the deformation.
 
     Of the bodies of a beam each is off by its own square, weighted by its part of the rotation.
+    Where they are damped, in parts of the critical damping of each body, another division also
+    damps a vibration otherwise, by as much at most.
     """
     if form.bodies == part.richest.bodies:
         return 0.0
     whole = recorded.deformation(recorded.nodes(part))
+    damping = float(part.beam.options["damping"])
     found = np.array(local_rotations(recorded, part, form.bodies))
     square = (found**3).sum() / max(found.sum(), 1e-300)
-    return min(MISSED * square, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
-                                               strain_force(recorded, part))
+    return (min(MISSED * square, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
+                                                strain_force(recorded, part))
+            + detuned(recorded, part, damping, DAMPED))

@@ -11,16 +11,17 @@ from sebody.analysis.advice.indicators.recorded import Recorded
 MOST = 2.0      # amplitudes: in antiphase
 
 
-def detuned(recorded: Recorded, part: Part, change: float) -> float:
+def detuned(recorded: Recorded, part: Part, change: float, most: float = MOST) -> float:
     """Error if the frequency of a part's vibration changes by a relative amount.
 
     The vibration is what is left of the recorded deformation u without its mean; its frequency is
-    ``rms(u') / rms(u)``. After the time T it is out of phase by ``change * frequency * T``.
+    ``rms(u') / rms(u)``. After the time T it is out of phase by ``change * frequency * T``, which
+    counts up to `most`.
     """
     found = recorded.deformation(recorded.nodes(part))
     shifts, turns = (one - one.mean(axis=0) for one in found[:2])
     phase = abs(change) * frequency(recorded, shifts) * recorded.duration
-    return carried(recorded, part, shifts, turns, strain_force(recorded, part)) * min(MOST, phase)
+    return carried(recorded, part, shifts, turns, strain_force(recorded, part)) * min(most, phase)
 
 
 def strain_force(recorded: Recorded, part: Part) -> Force:
