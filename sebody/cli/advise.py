@@ -8,7 +8,7 @@ from sebody.cli.inputs import build_scene
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
-        "advise", help="which bodies may be rigid, how many modes and which step are enough")
+        "advise", help="the cheapest model that keeps some quantities of a scene")
     parser.add_argument("scene", metavar="SCENE",
                         help="name of a scene or a file, FILE.py: the richest model of interest")
     parser.add_argument("--quantity", action="append", required=True, metavar="NAME",

@@ -1,0 +1,28 @@
+"""Errors of a vibration's period, which add up over a run."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.analysis.advice.forms import Part
+from sebody.analysis.advice.indicators.carried import carried
+from sebody.analysis.advice.indicators.recorded import Recorded
+
+MOST = 2.0      # amplitudes: in antiphase
+
+
+def detuned(recorded: Recorded, part: Part, change: float) -> float:
+    """Error if the frequency of a part's vibration changes by a relative amount.
+
+    The vibration is what is left of the recorded deformation u without its mean; its frequency is
+    ``rms(u') / rms(u)``. After the time T it is out of phase by ``change * frequency * T``.
+    """
+    found = recorded.deformation(recorded.nodes(part))
+    shifts, turns = (one - one.mean(axis=0) for one in found[:2])
+    phase = abs(change) * frequency(recorded, shifts) * recorded.duration
+    return carried(recorded, part, shifts, turns) * min(MOST, phase)
+
+
+def frequency(recorded: Recorded, shifts: NDArray) -> float:
+    """Mean angular frequency of a vibration."""
+    size = float(np.sqrt((shifts**2).mean()))
+    return float(np.sqrt((recorded.rate(shifts)**2).mean())) / size if size > 0.0 else 0.0
