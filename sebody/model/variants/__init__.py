@@ -8,15 +8,18 @@ The model stays as it is, and its copy shares nothing with it that can change.
 | `rigid` | a superelement into a rigid body |
 | `divide` | how many superelements a beam has |
 | `with_options` | frame, inertia and stiffening of a superelement |
+| `planar` | a model that is symmetric about a plane into a planar one |
 """
 
 from sebody.model.variants.copying import Variant, copied
 from sebody.model.variants.division import divide
 from sebody.model.variants.modes import keep_modes
 from sebody.model.variants.options import with_options
+from sebody.model.variants.planar import planar
 from sebody.model.variants.rigid import rigid
 
 # of a model and the name of one of its bodies or beams
 VARIANTS = {"modes": keep_modes, "rigid": rigid, "divided": divide, "options": with_options}
 
-__all__ = ["VARIANTS", "Variant", "copied", "divide", "keep_modes", "rigid", "with_options"]
+__all__ = ["VARIANTS", "Variant", "copied", "divide", "keep_modes", "planar", "rigid",
+           "with_options"]

@@ -37,6 +37,13 @@ def copied(model: Mechanism) -> Mechanism:
     return deepcopy(model, {id(one): one for one in constant})
 
 
+def unknowns(model: Mechanism) -> int:
+    """How many unknowns a model has, multipliers included."""
+    return (sum(t.start.size for t in model.triplets() if t.solved)
+            + sum(body.body.modes for body in model.bodies.values())
+            + sum(joint.multipliers for joint in model.joints))
+
+
 def placed(model: Mechanism, name: str) -> Superelement:
     """A superelement by its name.
 
