@@ -9,6 +9,7 @@ are turned until they are.
 """
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -167,7 +168,7 @@ def _modes(body: ReducedBody, invariants: InertiaInvariants | None, boundary: ND
         np.diag(body.mass)[held:] > 0, np.diag(body.mass)[held:], 1.0)
     starts = np.flatnonzero(np.diff(squares, prepend=-np.inf) > _REPEATED * np.abs(squares))
     turns, found = [], []
-    for first, last in zip(starts, [*starts[1:], count], strict=True):
+    for first, last in pairwise([*starts, count]):
         part = _split(rows[:, first:last], signs)
         turns.append(part.turn)
         found.append(part.signs)

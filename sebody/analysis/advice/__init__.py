@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from sebody import inputs
+from sebody.analysis.advice.laboratory import Laboratory
 from sebody.analysis.advice.outcome import Advice, Reason, Trial
 from sebody.analysis.advice.quantities import Quantities
 from sebody.analysis.advice.runs import Runs
@@ -61,14 +62,10 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     budget = inputs.number(budget, "budget", above=0)
     with showing(progress, t_end) as show:
-        search = Search(model, wanted, Runs(wanted, h, t_end, show), tolerance, budget)
-        search.start()
-        for k, part in enumerate(search.parts):
-            if search.spent() > budget:
-                search.untried.append(part.name)
-            else:
-                search.alone(k)
-        found = search.together()
-    return Advice(found.model, found.choice.step.h, tuple(search.builder.sentences(found.choice)),
-                  found.error, tolerance, tuple(search.runs.table), tuple(search.untried),
-                  found.predicted, found.seconds)
+        lab = Laboratory(model, wanted, Runs(wanted, h, t_end, show), tolerance)
+        lab.start()
+        search = Search(lab, budget)
+        found = search.go()
+    made = lab.builder.make(found.choice)
+    return Advice(made.model, found.choice.step.h, made.sentences, found.error, tolerance,
+                  tuple(lab.table), tuple(search.untried), found.predicted, found.seconds)

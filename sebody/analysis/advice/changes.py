@@ -4,38 +4,63 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from sebody.analysis.advice.forms import Form, Part
+from sebody.errors import InputError
 from sebody.model.model import Model
-from sebody.model.variants import Variant, divide, keep_modes, rigid, with_options
+from sebody.model.variants import (
+    Variant,
+    can_be_shared,
+    divide,
+    keep_modes,
+    planar,
+    rigid,
+    shared,
+    with_options,
+)
 
 FUNCTIONS: dict[str, Callable[..., Variant]] = {
-    function.__name__: function for function in (divide, keep_modes, rigid, with_options)}
+    function.__name__: function
+    for function in (divide, keep_modes, with_options, rigid, shared, planar)}
 
 
 class Step(NamedTuple):
-    """Fixed steps, or steps that keep a local tolerance on a grid."""
+    """Fixed steps, or variable ones with a local tolerance, recorded on a grid."""
 
     h: float
     local: float | None = None
 
+    def finer(self) -> "Step":
+        """Half the step: of variable ones an eighth of the local tolerance."""
+        return Step(self.h / 2) if self.local is None else Step(self.h, self.local / 8)
+
+    def __str__(self) -> str:
+        if self.local is None:
+            return f"{self.h:g}"
+        return f"variable steps, local tolerance {self.local:.2g}"
+
 
 class Choice(NamedTuple):
-    """Forms of all parts, in their order, and the steps."""
+    """Forms of all parts, in their order, the steps, and what is exact."""
 
     forms: tuple[Form, ...]
     step: Step
+    planar: bool = False
+    shared: bool = False
 
     def poorer(self, other: "Choice") -> bool:
         """Whether it has no more of anything than another."""
-        return (self.step.local == other.step.local and self.step.h >= other.step.h
-                and all(a == b or a.poorer(b)
-                        for a, b in zip(self.forms, other.forms, strict=True)))
+        mine, others = self.step, other.step
+        coarser = (mine.h >= others.h if mine.local is None is others.local else
+                   mine.local is not None and others.local is not None
+                   and mine.local >= others.local)
+        return coarser and all(a == b or a.poorer(b)
+                               for a, b in zip(self.forms, other.forms, strict=True))
 
 
 class Change(NamedTuple):
     """A call of a variant."""
 
     variant: str
-    name: str
+    name: str | None            # of the part; None of the model
     arguments: Mapping[str, object]
 
     def of(self, model: Model) -> Variant:
@@ -46,12 +71,14 @@ class Change(NamedTuple):
         InputError
             The variant does not fit the model.
         """
-        return FUNCTIONS[self.variant](model, self.name, **self.arguments)
+        names = () if self.name is None else (self.name,)
+        return FUNCTIONS[self.variant](model, *names, **self.arguments)
 
     def code(self) -> str:
         """The call as a line of Python."""
+        names = "" if self.name is None else f", {self.name!r}"
         given = "".join(f", {key}={value!r}" for key, value in self.arguments.items())
-        return f"model = {self.variant}(model, {self.name!r}{given}).model"
+        return f"model = {self.variant}(model{names}{given}).model"
 
 
 def changes(part: Part, form: Form) -> list[Change]:
@@ -62,9 +89,11 @@ def changes(part: Part, form: Form) -> list[Change]:
             if given.bodies > 1:
                 found.append(Change("divide", part.name, {"bodies": 1, "modes": 0}))
         elif form != given:
+            options = {name: getattr(form, name) for name in ("modes", "inertia", "stiffening",
+                                                              "frame")
+                       if getattr(form, name) != getattr(given, name)}
             found.append(Change("divide", part.name, {
-                "bodies": form.bodies, "elements": part.elements, "modes": form.modes,
-                "inertia": form.inertia, "stiffening": form.stiffening, "frame": form.frame}))
+                "bodies": form.bodies, "elements": part.elements, **options}))
     elif not form.rigid:
         if form.modes != given.modes:
             found.append(Change("keep_modes", part.name, {"modes": form.modes}))
@@ -74,8 +103,16 @@ def changes(part: Part, form: Form) -> list[Change]:
     return [*found, Change("rigid", part.name, {})] if form.rigid else found
 
 
+class Made(NamedTuple):
+    """The model of a choice, and how it was made."""
+
+    model: Model
+    changes: tuple[Change, ...]
+    sentences: tuple[str, ...]
+
+
 class Builder:
-    """Models of choices; each change is made once.
+    """Models of choices; each is made once.
 
     Parameters
     ----------
@@ -85,16 +122,9 @@ class Builder:
 
     def __init__(self, model: Model, parts: list[Part]):
         self.model, self.parts = model, parts
-        self._made: dict[tuple[Form, ...], tuple[Model, list[str]]] = {}
+        self._made: dict[tuple, Made | InputError] = {}
 
-    def changes(self, choice: Choice) -> list[Change]:
-        """All changes of a choice, in their order."""
-        pairs = list(zip(self.parts, choice.forms, strict=True))
-        # rigid bodies last: beams are divided before their nodes are linked
-        return sorted((one for part, form in pairs for one in changes(part, form)),
-                      key=lambda one: one.variant == "rigid")
-
-    def build(self, choice: Choice) -> Model:
+    def make(self, choice: Choice) -> Made:
         """The model of a choice.
 
         Raises
@@ -102,17 +132,35 @@ class Builder:
         InputError
             A change does not fit the model.
         """
-        return self._variant(choice)[0]
+        key = choice._replace(step=None)
+        if key not in self._made:
+            try:
+                self._made[key] = self._of(choice)
+            except InputError as reason:
+                self._made[key] = reason
+        found = self._made[key]
+        if isinstance(found, InputError):
+            raise found
+        return found
 
-    def sentences(self, choice: Choice) -> list[str]:
-        """What was changed."""
-        return self._variant(choice)[1]
+    def _of(self, choice: Choice) -> Made:
+        pairs = zip(self.parts, choice.forms, strict=True)
+        # rigid bodies last: beams are divided before their nodes are linked
+        made = sorted((one for part, form in pairs for one in changes(part, form)),
+                      key=lambda one: one.variant == "rigid")
+        model, done, sentences = self.model, [], []
+        for change in made:
+            model = _apply(change, model, done, sentences)
+        if choice.shared:
+            for name in can_be_shared(model):
+                model = _apply(Change("shared", name, {}), model, done, sentences)
+        if choice.planar:
+            model = _apply(Change("planar", None, {}), model, done, sentences)
+        return Made(model, tuple(done), tuple(sentences))
 
-    def _variant(self, choice: Choice) -> tuple[Model, list[str]]:
-        if choice.forms not in self._made:
-            model, sentences = self.model, []
-            for change in self.changes(choice):
-                model, sentence = change.of(model)
-                sentences.append(sentence)
-            self._made[choice.forms] = model, sentences
-        return self._made[choice.forms]
+
+def _apply(change: Change, model: Model, done: list[Change], sentences: list[str]) -> Model:
+    model, sentence = change.of(model)
+    done.append(change)
+    sentences.append(sentence)
+    return model

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from sebody.analysis.advice.cost import Cost
+from sebody.analysis.advice.cost import of_form
 from sebody.analysis.advice.estimates import Estimates, expected
 from sebody.analysis.advice.forms import Form, Part
 
@@ -10,11 +10,11 @@ MOST = 200      # combinations that are carried from part to part
 
 
 def combinations(parts: Sequence[Part], forms: Sequence[Sequence[Form]], estimates: Estimates,
-                 cost: Cost) -> list[tuple[Form, ...]]:
+                 flat: bool) -> list[tuple[Form, ...]]:
     """Forms of all parts, cheapest first."""
     found: list[tuple[float, float, tuple[Form, ...]]] = [(0.0, 0.0, ())]
     for k, (part, own) in enumerate(zip(parts, forms, strict=True)):
-        front = _front([(cost.of_form(part, form), expected(estimates.of_form(k, form)), (form,))
+        front = _front([(of_form(part, form, flat), expected(estimates.of_form(k, form)), (form,))
                         for form in own])
         found = _thinned(_front([(a + b, e + f, (*one, *other)) for a, e, one in found
                                  for b, f, other in front]))

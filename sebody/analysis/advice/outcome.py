@@ -26,6 +26,8 @@ class Trial:
         Time that was predicted [s].
     kind : str
         What it was for: reference, alone, together, confirmation, default.
+    local : float, optional
+        Local tolerance of variable steps; then `step` is the grid.
     """
 
     change: str
@@ -35,6 +37,7 @@ class Trial:
     predicted: float = 0.0
     cost: float = 0.0
     kind: str = "reference"
+    local: float | None = None
 
 
 class Reason(NamedTuple):

@@ -67,7 +67,9 @@ class Quantities:
         InputError
             A quantity does not exist.
         """
-        histories = [np.asarray(result[name]) for name in self.histories]
+        plane = result.model.plane
+        histories = [np.asarray(result[name]) if plane is None else
+                     plane.to_space(name, result[name]) for name in self.histories]
         return Values(histories, self._frequencies(result, h) if self.numbers else [])
 
     def _frequencies(self, result: Result, h: float) -> list[float]:

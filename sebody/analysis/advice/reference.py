@@ -1,9 +1,10 @@
 """The reference: runs of the richest model, and how good the finest of them is.
 
-The richest model runs with the given step, a half and a quarter of it. Errors of second order fall
-by four each time; where they do, a third of the last difference is taken off the finest run, and
-the difference that this makes one run earlier, a sixteenth of which is left, is the reference's
-own error. Where they do not fall, the motion may be chaotic.
+The richest model runs with the given step, a half and a quarter of it, and with shorter ones where
+the tolerance needs them. Errors of second order fall by four each time; where they do, a third of
+the last difference is taken off the finest run, and a sixteenth of the difference that this makes
+one run earlier is the reference's own error. Where large ones do not fall, the motion may be
+chaotic.
 """
 
 from typing import NamedTuple
@@ -12,9 +13,9 @@ import numpy as np
 
 from sebody.analysis.advice.quantities import Values, changes_of, difference
 
-FINER = (1, 2, 4)           # parts of the given step, of the three runs
 REGULAR = 2.8, 5.7          # differences that fall by four, within a factor of the root of two
-FALLING = 1.3               # least factor by which they must fall
+LEAST = 2.0                 # factor by which they are taken to fall at least, as at jumps
+CHAOTIC = 0.05, 1.3         # differences above the first that do not fall by the second
 ORDER_FACTOR = 4.0          # of errors of second order by halving the step
 LEFT = 1.0 / 16.0           # of the change of an extrapolated value, by halving the step
 
@@ -44,10 +45,8 @@ class Reference(NamedTuple):
 
 
 def reference(runs: list[Values]) -> Reference:
-    """The reference from runs with h, h/2 and h/4, recorded on the grid of h.
-
-    The first of three may be missing, if it failed.
-    """
+    """The reference from runs with steps halved each time, recorded on one grid; two or more."""
+    runs = runs[-3:]
     finest = runs[-1]
     sizes = changes_of(finest.histories)
     steps = [difference(a, b, sizes, (1, 1)) for a, b in zip(runs, runs[1:], strict=False)]
@@ -56,8 +55,8 @@ def reference(runs: list[Values]) -> Reference:
         return Reference(finest, sizes, own, own, True)
     ratio = steps[0] / steps[1]
     if not REGULAR[0] < ratio < REGULAR[1]:
-        own = steps[1] / (min(max(ratio, FALLING), ORDER_FACTOR) - 1.0)
-        return Reference(finest, sizes, own, own, ratio >= FALLING)
+        own = steps[1] / (min(max(ratio, LEAST), ORDER_FACTOR) - 1.0)
+        return Reference(finest, sizes, own, own, steps[1] < CHAOTIC[0] or ratio > CHAOTIC[1])
     better = [_extrapolated(a, b) for a, b in zip(runs, runs[1:], strict=False)]
     left = LEFT * difference(better[0], better[1], sizes, (1, 1))
     return Reference(better[1], sizes, min(left, own), own, True)

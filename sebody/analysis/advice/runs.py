@@ -1,12 +1,11 @@
-"""Runs of the search, their times and the table of them."""
+"""Runs of a model, and what is kept of them."""
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from sebody.analysis.advice.changes import Step
-from sebody.analysis.advice.outcome import Trial
 from sebody.analysis.advice.quantities import Quantities, Values
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
@@ -27,7 +26,7 @@ class Run(NamedTuple):
 
 @dataclass
 class Runs:
-    """Makes runs and keeps the table of them.
+    """Makes runs.
 
     Parameters
     ----------
@@ -43,7 +42,6 @@ class Runs:
     h: float
     t_end: float
     progress: Callable[[float], None] | None = None
-    table: list[Trial] = field(default_factory=list)
 
     def run(self, model: Model, step: Step) -> Run:
         """Run a model; recorded on the grid of the given step, or of a longer one.

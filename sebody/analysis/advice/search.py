@@ -1,37 +1,22 @@
-"""The search: one part at a time, then all together, cheapest first."""
+"""The search: one axis at a time, then all together, cheapest first."""
 
-from dataclasses import dataclass
+from math import inf
 
-import numpy as np
-
-from sebody.analysis.advice.changes import Builder, Choice, Step
+from sebody.analysis.advice.changes import Choice, Step
 from sebody.analysis.advice.combinations import combinations
-from sebody.analysis.advice.cost import Cost
-from sebody.analysis.advice.estimates import Estimates, expected, least
-from sebody.analysis.advice.forms import Form, Part, parts_of
-from sebody.analysis.advice.indicators.recorded import Recorded
-from sebody.analysis.advice.outcome import Trial
-from sebody.analysis.advice.quantities import Quantities, difference
-from sebody.analysis.advice.reference import FINER, Reference, reference, still
-from sebody.analysis.advice.runs import Run, Runs
-from sebody.errors import InputError, SimulationError
-from sebody.model.model import Model
+from sebody.analysis.advice.cost import of_form
+from sebody.analysis.advice.estimates import expected, least
+from sebody.analysis.advice.forms import Form
+from sebody.analysis.advice.indicators.activity import activity
+from sebody.analysis.advice.laboratory import FINER, Laboratory, Tried
 
 LONGER = (4, 2)             # steps that are tried, in given ones
 MOST_ALONE = 6              # forms of a part that are tried alone
 MOST_TOGETHER = 24          # choices that are tried
 SHARE = 0.5                 # of the tolerance, that one part may use
-
-
-@dataclass
-class Tried:
-    """A choice that ran."""
-
-    choice: Choice
-    model: Model
-    error: float
-    predicted: float
-    seconds: float
+EXACT = 0.05                # of the tolerance, that a change may make that should make none
+RARE = 0.5                  # steps of variable length relative to fixed ones, that pay
+LOCAL = 8.0                 # factor of local tolerances: half as many steps
 
 
 class Search:
@@ -39,195 +24,157 @@ class Search:
 
     Parameters
     ----------
-    model : Model
-        As given.
-    quantities : Quantities
-    runs : Runs
-    tolerance, budget : float
+    lab : Laboratory
+        With its reference.
+    budget : float
+        Runs of the richest model that the work may be worth.
     """
 
-    def __init__(self, model: Model, quantities: Quantities, runs: Runs, tolerance: float,
-                 budget: float):
-        self.model, self.quantities, self.runs = model, quantities, runs
-        self.tolerance, self.budget = tolerance, budget
-        self.parts: list[Part] = parts_of(model, quantities.owners)
-        self.builder = Builder(model, self.parts)
-        self.cost = Cost(model, self.parts, runs.t_end)
+    def __init__(self, lab: Laboratory, budget: float):
+        self.lab, self.budget, self.tolerance = lab, budget, lab.tolerance
         self.untried: list[str] = []
-        self.tried: list[Tried] = []
+        self.planar = self.shared = self.variable = False
         self._failed: list[Choice] = []
-        self._work = 0.0
-        self._bases: dict[float, Run] = {}      # runs of the richest model by their steps
+
+    def go(self) -> Tried:
+        """The whole search."""
+        self._exact()
+        self._variable()
+        for k, part in enumerate(self.lab.parts):
+            if self.spent():
+                self.untried.append(part.name)
+            else:
+                self._alone(k)
+        return self._together()
+
+    def spent(self) -> bool:
+        """Whether the budget is used up."""
+        return self.lab.spent() > self.budget
 
     @property
-    def richest(self) -> tuple[Form, ...]:
-        """Forms of the richest model."""
-        return tuple(part.richest for part in self.parts)
+    def base(self) -> Choice:
+        """The richest choice, with the longest step it ran with and all exact changes."""
+        return self.lab.richest._replace(step=Step(max(self.lab.bases)), planar=self.planar,
+                                         shared=self.shared)
 
-    def start(self) -> None:
-        """Run the reference, and judge it.
+    def _exact(self) -> None:
+        """Try what should change nothing: a planar model, shared triplets."""
+        for name in ("shared", "planar"):
+            changed = self.base._replace(**{name: True})
+            if self.spent() or not self._applies(changed):
+                continue
+            found, run = self.lab.attempt(changed, "alone")
+            if run and self.lab.apart(run, changed.step.h) <= EXACT * self.tolerance:
+                setattr(self, name, True)
+            else:
+                self._failed.append(changed)
 
-        Raises
-        ------
-        InputError
-            Quantities that do not change, or a tolerance that the richest model does not reach.
-        SimulationError
-            It does not run, or its error does not fall with the step.
-        """
-        fine = Choice(self.richest, Step(self.runs.h / FINER[-1]))
-        model = self.builder.build(fine)
-        first = self._run(fine, model)
-        self._whole = self._work
-        self._bases[fine.step.h] = first
-        for k in still(first.values):
-            raise InputError(f"quantity {self.quantities.histories[k]!r} does not change: give one "
-                             "that the motion changes")
-        for part in FINER[-2::-1]:
-            step = Step(self.runs.h / part)
-            try:
-                self._bases[step.h] = self._run(fine._replace(step=step), model)
-            except SimulationError:
-                if part > 1:
-                    raise
-        found = [self._bases[h] for h in sorted(self._bases, reverse=True)]
-        self.reference: Reference = reference([run.values for run in found])
-        self.cost.measured(fine, first.seconds)
-        errors = {h: self._error(run) for h, run in self._bases.items()}
-        errors[fine.step.h] = self.reference.step_error
-        self._judge(fine.step.h)
-        for h in sorted(errors):
-            self.runs.table.append(Trial("all as it is", h, 0.0 if h == fine.step.h else errors[h],
-                                         self._bases[h].seconds))
-        recorded = Recorded(self.model, first.result, self.quantities.histories,
-                            self.reference.sizes)
-        self.estimates = Estimates(recorded, self.parts, errors)
-        self.tried.append(Tried(fine, model, max(errors[fine.step.h], self.reference.error),
-                                errors[fine.step.h], first.seconds))
+    def _applies(self, choice: Choice) -> bool:
+        """Whether a choice can be made, and differs from that before."""
+        try:
+            return self.lab.builder.make(choice).changes != self.lab.builder.make(
+                self.base).changes
+        except ValueError:      # InputError: the model is planar, or not symmetric
+            return False
 
-    def _judge(self, fine: float) -> None:
-        own = self.reference.step_error
-        if own <= self.tolerance and self.reference.error <= SHARE * self.tolerance:
+    def _variable(self) -> None:
+        """Try variable steps where the motion is quiet but for short times."""
+        finest = self.lab.bases[min(self.lab.bases)]
+        if self.spent() or activity(finest.result) > RARE:
             return
-        if not self.reference.falls:
-            raise SimulationError(
-                f"the error does not fall with the step: it stays at {own:.2g} with the step "
-                f"{fine:g}. The motion may be chaotic, then only its beginning can be computed: "
-                "use a larger tolerance or an earlier end", self._bases[fine].result)
-        raise InputError(f"with the step {fine:g} the whole model has an error of about "
-                         f"{own:.2g} from the step: give a smaller h, or a larger "
-                         f"tolerance than {self.tolerance:g}")
+        step = Step(self.lab.runs.h, self.tolerance / LOCAL)
+        found, run = self.lab.attempt(self.base._replace(step=step), "alone")
+        if run:
+            self.variable = True
+            self.lab.estimates.learn_step(step, found.error)
 
-    def spent(self) -> float:
-        """Work of all runs, relative to that of the reference."""
-        return self._work / self._whole
-
-    def _run(self, choice: Choice, model: Model) -> Run:
-        run = self.runs.run(model, choice.step)
-        self._work += self.cost.work(choice, run.iterations)
-        return run
-
-    def _error(self, run: Run) -> float:
-        """Error of a run with that of the reference."""
-        stride = max(round(run.h / self.runs.h), 1)
-        return self.reference.error + difference(run.values, self.reference.values,
-                                                 self.reference.sizes, (1, stride))
-
-    def alone(self, k: int) -> None:
+    def _alone(self, k: int) -> None:
         """Try forms of the k-th part, the others as rich as they are."""
-        part, h = self.parts[k], max(self._bases)
+        part, base = self.lab.parts[k], self.base
         failed: list[Form] = []
-        best = np.inf
-        forms = sorted((form for form in part.forms if form != part.richest),
-                       key=lambda form: self.cost.of_form(part, form))
+        best = inf
+
+        def cost(form: Form) -> float:
+            return of_form(part, form, self.planar)
+        forms = sorted((form for form in part.forms if form != part.richest), key=cost)
         for _ in range(MOST_ALONE):
             form = next((
-                f for f in forms if self.cost.of_form(part, f) < best
-                and not any(f.poorer(other) for other in failed)
-                and least(self.estimates.of_form(k, f)) <= SHARE * self.tolerance), None)
-            if form is None or self.spent() > self.budget:
+                f for f in forms if cost(f) < best and not any(f.poorer(one) for one in failed)
+                and least(self.lab.estimates.of_form(k, f)) <= SHARE * self.tolerance), None)
+            if form is None or self.spent():
                 return
             forms.remove(form)
-            error = self._try_alone(k, form, h)
+            choice = base._replace(forms=tuple(
+                form if i == k else one for i, one in enumerate(base.forms)))
+            _, run = self.lab.attempt(choice, "alone")
+            error = self.lab.apart(run, base.step.h) if run else inf
+            self.lab.estimates.learn_form(k, form, error)
             if error <= SHARE * self.tolerance:
-                best = self.cost.of_form(part, form)
+                best = cost(form)
             else:
                 failed.append(form)
 
-    def _try_alone(self, k: int, form: Form, h: float) -> float:
-        choice = Choice(tuple(form if k == i else one for i, one in enumerate(self.richest)),
-                        Step(h))
-        predicted = expected(self.estimates.of_form(k, form))
-        sentence, seconds, total = "", 0.0, np.inf
-        try:
-            model = self.builder.build(choice)
-            sentence = "; ".join(self.builder.sentences(choice))
-            run = self._run(choice, model)
-            error = difference(run.values, self._bases[h].values, self.reference.sizes, (1, 1))
-            total, seconds = self._error(run), run.seconds
-        except (InputError, SimulationError) as reason:
-            sentence, error = f"{sentence or form}: {reason}", np.inf
-        self.runs.table.append(Trial(sentence, h, total, seconds, predicted, self.cost.of(choice),
-                                     "alone"))
-        if np.isfinite(error):
-            self.estimates.learn_form(k, form, error)
-        else:
-            self.estimates.exclude(k, form)
-        return error
-
     def steps(self) -> list[Step]:
-        """Steps that are tried, longest first."""
-        count = round(self.runs.t_end / self.runs.h)
-        return [*(Step(k * self.runs.h) for k in LONGER if count % k == 0),
-                *(Step(self.runs.h / k) for k in FINER)]
+        """Steps that are tried."""
+        h, shortest = self.lab.runs.h, min(self.lab.bases)
+        count = round(self.lab.runs.t_end / h)
+        found = [Step(k * h) for k in LONGER if count % k == 0]
+        found += [Step(h / k) for k in sorted(FINER)]
+        while found[-1].h > shortest or expected(
+                self.lab.estimates.of_step(found[-1])) > SHARE * self.tolerance:
+            found.append(found[-1].finer())
+        if self.variable:
+            found += [Step(h, self.tolerance * LOCAL**k) for k in (2, 1, 0, -1, -2, -3)]
+        return found
 
-    def together(self) -> Tried:
+    def _together(self) -> Tried:
         """Try choices of all forms and steps, cheapest first; the first that is confirmed."""
         for _ in range(MOST_TOGETHER):
-            choice = self._next()
-            if choice is None or self.spent() > self.budget:
+            choice = self.next(self.tolerance)
+            if choice is None or self.spent():
                 break
-            found = self._try(choice, "together")
+            found = self._tried(choice) or self._attempt(choice)
             if found.error <= self.tolerance and self._confirmed(found):
                 return found
             self._failed.append(choice)
-        passing = [one for one in self.tried if one.error <= self.tolerance
+        return self.best()
+
+    def _tried(self, choice: Choice) -> Tried | None:
+        """A choice that ran already, perhaps alone."""
+        return next((one for one in self.lab.tried if one.choice == choice), None)
+
+    def _attempt(self, choice: Choice) -> Tried:
+        found, run = self.lab.attempt(choice, "together")
+        if run:
+            self.lab.estimates.learn(choice, found.error)
+        return found
+
+    def best(self) -> Tried:
+        """The quickest run that was good enough; the most exact one where none was."""
+        passing = [one for one in self.lab.tried if one.error <= self.tolerance
                    and one.choice not in self._failed]
+        if not passing:
+            return min(self.lab.tried, key=lambda one: one.error)
         return min(passing, key=lambda one: one.seconds)
 
-    def _next(self) -> Choice | None:
-        """The cheapest choice that may be within the tolerance."""
-        open_parts = [[part.richest] if part.name in self.untried else
-                      [form for form in part.forms] for part in self.parts]
-        found = [Choice(forms, step) for forms in combinations(
-            self.parts, open_parts, self.estimates, self.cost) for step in self.steps()]
-        cheapest_first = sorted(found, key=self.cost.of)
-        done = [one.choice for one in self.tried]
-        return next((one for one in cheapest_first if one not in done
-                     and not any(one.poorer(other) for other in self._failed)
-                     and least(self.estimates.contributions(one)) <= self.tolerance), None)
-
-    def _try(self, choice: Choice, kind: str) -> Tried:
-        predicted = expected(self.estimates.contributions(choice))
-        sentence, seconds, error, model = "", 0.0, np.inf, self.model
-        try:
-            model = self.builder.build(choice)
-            sentence = "; ".join(self.builder.sentences(choice)) or "all as it is"
-            run = self._run(choice, model)
-            error, seconds = self._error(run), run.seconds
-            self.estimates.learn(choice, error)
-        except (InputError, SimulationError) as reason:
-            sentence = f"{sentence}: {reason}"
-        self.runs.table.append(Trial(sentence, choice.step.h, error, seconds, predicted,
-                                     self.cost.of(choice), kind))
-        found = Tried(choice, model, error, predicted, seconds)
-        self.tried.append(found)
-        return found
+    def next(self, tolerance: float, sure: bool = False) -> Choice | None:
+        """The cheapest choice that may be within a tolerance, or that should be."""
+        judged = expected if sure else least
+        forms = [[part.richest] if part.name in self.untried else list(part.forms)
+                 for part in self.lab.parts]
+        found = [Choice(one, step, self.planar, self.shared)
+                 for one in combinations(self.lab.parts, forms, self.lab.estimates, self.planar)
+                 for step in self.steps()]
+        excluded = [] if sure else [*self._failed, *(
+            one.choice for one in self.lab.tried if one.error > self.tolerance)]
+        return next((one for one in sorted(found, key=self.lab.cost.of)
+                     if not any(one.poorer(other) for other in excluded)
+                     and judged(self.lab.estimates.contributions(one)) <= tolerance), None)
 
     def _confirmed(self, found: Tried) -> bool:
         """Whether the error stays within the tolerance with half the step."""
-        half = found.choice._replace(step=Step(found.choice.step.h / 2))
-        if half.step.h < self.runs.h / FINER[-1]:
+        half = found.choice._replace(step=found.choice.step.finer())
+        if half.step.local is None and half.step.h < min(self.lab.bases):
             return True
-        again = next((one for one in self.tried if one.choice == half), None) or self._try(
-            half, "confirmation")
+        again = self._tried(half) or self.lab.attempt(half, "confirmation")[0]
         return again.error <= self.tolerance

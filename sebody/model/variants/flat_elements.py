@@ -150,8 +150,10 @@ def _rigid_body(flat: Flattening, one: Element) -> tuple[str, dict]:
     c = one.constants
     first = flat.vector(c["mc"], f"the centre of mass of {one.name!r}")
     J = np.array([[c[f"J_{''.join(sorted(a + b))}"] for b in "xyz"] for a in "xyz"])
-    moment = flat.axial(J @ flat.plane.normal, f"no principal axis of {one.name!r}")
-    return "planar_rigid_body", {"mass": c["mass"], "mc": first, "J_zz": moment}
+    own = flat.plane.axes.T @ J @ flat.plane.axes
+    if np.abs(own[:2, 2]).max() > 1e-9 * np.trace(J):
+        raise InputError(f"no principal axis of inertia of {one.name!r} is normal to the plane")
+    return "planar_rigid_body", {"mass": c["mass"], "mc": first, "J_zz": own[2, 2]}
 
 
 def _unchanged(flat: Flattening, one: Element) -> tuple[str, dict]:

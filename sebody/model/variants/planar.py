@@ -70,10 +70,13 @@ def planar(model: Mechanism) -> Variant:
 
 
 def _normals(model: Mechanism) -> Iterator[NDArray]:
-    """Candidates for the normal of the plane: axes, then normals to all that is in the plane."""
-    axial = [joint.axes.columns[:, 0] for joint in model.joints if joint.kind in _NORMAL]
-    axial += [joint.axes.columns[:, 0] for joint in model.joints if any(
+    """Candidates for the normal of the plane: axes, then normals to all that is in the plane.
+
+    Axes of drives come first and as they are: so angles count as their motions do.
+    """
+    driven = [joint.axes.columns[:, 0] for joint in model.joints if any(
         c.kind == "turn_drive" for c in joint.constraints)]
+    axial = [joint.axes.columns[:, 0] for joint in model.joints if joint.kind in _NORMAL]
     axial += [one.direction for one in model.loads if "torque" in one.kind]
     inside = [node.point - next(iter(model.nodes.values())).point for node in model.nodes.values()]
     inside += [model.gravity_field]
@@ -83,21 +86,18 @@ def _normals(model: Mechanism) -> Iterator[NDArray]:
         (axial if triplet.rotational else inside).extend(own)
     rows = [v / np.linalg.norm(v) for v in inside if np.any(v)]
     _, values, directions = np.linalg.svd(np.vstack([*rows, np.zeros((3, 3))]))
-    yield from _distinct([*axial, directions[2],
-                          *(np.eye(3) if values[1] <= _SAME * values[0] else ())])
-
-
-def _distinct(vectors: list[NDArray]) -> Iterator[NDArray]:
-    """Unit vectors of different lines, the largest component positive."""
+    around = np.eye(3) if values[1] <= _SAME * values[0] else ()     # all nodes are on a line
     found: list[NDArray] = []
-    for vector in vectors:
-        if not np.any(vector):
-            continue
-        unit = vector / np.linalg.norm(vector)
-        unit = unit * np.sign(unit[np.argmax(np.abs(unit))])
-        if not any(np.abs(unit - other).max() <= _SAME for other in found):
+    for unit in (*driven, *map(_upright, (*axial, directions[2], *around))):
+        if np.any(unit) and all(np.abs(np.cross(unit, one)).max() > _SAME for one in found):
             found.append(unit)
             yield unit
+
+
+def _upright(vector: NDArray) -> NDArray:
+    """Unit vector along a line, its largest component positive; zero as it is."""
+    largest = vector[np.argmax(np.abs(vector))]
+    return vector / np.copysign(np.linalg.norm(vector), largest) if largest else vector
 
 
 def _flat(model: Mechanism, plane: Plane) -> Mechanism:

@@ -5,32 +5,31 @@ import numpy as np
 from sebody.analysis.advice.forms import Form, Part
 from sebody.analysis.advice.indicators.carried import carried
 from sebody.analysis.advice.indicators.recorded import Recorded
+from sebody.analysis.advice.indicators.vibration import detuned, strain_force
 
-MISSED = 0.3        # of the square of a local rotation, by which a stiffened body is off
-SHORTER = 1.0 / 6.0  # of length and the square of its ends' rotation: how far a bent body shortens
+DAMPED = 0.3        # of a vibration, by which damping that is made otherwise changes it at most
+MISSED = 0.5        # of the square of a local rotation, by which the deformation is off
 
 
-def local_rotation(recorded: Recorded, part: Part, bodies: int) -> float:
-    """Largest rotation of a node against the axes of its body, of a part in so many bodies."""
-    return max(float(np.nan_to_num(np.linalg.norm(recorded.deformation(nodes).turns, axis=2)).max())
-               for nodes, _ in recorded.bodies(part, bodies))
+def local_rotations(recorded: Recorded, part: Part, bodies: int) -> list[float]:
+    """Largest rotations of nodes against the axes of their bodies, of a part in so many bodies."""
+    return [float(np.nan_to_num(np.linalg.norm(recorded.deformation(nodes).turns, axis=2)).max())
+            for nodes, _ in recorded.bodies(part, bodies)]
 
 
 def linearity(recorded: Recorded, part: Part, form: Form) -> float:
-    """Error from the local rotations theta in a form.
+    """Error from the local rotations theta in a form: ``theta^2 / 2`` of the deformation.
 
-    A stiffened body misses what is of third order, ``theta^2`` of the deformation, and one that
-    does not stiffen its shortening, too, ``L theta^2 / 6``.
+    Of the bodies of a beam each is off by its own square, weighted by its part of the rotation.
+    Where they are damped, in parts of the critical damping of each body, another division also
+    damps a vibration otherwise, by as much at most.
     """
+    if form.bodies == part.richest.bodies:
+        return 0.0
     whole = recorded.deformation(recorded.nodes(part))
-    square = local_rotation(recorded, part, form.bodies)**2
-    error = MISSED * square * carried(recorded, part, whole.shifts, whole.turns)
-    if form.stiffening:
-        return error
-    shorter = 0.0 * whole.shifts
-    for nodes, _ in recorded.bodies(part, form.bodies):
-        turns = np.nan_to_num(recorded.deformation(nodes).turns)
-        ends = nodes[-1].point - nodes[0].point
-        square = (turns**2).sum(axis=2).max(axis=1)
-        shorter += SHORTER * square[:, None, None] * ends
-    return error + carried(recorded, part, shorter, 0.0 * whole.turns)
+    damping = float(part.beam.options["damping"])
+    found = np.array(local_rotations(recorded, part, form.bodies))
+    square = (found**3).sum() / max(found.sum(), 1e-300)
+    return (min(MISSED * square, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
+                                                strain_force(recorded, part))
+            + detuned(recorded, part, damping, DAMPED))

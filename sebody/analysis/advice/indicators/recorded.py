@@ -117,6 +117,10 @@ class Recorded:
             return None
         return self.result[f"{node.name}.{quantity}"][::self.every]
 
+    def mass(self, part: Part) -> float:
+        """Mass of a part."""
+        return sum(body.total_mass for _, body in self.bodies(part, 1))
+
     @cached_property
     def travel(self) -> float:
         """Largest displacement of any node of the model."""

@@ -2,71 +2,83 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh, null_space
+from scipy.linalg import eigh
 
 from sebody.analysis.advice.forms import Form, Part
-from sebody.analysis.advice.indicators.carried import carried
-from sebody.analysis.advice.indicators.omission import flat
+from sebody.analysis.advice.indicators.carried import Force, carried
+from sebody.analysis.advice.indicators.coordinates import compliance, flat, nodal
 from sebody.analysis.advice.indicators.recorded import Recorded
-from sebody.analysis.advice.indicators.vibration import detuned
+from sebody.analysis.advice.indicators.vibration import detuned, strain_force
 from sebody.reduction import ReducedBody
 
 SPIN = {"a": 1.0, "b": 1.0, "d": 0.3, "c": 0.0}     # of the square of spin over frequency
 
 
-def number(recorded: Recorded, part: Part, form: Form) -> float:
-    """Relative change of a part's stiffness by stress and spin that a form does not know of.
+def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
+    """Error from forces of second order that a form does not know of.
 
-    By stress the largest eigenvalue of the geometric stiffness against the elastic one; by the
-    spin W its square over that of the first frequency with one node held, which options A, B and D
-    soften by.
+    With the recorded boundary deformation y of a body the strains of its resultants are
+    ``e = E . y + y . Ghat y / (2 lam)``. Their forces ``sum e Ghat y`` stiffen: the body gives way
+    to them as its stiffness allows, and the work that they do on y, relative to its strain energy,
+    changes the period of the vibration. What bends shortens, by ``y . Ghat y / (2 lam) E``.
     """
     if form.stiffening:
         return 0.0
-    found = 0.0
+    whole = recorded.nodes(part)
+    shifts, turns = (0.0 * one for one in recorded.deformation(whole)[:2])
+    work = energy = 0.0
+    force = Force()
     for nodes, body in recorded.bodies(part, form.bodies):
-        spin = float(np.abs(recorded.spins(nodes)).max())
-        found = max(found, _by_stress(recorded, nodes, body)
-                    + SPIN[form.inertia] * (spin / _first_frequency(body))**2)
-    return found
+        if body.invariants is None or not body.invariants.resultants:
+            continue
+        n = len(body.stiffness) - body.modes
+        found = recorded.deformation(nodes)
+        y = flat(body, found.shifts, found.turns)
+        forces, shorter = _second_order(body, y)
+        one, other = nodal(body, forces @ compliance(body) + shorter)
+        places = [whole.index(node) for node in nodes]
+        shifts[:, places] += one
+        turns[:, places] += other
+        energy += np.einsum("ni,ij,nj->n", y, body.stiffness[:n, :n], y).mean()
+        work += float((y * forces).sum(axis=1).mean())
+        force = force.with_(Force.of(body, forces))
+    return (carried(recorded, part, shifts, turns, force)
+            + detuned(recorded, part, min(abs(work) / max(energy, 1e-300) / 2, 1.0)))
 
 
-def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
-    """Error from the stiffness that is missing: of the deformation, and of its period."""
-    missing = number(recorded, part, form)
-    if missing == 0.0:
+def _second_order(body: ReducedBody, y: NDArray) -> tuple[NDArray, NDArray]:
+    """Forces at the boundary, and its displacements by shortening, (n, boundary)."""
+    i, n = body.invariants, y.shape[1]
+    E, G = i.E[:n], i.Ghat[:, :n, :n]
+    shorter = np.einsum("ni,eij,nj->ne", y, G, y, optimize=True) / (2.0 * i.lam)
+    return np.einsum("ne,eij,nj->ni", y @ E + shorter, G, y, optimize=True), shorter @ E.T
+
+
+def spin(recorded: Recorded, part: Part, form: Form) -> float:
+    """Error of options that soften with a spin: ``(spin / frequency)^2`` of the deformation.
+
+    The frequency is the first one of the body with a node held.
+    """
+    share = SPIN[form.inertia]
+    if share == 0.0:
         return 0.0
+    change = max(share * (float(np.abs(recorded.spins(nodes)).max()) / _first_frequency(body))**2
+                 for nodes, body in recorded.bodies(part, form.bodies))
     whole = recorded.deformation(recorded.nodes(part))
-    return (min(missing, 1.0) * carried(recorded, part, whole.shifts, whole.turns)
-            + detuned(recorded, part, min(missing / 2, 1.0)))
-
-
-def _by_stress(recorded: Recorded, nodes: list, body: ReducedBody) -> float:
-    i = body.invariants
-    if i is None or not i.resultants:
-        return 0.0
-    found = recorded.deformation(nodes)
-    n = len(body.stiffness) - body.modes
-    forces = np.abs(flat(body, found.shifts, found.turns) @ i.E[:n]).max(axis=0)
-    elastic = null_space(body.rigid_modes[:n].T)
-    K = elastic.T @ body.stiffness[:n, :n] @ elastic
-    return sum(force * _ratio(elastic.T @ G[:n, :n] @ elastic, K)
-               for force, G in zip(forces, i.Ghat, strict=True))
-
-
-def _ratio(G: NDArray, K: NDArray) -> float:
-    return float(np.abs(eigh(G, K, eigvals_only=True)).max())
+    return (min(change, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
+                                       strain_force(recorded, part))
+            + detuned(recorded, part, min(change / 2, 1.0)))
 
 
 def _first_frequency(body: ReducedBody) -> float:
     """Lowest frequency with the coordinates of one node held, of all nodes."""
-    n, d = len(body.stiffness) - body.modes, body.coordinates.shape[1]
+    d = body.coordinates.shape[1]
     owner = np.repeat([*body.position_nodes, *body.rotation_nodes],
                       [d] * len(body.position_nodes)
                       + [3 if d == 3 else 1] * len(body.rotation_nodes))
-    lowest = []
+    squares = []
     for node in set(owner):
-        free = np.flatnonzero(owner[:n] != node)
+        free = np.flatnonzero(owner != node)
         K, M = (A[np.ix_(free, free)] for A in (body.stiffness, body.mass))
-        lowest.append(float(eigh(K, M, eigvals_only=True)[0]))
-    return float(np.sqrt(max(min(lowest), 1e-300)))
+        squares.append(float(eigh(K, M, eigvals_only=True)[0]))
+    return float(np.sqrt(max(min(squares), 1e-300)))

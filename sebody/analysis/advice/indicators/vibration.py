@@ -4,22 +4,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.analysis.advice.forms import Part
-from sebody.analysis.advice.indicators.carried import carried
+from sebody.analysis.advice.indicators.carried import Force, carried
+from sebody.analysis.advice.indicators.coordinates import flat
 from sebody.analysis.advice.indicators.recorded import Recorded
 
 MOST = 2.0      # amplitudes: in antiphase
 
 
-def detuned(recorded: Recorded, part: Part, change: float) -> float:
+def detuned(recorded: Recorded, part: Part, change: float, most: float = MOST) -> float:
     """Error if the frequency of a part's vibration changes by a relative amount.
 
     The vibration is what is left of the recorded deformation u without its mean; its frequency is
-    ``rms(u') / rms(u)``. After the time T it is out of phase by ``change * frequency * T``.
+    ``rms(u') / rms(u)``. After the time T it is out of phase by ``change * frequency * T``, which
+    counts up to `most`.
     """
     found = recorded.deformation(recorded.nodes(part))
     shifts, turns = (one - one.mean(axis=0) for one in found[:2])
     phase = abs(change) * frequency(recorded, shifts) * recorded.duration
-    return carried(recorded, part, shifts, turns) * min(MOST, phase)
+    return carried(recorded, part, shifts, turns, strain_force(recorded, part)) * min(most, phase)
+
+
+def strain_force(recorded: Recorded, part: Part) -> Force:
+    """Largest change of the elastic forces at the ends of a part, over the recorded run."""
+    (nodes, body), = recorded.bodies(part, 1)
+    found = recorded.deformation(nodes)
+    n = len(body.stiffness) - body.modes
+    forces = flat(body, found.shifts, found.turns) @ body.stiffness[:n, :n]
+    return Force.of(body, forces - forces[0])
 
 
 def frequency(recorded: Recorded, shifts: NDArray) -> float:
