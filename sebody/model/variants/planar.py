@@ -129,8 +129,10 @@ def _body(made: Mechanism, flat: Flattening, old: Superelement) -> PlanarBody:
     what = f"superelement {old.name!r}"
     found = planar_body(old.body, flat.plane.axes, what)
     rates = found.modes.T @ old.mode_rates
-    if np.abs(old.mode_rates - found.modes @ rates).max(initial=0.0) > (
-            _ODD * np.abs(old.mode_rates).max(initial=0.0)):
+    bound = [triplet.rate for triplet in (*old.positions, *old.rotations)]
+    odd = np.concatenate([0.0 * v for v in bound] + [old.mode_rates - found.modes @ rates])
+    every = np.concatenate([*bound, old.mode_rates])
+    if odd @ old.body.mass @ odd > _ODD**2 * (every @ old.body.mass @ every):
         raise InputError(f"{what} has initial velocities of modes out of the plane")
     frame_node = (old.body.position_nodes[int(np.argmax(old.alpha))]
                   if FRAMES[old.frame].on_one_node else 0)
