@@ -47,7 +47,7 @@ class Estimates:
     """
 
     def __init__(self, recorded: Recorded, parts: list[Part], step_errors: dict[Step, float]):
-        self._recorded, self._parts, self._steps = recorded, parts, step_errors
+        self.recorded, self._parts, self._steps = recorded, parts, step_errors
         self._raw: dict[tuple[int, Form], dict[str, float]] = {}
         self._factors: dict[Hashable, float] = {}
         self._combined: dict[tuple[Form, ...], float] = {}
@@ -60,8 +60,17 @@ class Estimates:
         if (k, form) not in self._raw:
             part = self._parts[k]
             self._raw[k, form] = {} if form == part.richest else contributions(
-                self._recorded, part, form)
+                self.recorded, part, form)
         return self._raw[k, form]
+
+    def predicted(self, k: int, form: Form) -> dict[str, float]:
+        """What is predicted of a form of the k-th part by axis, corrected by other runs."""
+        return {name: float(self._corrected((k, name), error).error)
+                for name, error in self.raw(k, form).items()}
+
+    def confirmed(self, k: int, form: Form) -> float | None:
+        """The measured error of a form tried alone."""
+        return self._measured.get((k, form))
 
     def of_form(self, k: int, form: Form) -> list[Contribution]:
         """Contributions of a form of the k-th part."""
@@ -72,7 +81,7 @@ class Estimates:
     def of_step(self, step: Step) -> list[Contribution]:
         """Contribution of a step."""
         if step in self._steps and step.local is None and step not in self._seen:
-            return [Contribution(step, self._steps[step], SURE)]
+            return [Contribution(step, float(self._steps[step]), SURE)]
         if step in self._seen:
             errors = self._seen[step]
             return [Contribution(step, errors[-1], SEEN if len(errors) == 1 else 1.0)]

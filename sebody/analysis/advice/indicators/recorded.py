@@ -117,6 +117,13 @@ class Recorded:
             return None
         return self.result[f"{node.name}.{quantity}"][::self.every]
 
+    def motion_frequency(self, nodes: list[Node]) -> float:
+        """Mean angular frequency of the motion of some nodes: of accelerations over velocities."""
+        v, a = (np.stack([one for node in nodes if (one := self.read(node, name)) is not None])
+                for name in ("velocity", "acceleration"))
+        size = float(np.sqrt((v**2).mean()))
+        return float(np.sqrt((a**2).mean())) / size if size > 0.0 else 0.0
+
     def mass(self, part: Part) -> float:
         """Mass of a part."""
         return sum(body.total_mass for _, body in self.bodies(part, 1))
