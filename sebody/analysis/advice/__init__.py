@@ -63,6 +63,7 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
                          "of steps")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     budget = inputs.number(budget, "budget", above=0)
+    wanted.check(model, h)
     with showing(progress, t_end) as show:
         lab = Laboratory(model, wanted, Runs(wanted, h, t_end, show), tolerance)
         lab.start()

@@ -63,11 +63,6 @@ class Estimates:
                 self.recorded, part, form)
         return self._raw[k, form]
 
-    def predicted(self, k: int, form: Form) -> dict[str, float]:
-        """What is predicted of a form of the k-th part by axis, corrected by other runs."""
-        return {name: float(self._corrected((k, name), error).error)
-                for name, error in self.raw(k, form).items()}
-
     def confirmed(self, k: int, form: Form) -> float | None:
         """The measured error of a form tried alone."""
         return self._measured.get((k, form))

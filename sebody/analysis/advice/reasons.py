@@ -32,7 +32,7 @@ def _of_part(lab: Laboratory, k: int, part: Part, form: Form) -> list[Reason]:
     """A line of the form, and one of each of its axes that were made poorer."""
     if form == part.richest:
         return [Reason(part.name, in_words(part, form), "nothing less was enough")]
-    predicted, confirmed = lab.estimates.predicted(k, form), lab.estimates.confirmed(k, form)
+    predicted, confirmed = lab.estimates.raw(k, form), lab.estimates.confirmed(k, form)
     total = sum(predicted.values())
     if form.rigid:
         return [Reason(part.name, "rigid", _slowness(lab, part, Form.first(part)), total,
@@ -81,7 +81,7 @@ def _slowness(lab: Laboratory, part: Part, form: Form) -> str:
         omitted, what = float(np.sqrt(squares.min())), "the first one left out"
     else:
         return "all there are"
-    moving = recorded.motion_frequency(nodes)
+    moving = recorded.motion_frequency
     return f"{what} is {omitted / moving:.2g} times the motion's" if moving > 0 else (
         f"{what} is {omitted / TURN:.2g}")
 
@@ -98,12 +98,14 @@ def _of_step(search: Search, choice: Choice) -> Reason:
                   for part, form in zip(lab.parts, choice.forms, strict=True) if not form.rigid]
     fastest = max(vibrations, default=0.0)
     steps = f"{TURN / fastest / step.h:.2g} steps a period of the vibration" if fastest else ""
-    return Reason("step", f"{step.h:g}, {_times(step.h / lab.runs.h)} the given one", steps,
+    return Reason("step", f"{step.h:g}, {_times(step.h / lab.runs.h)} given", steps,
                   confirmed=halved)
 
 
 def _times(ratio: float) -> str:
-    return f"{ratio:g} times" if ratio >= 1 else f"1/{1 / ratio:g} of"
+    if ratio == 1.0:
+        return "as"
+    return f"{ratio:g} times that" if ratio > 1 else f"1/{1 / ratio:g} of that"
 
 
 def neighbours(search: Search, choice: Choice) -> list[str]:
@@ -118,7 +120,7 @@ def neighbours(search: Search, choice: Choice) -> list[str]:
             what = "the same"
         else:
             what = _differences(search.lab, choice, other)
-        found.append(f"at a tolerance of {tolerance:g}: {what}, as predicted")
+        found.append(f"at a tolerance of {tolerance:g} predicted: {what}")
     return found
 
 

@@ -117,9 +117,11 @@ class Recorded:
             return None
         return self.result[f"{node.name}.{quantity}"][::self.every]
 
-    def motion_frequency(self, nodes: list[Node]) -> float:
-        """Mean angular frequency of the motion of some nodes: of accelerations over velocities."""
-        v, a = (np.stack([one for node in nodes if (one := self.read(node, name)) is not None])
+    @cached_property
+    def motion_frequency(self) -> float:
+        """Mean angular frequency of the motion of the nodes: of accelerations over velocities."""
+        v, a = (np.stack([one for node in self.result.model.nodes.values()
+                          if (one := self.read(node, name)) is not None])
                 for name in ("velocity", "acceleration"))
         size = float(np.sqrt((v**2).mean()))
         return float(np.sqrt((a**2).mean())) / size if size > 0.0 else 0.0
