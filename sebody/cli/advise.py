@@ -85,9 +85,9 @@ def _given(options: argparse.Namespace) -> list[str]:
     arguments = ", ".join(f"{name}={value!r}" for name, value in
                           given_arguments(options.scene, build, options.changes).items())
     if scene_files.is_file(options.scene):
-        return ["from runpy import run_path", "",
+        return ["from runpy import run_path",
                 f"model = run_path({file!r})['build']({arguments}).model"]
-    return [f"from {build.__module__} import build", "", f"model = build({arguments}).model"]
+    return [f"from {build.__module__} import build", f"model = build({arguments}).model"]
 
 
 def _draw(advice: "Advice", name: str, path: Path) -> None:

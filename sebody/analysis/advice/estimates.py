@@ -1,6 +1,7 @@
 """What errors are expected: indicators, corrected by what runs have shown.
 
-The error of a choice is the sum of what its forms and its step contribute. An indicator may be off
+The error of a choice is the root of the sum of squares of what its forms and its step contribute,
+which have different directions and times. An indicator may be off
 by `UNSURE`; once a run has shown what a contribution is, others of its kind are scaled alike, and
 may be off by `SURE`, or by `SHARED` where several made the error of the run. Measured contributions
 are taken as they are.
@@ -21,7 +22,7 @@ SURE = 3.0          # the same once a run has shown its scale
 ORDER = 2           # of the time integration
 SEEN = 1.2          # the same of a step that one choice was run with; none of two
 SHARED = 10.0       # the same where it was a part of an error among others
-MAIN, KNOWN = 0.7, 0.1      # shares of an error from which the scale of a contribution is known
+MAIN, KNOWN = 0.95, 0.1     # shares of an error from which the scale of a contribution is known
 HALVINGS = 80       # of the range of a factor, in logarithms
 CAUTION = 0.03      # least share of an error that what was not measured is said to make
 
@@ -127,15 +128,15 @@ class Estimates:
             return
         self._learn(found, error)
         if step.error > expected(found) / 2:
-            self._seen.setdefault(choice.step, []).append(max(error - rest, CAUTION * error))
+            self._seen.setdefault(choice.step, []).append(_rest(error, rest))
 
     def _learn(self, found: list[Contribution], error: float) -> None:
-        """Scale what was not measured, the larger the more, so that the sum is the error."""
+        """Scale what was not measured, the larger the more, so that all is the error."""
         open_ones = [one for one in found if one.doubt > 1.0 and one.error > 0.0]
         if not open_ones:
             return
-        rest = expected(found) - expected(open_ones)
-        wanted, largest = max(error - rest, CAUTION * error), max(one.error for one in open_ones)
+        measured = expected([one for one in found if one not in open_ones])
+        wanted, largest = _rest(error, measured), max(one.error for one in open_ones)
         shares = [one.error / largest for one in open_ones]
         power = _power([one.error for one in open_ones], shares, wanted)
         for one, share in zip(open_ones, shares, strict=True):
@@ -147,20 +148,25 @@ class Estimates:
 
 
 def _power(errors: list[float], shares: list[float], wanted: float) -> float:
-    """The factor that, to the power of its share on each error, makes their sum what is wanted."""
+    """The factor that, to the power of its share on each error, makes all what is wanted."""
     low, high = 1e-12, 1e12
     for _ in range(HALVINGS):
         middle = (low * high)**0.5
-        total = sum(error * middle**share for error, share in zip(errors, shares, strict=True))
-        low, high = (middle, high) if total < wanted else (low, middle)
+        total = sum((error * middle**share)**2 for error, share in zip(errors, shares, strict=True))
+        low, high = (middle, high) if total < wanted**2 else (low, middle)
     return low
 
 
+def _rest(error: float, measured: float) -> float:
+    """What is left of an error without a part that was measured."""
+    return max(float(np.sqrt(max(error**2 - measured**2, 0.0))), CAUTION * error)
+
+
 def expected(found: list[Contribution]) -> float:
-    """Sum of contributions."""
-    return sum(one.error for one in found)
+    """Contributions together."""
+    return float(np.sqrt(sum(one.error**2 for one in found)))
 
 
 def least(found: list[Contribution]) -> float:
-    """The sum as small as it may be."""
-    return sum(one.error / one.doubt for one in found)
+    """The same as small as it may be."""
+    return float(np.sqrt(sum((one.error / one.doubt)**2 for one in found)))

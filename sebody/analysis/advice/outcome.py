@@ -129,7 +129,7 @@ class Advice:
         Parameters
         ----------
         given : sequence of str
-            Lines that make the given model, by the name ``model``.
+            Lines that make the given model, by the name ``model``, imports first.
         """
         names = sorted({line.partition("= ")[2].partition("(")[0] for line in self.lines})
         imports = [f"from sebody import {'Tolerance, ' * bool(self.local)}simulate"]
@@ -137,7 +137,8 @@ class Advice:
             imports.append(f"from sebody.model.variants import {', '.join(names)}")
         local = f", tolerance=Tolerance({self.local.relative!r})" if self.local else ""
         run = f"result = simulate(model, {self.step!r}, {self.t_end!r}{local})"
-        return "\n".join([*imports, "", *given, *self.lines, run])
+        own = [line for line in given if line.startswith(("from ", "import "))]
+        return "\n".join([*own, *imports, "", *given[len(own):], *self.lines, run])
 
     def summary(self) -> str:
         """What was chosen and why, the time it saves, and the error."""
