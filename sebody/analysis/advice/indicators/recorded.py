@@ -43,6 +43,7 @@ class Recorded:
         self.every = max(1, len(result.rows) // STATES)
         self.duration = float(result.t[-1])
         self.interval = self.every * float(result.t[1] - result.t[0])
+        self.indicated: dict[tuple, float] = {}     # errors by indicator and what they depend on
         self._found: dict[tuple, Deformation] = {}
         self._bodies: dict[tuple[str, int], list[tuple[list[Node], ReducedBody]]] = {}
 
