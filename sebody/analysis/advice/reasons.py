@@ -5,8 +5,7 @@ import numpy as np
 from sebody.analysis.advice.changes import Choice
 from sebody.analysis.advice.forms import Form, Part
 from sebody.analysis.advice.indicators.linearity import local_rotations
-from sebody.analysis.advice.indicators.stiffening import first_frequency
-from sebody.analysis.advice.indicators.vibration import frequency
+from sebody.analysis.advice.indicators.vibration import first_frequency, frequency
 from sebody.analysis.advice.laboratory import Laboratory
 from sebody.analysis.advice.outcome import Reason
 from sebody.analysis.advice.search import Search

@@ -84,7 +84,8 @@ class Search:
     def _variable(self) -> None:
         """Try variable steps where the motion is quiet but for short times."""
         finest = self.lab.bases[min(self.lab.bases)]
-        if self.spent() or activity(finest.result) > RARE:
+        if self.spent() or not self.lab.quantities.histories or (
+                activity(finest.result) > RARE):
             return
         step = Step(self.lab.runs.h, self.tolerance / LOCAL)
         found, run = self.lab.attempt(self.base._replace(step=step), "alone")
@@ -119,8 +120,10 @@ class Search:
                 failed.append(form)
 
     def steps(self) -> list[Step]:
-        """Steps that are tried."""
+        """Steps that are tried; frequencies do not depend on it."""
         h, shortest = self.lab.runs.h, min(self.lab.bases)
+        if not self.lab.quantities.histories:
+            return [Step(h)]
         count = round(self.lab.runs.t_end / h)
         found = [Step(k * h) for k in LONGER if count % k == 0]
         found += [Step(h / k) for k in sorted(FINER)]
