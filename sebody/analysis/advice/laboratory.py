@@ -50,7 +50,7 @@ class Laboratory:
         self.model, self.quantities, self.runs = model, quantities, runs
         self.tolerance = tolerance
         self.parts: list[Part] = parts_of(model, quantities.owners)
-        self.builder = Builder(model, self.parts)
+        self.builder = Builder(model, self.parts, quantities.owners)
         self.cost = Cost(model, self.parts, runs.t_end)
         self.table: list[Trial] = []
         self.tried: list[Tried] = []
