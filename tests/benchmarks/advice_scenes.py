@@ -56,11 +56,12 @@ def stout_four_bar() -> Model:
     thick = place.bar(0.03, 0.03)
     for name, at in (("D", (0.55, 0.0)), ("C", (0.6, 0.45)), ("A", (0.0, 0.0)), ("B", (0.1, 0.3))):
         model.node(name, place.point(*at))
-    model.node("rocker end", place.point(0.6, 0.45), at="C")
+    model.node("rocker end", place.point(0.6, 0.45))
     model.node("coupler begin", place.point(0.1, 0.3), at="B")
     for name, ends in (("rocker", ("D", "rocker end")), ("crank", ("A", "B")),
                        ("coupler", ("coupler begin", "C"))):
         model.beam(name, ends, thick, elements=24, bodies=1, modes=4, damping=0.05)
+    model.revolute("C", to="rocker end", explicit=True)     # so that all parts may be rigid
     for foot in "AD":
         model.fix(foot, "position")
     model.move("A", 1.0, rest_to_rest(-1.2, 1.0), "rotation")

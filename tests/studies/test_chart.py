@@ -8,14 +8,35 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from sebody import InputError, Model
 from sebody.cli.entry import main
+from sebody.scenes import four_bar
+from sebody.scenes.scene import Scene
 from sebody.studies import chart
 from sebody.studies.bench import peer
 from sebody.studies.chart import cases
 from sebody.studies.chart import references as reference_module
-from sebody.studies.chart.references import Reference, reference
+from sebody.studies.chart.references import reference
 from sebody.studies.chart.timing import repeated
 
+LINKS = '''
+"""Two links, turned in the plane."""
+from sebody import Model
+from sebody.fem import rectangle
+from sebody.scenes.scene import Scene
+
+def build():
+    model = Model(planar=True)
+    model.gravity((3.0, -9.0))
+    tip, base = model.node("tip", (1.1, -0.9)), model.node("base", (0.2, 0.1))
+    elbow = model.node("elbow", (0.7, -0.2))
+    wrist = model.node("wrist", (0.7, -0.2), at=elbow)
+    steel = 2.1e11, 0.3, 7800.0
+    model.beam("slender", (wrist, tip), rectangle(0.003, 0.02, *steel), 8, 1, 2)
+    model.beam("stout", (base, elbow), rectangle(0.04, 0.02, *steel), 8, 1, 2)
+    model.fix(base, "position")
+    return Scene("links", "two links", model, 0.002, 0.4)
+'''
 POINT = chart.Point("modes", "a", 1e-3, 1e-4, 15, 0.01, 2.0)
 
 
@@ -27,10 +48,10 @@ def test_front_is_what_nothing_beats():
 
 def test_report_compares_at_the_same_error():
     rival = replace(POINT, family=peer.NAME, label="beams", cost=7e-4, error=9e-4)
-    text = chart.report("hinged-beam", [POINT, rival], Reference(np.zeros(1), 1e-6))
+    text = chart.report("hinged-beam", [POINT, rival], 1e-6)
     assert "at an error of 1e-02 Exudyn's best takes 7.0 times as long" in text
     assert "3e-04" not in text      # no point of ours is that good
-    alone = chart.report("spin-up", [POINT], Reference(np.zeros(1), 1e-6))
+    alone = chart.report("spin-up", [POINT], 1e-6)
     assert "Exudyn" not in alone
 
 
@@ -181,8 +202,53 @@ def test_chart_writes_table_and_picture(tmp_path, monkeypatch, capsys):
     assert errors["2 nonlinear beams, h"] < errors["1 nonlinear beam, 4 h"]
 
 
+def test_any_scene_has_a_chart(tmp_path, capsys):
+    """Of two links in a file: as rich as they can be is the reference, the tip is compared."""
+    file, table = tmp_path / "links.py", tmp_path / "links.csv"
+    file.write_text(LINKS)
+    picture = tmp_path / "links.png"
+    assert main(["chart", str(file), "--csv", str(table), "--output", str(picture)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("links, tip.position: reference good to ")
+    assert picture.stat().st_size > 10_000
+    with table.open() as written:
+        points = {row["label"]: row for row in csv.DictReader(written)}
+    assert {"modes", "bodies", "inertia", "rigid", "steps", "schemes"} == {
+        point["family"] for point in points.values()}
+    errors = {label: float(point["error"]) for label, point in points.items()}
+    limit = float(out.split("good to ")[1].split(",")[0])
+    assert 0.0 < limit < 1e-4 and min(errors.values()) >= 0.99 * limit     # printed with 2 digits
+    assert errors["all rigid"] > 10 * errors["richest, h/4"]
+    # the other link alone: the stiff one may be rigid
+    assert errors["stout rigid"] < 0.1 * errors["slender rigid"]
+    assert all(float(point["slowest"]) >= float(point["cost"]) > 0 for point in points.values())
+
+
+def test_a_mechanism_has_a_chart_of_steps_and_schemes():
+    """Rigid bodies: errors fall with the square of the step; the reference knows its own error."""
+    study = chart.measure_any(replace(four_bar.build(1), t_end=0.4), "B1.velocity")
+    errors = {point.label: point.error for point in study.points}
+    assert study.quantity == "B1.velocity" and set(p.family for p in study.points) == {
+        "steps", "schemes"}
+    assert errors["4 h"] / errors["2 h"] == pytest.approx(4.0, rel=0.1)
+    assert errors["h/2"] / errors["h/4"] == pytest.approx(4.0, rel=0.1)
+    assert study.error < 0.01 * errors["h/4"]
+
+
+def test_what_has_no_chart_is_refused():
+    scene = four_bar.build(1)
+    with pytest.raises(InputError, match="quantity 'ground 0.position' does not change: give one"):
+        chart.measure_any(replace(scene, t_end=0.1), "ground 0.position")
+    with pytest.raises(InputError, match="'C.position' is unknown: did you mean"):
+        chart.measure_any(replace(scene, t_end=0.1), "C.position")
+    still = Model(planar=True)
+    still.point_mass("mass", still.node("a", (1.0, 2.0), "translation"), 1.0)
+    with pytest.raises(InputError, match="nothing moves: give the scene a load, a drive or"):
+        chart.measure_any(Scene("still", "", still, 0.1, 1.0))
+
+
 def test_unknown_scene_and_folder(tmp_path, capsys):
-    assert main(["chart", "shaft"]) == 2
-    assert "there is no chart of scene 'shaft': use hinged-beam" in capsys.readouterr().err
+    assert main(["chart", "moon"]) == 2
+    assert "scene 'moon' is unknown: there are" in capsys.readouterr().err
     assert main(["chart", "hinged-beam", "--csv", str(tmp_path / "no" / "a.csv")]) == 2
     assert "of the table does not exist: make it" in capsys.readouterr().err

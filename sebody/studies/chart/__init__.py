@@ -1,4 +1,4 @@
-"""``sebody chart``: error against computing time, over formulations, divisions and steps."""
+"""``sebody chart``: error against computing time of all that a scene can be built from."""
 
 import csv
 from dataclasses import astuple, fields
@@ -13,30 +13,25 @@ from sebody.analysis.simulation import simulate
 from sebody.errors import SimulationError
 from sebody.files import check_target, replacing
 from sebody.studies.bench import peer
+from sebody.studies.chart.any_scene import measure_any
 from sebody.studies.chart.cases import COARSEST, SCENES, Variant, builder, variants
 from sebody.studies.chart.draw import draw
-from sebody.studies.chart.points import Point, front
+from sebody.studies.chart.points import Point, Study, front
 from sebody.studies.chart.references import Reference, reference
 from sebody.studies.chart.timing import repeated
 
 LEVELS = (1e-2, 1e-3, 3e-4)     # of error, at which front and peer are compared
 
 
-def measure(scene: str) -> tuple[list[Point], Reference]:
-    """Run all variants of a scene, and the peer where it is installed.
-
-    Raises
-    ------
-    InputError
-        A scene that has no chart.
-    """
+def measure(scene: str) -> Study:
+    """Run all variants of one of `SCENES`, and the peer where it is installed."""
     chosen = variants(scene)
     prepare(builder(scene)(**v.parameters).model for v in chosen)
     exact = reference(scene)
     points = _points(scene, chosen, exact)
     if peer.available():
         points += _peer(scene, exact)
-    return points, exact
+    return Study(points, SCENES[scene], exact.error)
 
 
 def _points(scene: str, chosen: list[Variant], exact: Reference) -> list[Point]:
@@ -79,9 +74,9 @@ def own(points: list[Point]) -> list[Point]:
     return [p for p in points if p.family != peer.NAME]
 
 
-def report(scene: str, points: list[Point], exact: Reference) -> str:
+def report(name: str, points: list[Point], limit: float) -> str:
     """The points of the front by name, and the ratios of cost to the peer's."""
-    lines = [f"{scene}: reference good to {exact.error:.1e}, {len(own(points))} points",
+    lines = [f"{name}: reference good to {limit:.1e}, {len(own(points))} points",
              f"{'front':44} {'error':>9} {'ms per second':>14}"]
     lines += [f"{p.label:44} {p.error:9.1e} {1e3 * p.cost:14.4f}" for p in front(own(points))]
     for level in LEVELS:
@@ -113,4 +108,5 @@ def write_csv(points: list[Point], path: Path) -> None:
         file.write(table.getvalue().encode())
 
 
-__all__ = ["Point", "draw", "front", "measure", "own", "report", "write_csv"]
+__all__ = ["SCENES", "Point", "Study", "draw", "front", "measure", "measure_any", "own", "report",
+           "write_csv"]

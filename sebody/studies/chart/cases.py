@@ -1,13 +1,11 @@
-"""The variants of a chart: frames, inertia options, divisions, modes, steps, schemes."""
+"""Variants of scenes made for charts: frames, inertia, divisions, modes, steps, schemes."""
 
 import inspect
-from collections.abc import Callable
 from typing import NamedTuple
 
 from sebody.analysis.schemes import generalized_alpha, hht
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
-from sebody.studies import catalogue
+from sebody.studies.catalogue import builder
 
 # scene: the quantity whose history is compared
 SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
@@ -25,19 +23,6 @@ class Variant(NamedTuple):
     parameters: dict        # of the scene's build
     finer: float = 1.0      # than the scene's own step
     scheme: Scheme = generalized_alpha()
-
-
-def builder(scene: str) -> Callable:
-    """The `build` of a scene.
-
-    Raises
-    ------
-    InputError
-        A scene that has no chart.
-    """
-    if scene not in SCENES:
-        raise InputError(f"there is no chart of scene {scene!r}: use {', '.join(SCENES)}")
-    return catalogue.builder(scene)
 
 
 def variants(scene: str) -> list[Variant]:
@@ -77,8 +62,12 @@ def _beams() -> list[Variant]:
             for n in (1, 2, 3, 5, 8) for f in STEPS]
 
 
+def schemes() -> dict[str, Scheme]:
+    """Schemes besides the default."""
+    return {"rho 0.5": generalized_alpha(0.5), "rho 1": generalized_alpha(1.0),
+            "HHT -0.1": hht(-0.1), "tolerance 1e-6": generalized_alpha(tolerance=1e-6),
+            "tangent of the paper": generalized_alpha(tangent="paper")}
+
+
 def _schemes() -> list[Variant]:
-    schemes = {"rho 0.5": generalized_alpha(0.5), "rho 1": generalized_alpha(1.0),
-               "HHT -0.1": hht(-0.1), "tolerance 1e-6": generalized_alpha(tolerance=1e-6),
-               "tangent of the paper": generalized_alpha(tangent="paper")}
-    return [Variant("schemes", name, {}, 1.0, scheme) for name, scheme in schemes.items()]
+    return [Variant("schemes", name, {}, 1.0, scheme) for name, scheme in schemes().items()]

@@ -13,7 +13,7 @@ from sebody.studies.chart.points import Point
 COLORS = {"frames and inertia": "#c8452d", "modes": "#2a7f62", "modes, B": "#7fc8a9",
           "bodies": "#3c6fb6", "steps": "#b58a1b", "nonlinear beams": "#1f2a44",
           "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
-OTHERS = ("#c8452d", "#2a7f62", "#3c6fb6", "#b58a1b", "#8a4fa3", "#7fc8a9", "#d98a6a", "#1f2a44")
+OTHERS = ("#c8452d", "#3c6fb6", "#2a7f62", "#8a4fa3", "#b58a1b", "#d98a6a", "#7fc8a9", "#1f2a44")
 INK, PALE = "#1f2a44", "#9aa5b8"
 MOST_NAMES = 7      # of the front that are written beside their points
 APART = 0.8         # of the error of the named point before: nearer names would cover one another
@@ -101,7 +101,8 @@ def _around(values: list[float]) -> tuple[float, float]:
 
 def _families(axes, points: list[Point]) -> None:
     """Points of each family in its colour; slower runs as a bar to the right."""
-    others = cycle(OTHERS)
+    taken = {COLORS[p.family] for p in points if p.family in COLORS}
+    others = cycle([color for color in OTHERS if color not in taken] or OTHERS)
     for family in dict.fromkeys([*COLORS, *(p.family for p in points)]):
         group = [p for p in points if p.family == family]
         if not group:
@@ -122,7 +123,8 @@ def _named(line: list[Point]) -> list[Point]:
     for point in line:
         if not found or point.error < APART * found[-1].error:
             found.append(point)
-    return found[::max(1, -(-len(found) // MOST_NAMES))]
+    last = len(found) - 1
+    return [found[round(k)] for k in np.linspace(0, last, min(MOST_NAMES, len(found)))]
 
 
 def _annotation(axes, point: Point, color: str):

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,6 +38,14 @@ class Point:
     h: float = 0.0
     iterations: float = 0.0
     slowest: float = 0.0
+
+
+class Study(NamedTuple):
+    """What a chart shows: its points, the quantity that is compared, the reference's error."""
+
+    points: list[Point]
+    quantity: str
+    error: float
 
 
 def front(points: Iterable[Point]) -> list[Point]:
