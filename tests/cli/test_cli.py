@@ -42,8 +42,9 @@ def test_advise_prints_what_is_enough(capsys):
     assert main(["advise", "hinged-beam", "--t-end", "1", "--quantity", "tip.position",
                  "--tolerance", "0.02"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split() == ["error", "step", "seconds", "change"]
-    assert lines[1].split() == ["0", "0.0025", lines[1].split()[2], "all", "as", "it", "is"]
+    assert lines[0].split() == ["predicted", "error", "step", "seconds", "change"]
+    assert lines[1].split()[1:3] == ["0", "0.0025"]
+    assert " ".join(lines[1].split()[4:9]) == "beam has 8 superelements of"     # the richest
     error = float(lines[-1].removeprefix("confirmed error ").removesuffix(" <= 0.02"))
     assert 0 < error <= 0.02
 

@@ -60,7 +60,7 @@ def test_equations_are_replaced(kind, linked, planar):
     saved = 2 * (size + (angles if kind == "weld" else 0))
     both = "positions and rotations" if kind == "weld" else "positions"
     left = {"revolute": 2, "universal": 1}.get(kind, "no")
-    assert sentence == (f"joint takes {left} equations: one and other share {both}, {saved} "
+    assert sentence == (f"joint takes {left} equations, one and other share {both}: {saved} "
                         "unknowns fewer")
     assert made.nodes["one"].position is made.nodes["other"].position
     assert model.nodes["one"].position is not model.nodes["other"].position
@@ -76,10 +76,21 @@ def test_what_is_shared_with_the_ground_is_fixed():
     model.weld("other", explicit=True, name="wall")
     assert can_be_shared(model) == ["joint", "wall"]
     made, sentence = shared(model, "wall")
-    assert sentence == ("wall takes no equations: other is fixed in positions and rotations, 12 "
+    assert sentence == ("wall takes no equations, other is fixed in positions and rotations: 12 "
                         "unknowns fewer")
     assert made.nodes["other"].position.fixed and made.nodes["other"].rotation.fixed
     assert can_be_shared(made) == []        # one hangs on base, and other is fixed
+    assert_same(model, made, ("base.rotation",), STEP_ERROR)
+
+
+def test_all_joints_at_once():
+    """One after the other: what the first fixes may leave the second its equations."""
+    model = chain("spherical", True)
+    model.weld("other", explicit=True, name="wall")
+    made, sentence = shared(model)
+    assert sentence == ("joint takes no equations, one and other share positions; wall takes 3 "
+                        "equations, other is fixed in rotations: 12 unknowns fewer")
+    assert made.element("wall").multipliers == 3
     assert_same(model, made, ("base.rotation",), STEP_ERROR)
 
 
@@ -92,7 +103,7 @@ def test_guides_share_their_rotation():
     model.gravity((3.0, -9.0, 2.0))
     model.initial_velocity("a", angular=(0.5, 0.2, 1.0))
     made, sentence = shared(model, "guide")
-    assert sentence == "guide takes 2 equations: a and b share rotations, 6 unknowns fewer"
+    assert sentence == "guide takes 2 equations, a and b share rotations: 6 unknowns fewer"
     assert_same(model, made, ("b.position", "b.rotation"), STEP_ERROR)
 
 
@@ -114,9 +125,10 @@ def test_what_cannot_be_shared_is_said():
     model = chain("revolute", False)
     with pytest.raises(InputError, match="joint 'hinge' is unknown: the model has weld at end, j"):
         shared(model, "hinge")
-    with pytest.raises(InputError, match="joint 'joint' has no equations that shared .* of this "
-                                         "model no joint has some"):
+    with pytest.raises(InputError, match="joint 'joint' has no equations that shared"):
         shared(model, "joint")
+    with pytest.raises(InputError, match="the model has no joint with equations that shared"):
+        shared(model)
     thrown = chain("spherical", True)
     thrown.initial_velocity("other", linear=(1, 0, 0))
     with pytest.raises(InputError, match="joint 'joint' has no equations that shared"):

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from sebody import inputs
+from sebody.analysis.advice.conclusion import conclusion
 from sebody.analysis.advice.laboratory import Laboratory
 from sebody.analysis.advice.outcome import Advice, Reason, Trial
 from sebody.analysis.advice.quantities import Quantities
@@ -44,6 +45,7 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
     Returns
     -------
     Advice
+        Also after Ctrl-C, with the best until then, once there is a reference.
 
     Raises
     ------
@@ -61,11 +63,15 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
                          "of steps")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     budget = inputs.number(budget, "budget", above=0)
+    wanted.check(model, h)
     with showing(progress, t_end) as show:
         lab = Laboratory(model, wanted, Runs(wanted, h, t_end, show), tolerance)
         lab.start()
         search = Search(lab, budget)
-        found = search.go()
-    made = lab.builder.make(found.choice)
-    return Advice(made.model, found.choice.step.h, made.sentences, found.error, tolerance,
-                  tuple(lab.table), tuple(search.untried), found.predicted, found.seconds)
+        try:
+            found, given = search.go(), lab.given()
+        except KeyboardInterrupt:
+            return conclusion(search, search.best(), interrupted=True)
+    if found.error > tolerance:
+        raise lab.unreached(found)
+    return conclusion(search, found, given)

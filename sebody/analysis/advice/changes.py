@@ -143,6 +143,10 @@ class Builder:
             raise found
         return found
 
+    def build(self, choice: Choice) -> Model:
+        """Its model alone, see `make`."""
+        return self.make(choice).model
+
     def _of(self, choice: Choice) -> Made:
         pairs = zip(self.parts, choice.forms, strict=True)
         # rigid bodies last: beams are divided before their nodes are linked

@@ -14,8 +14,9 @@ def combinations(parts: Sequence[Part], forms: Sequence[Sequence[Form]], estimat
     """Forms of all parts, cheapest first."""
     found: list[tuple[float, float, tuple[Form, ...]]] = [(0.0, 0.0, ())]
     for k, (part, own) in enumerate(zip(parts, forms, strict=True)):
-        front = _front([(of_form(part, form, flat), expected(estimates.of_form(k, form)), (form,))
-                        for form in own])
+        squares = [expected(estimates.of_form(k, form))**2 for form in own]
+        front = _front([(of_form(part, form, flat), square, (form,))
+                        for form, square in zip(own, squares, strict=True)])
         found = _thinned(_front([(a + b, e + f, (*one, *other)) for a, e, one in found
                                  for b, f, other in front]))
     return [forms for _, _, forms in found]

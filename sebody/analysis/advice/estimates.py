@@ -1,6 +1,7 @@
 """What errors are expected: indicators, corrected by what runs have shown.
 
-The error of a choice is the sum of what its forms and its step contribute. An indicator may be off
+The error of a choice is the root of the sum of squares of what its forms and its step contribute,
+which have different directions and times. An indicator may be off
 by `UNSURE`; once a run has shown what a contribution is, others of its kind are scaled alike, and
 may be off by `SURE`, or by `SHARED` where several made the error of the run. Measured contributions
 are taken as they are.
@@ -21,7 +22,7 @@ SURE = 3.0          # the same once a run has shown its scale
 ORDER = 2           # of the time integration
 SEEN = 1.2          # the same of a step that one choice was run with; none of two
 SHARED = 10.0       # the same where it was a part of an error among others
-MAIN, KNOWN = 0.7, 0.1      # shares of an error from which the scale of a contribution is known
+MAIN, KNOWN = 0.95, 0.1     # shares of an error from which the scale of a contribution is known
 HALVINGS = 80       # of the range of a factor, in logarithms
 CAUTION = 0.03      # least share of an error that what was not measured is said to make
 
@@ -47,7 +48,7 @@ class Estimates:
     """
 
     def __init__(self, recorded: Recorded, parts: list[Part], step_errors: dict[Step, float]):
-        self._recorded, self._parts, self._steps = recorded, parts, step_errors
+        self.recorded, self._parts, self._steps = recorded, parts, step_errors
         self._raw: dict[tuple[int, Form], dict[str, float]] = {}
         self._factors: dict[Hashable, float] = {}
         self._combined: dict[tuple[Form, ...], float] = {}
@@ -60,8 +61,12 @@ class Estimates:
         if (k, form) not in self._raw:
             part = self._parts[k]
             self._raw[k, form] = {} if form == part.richest else contributions(
-                self._recorded, part, form)
+                self.recorded, part, form)
         return self._raw[k, form]
+
+    def confirmed(self, k: int, form: Form) -> float | None:
+        """The measured error of a form tried alone."""
+        return self._measured.get((k, form))
 
     def of_form(self, k: int, form: Form) -> list[Contribution]:
         """Contributions of a form of the k-th part."""
@@ -72,7 +77,7 @@ class Estimates:
     def of_step(self, step: Step) -> list[Contribution]:
         """Contribution of a step."""
         if step in self._steps and step.local is None and step not in self._seen:
-            return [Contribution(step, self._steps[step], SURE)]
+            return [Contribution(step, float(self._steps[step]), SURE)]
         if step in self._seen:
             errors = self._seen[step]
             return [Contribution(step, errors[-1], SEEN if len(errors) == 1 else 1.0)]
@@ -123,15 +128,15 @@ class Estimates:
             return
         self._learn(found, error)
         if step.error > expected(found) / 2:
-            self._seen.setdefault(choice.step, []).append(max(error - rest, CAUTION * error))
+            self._seen.setdefault(choice.step, []).append(_rest(error, rest))
 
     def _learn(self, found: list[Contribution], error: float) -> None:
-        """Scale what was not measured, the larger the more, so that the sum is the error."""
+        """Scale what was not measured, the larger the more, so that all is the error."""
         open_ones = [one for one in found if one.doubt > 1.0 and one.error > 0.0]
         if not open_ones:
             return
-        rest = expected(found) - expected(open_ones)
-        wanted, largest = max(error - rest, CAUTION * error), max(one.error for one in open_ones)
+        measured = expected([one for one in found if one not in open_ones])
+        wanted, largest = _rest(error, measured), max(one.error for one in open_ones)
         shares = [one.error / largest for one in open_ones]
         power = _power([one.error for one in open_ones], shares, wanted)
         for one, share in zip(open_ones, shares, strict=True):
@@ -143,20 +148,25 @@ class Estimates:
 
 
 def _power(errors: list[float], shares: list[float], wanted: float) -> float:
-    """The factor that, to the power of its share on each error, makes their sum what is wanted."""
+    """The factor that, to the power of its share on each error, makes all what is wanted."""
     low, high = 1e-12, 1e12
     for _ in range(HALVINGS):
         middle = (low * high)**0.5
-        total = sum(error * middle**share for error, share in zip(errors, shares, strict=True))
-        low, high = (middle, high) if total < wanted else (low, middle)
+        total = sum((error * middle**share)**2 for error, share in zip(errors, shares, strict=True))
+        low, high = (middle, high) if total < wanted**2 else (low, middle)
     return low
 
 
+def _rest(error: float, measured: float) -> float:
+    """What is left of an error without a part that was measured."""
+    return max(float(np.sqrt(max(error**2 - measured**2, 0.0))), CAUTION * error)
+
+
 def expected(found: list[Contribution]) -> float:
-    """Sum of contributions."""
-    return sum(one.error for one in found)
+    """Contributions together."""
+    return float(np.sqrt(sum(one.error**2 for one in found)))
 
 
 def least(found: list[Contribution]) -> float:
-    """The sum as small as it may be."""
-    return sum(one.error / one.doubt for one in found)
+    """The same as small as it may be."""
+    return float(np.sqrt(sum((one.error / one.doubt)**2 for one in found)))

@@ -26,6 +26,11 @@ class Form(NamedTuple):
     stiffening: bool
     frame: str
 
+    @classmethod
+    def first(cls, part: "Part") -> "Form":
+        """One body without modes: what a rigid part is compared with."""
+        return part.richest._replace(bodies=1, modes=0)
+
     def poorer(self, other: "Form") -> bool:
         """Whether it has no more of anything than another, other things being alike."""
         return self.rigid or (

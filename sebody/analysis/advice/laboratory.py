@@ -99,8 +99,9 @@ class Laboratory:
         errors = {h: self.error(run) for h, run in self.bases.items()}
         finest = min(errors)
         errors[finest] = max(self.reference.step_error, self.reference.error)
+        sentence = "; ".join(self.builder.make(choice).sentences) or WHOLE
         for h in sorted(errors):
-            self.table.append(Trial(WHOLE, h, 0.0 if h == finest else errors[h],
+            self.table.append(Trial(sentence, h, 0.0 if h == finest else errors[h],
                                     self.bases[h].seconds))
             self.tried.append(Tried(choice._replace(step=Step(h)), errors[h], errors[h],
                                     self.bases[h].seconds))
@@ -140,13 +141,25 @@ class Laboratory:
         InputError, SimulationError
             It cannot be made, does not run, or lacks a quantity.
         """
-        found = self.runs.run(self.builder.make(choice).model, choice.step)
+        found = self.runs.run(self.builder.build(choice), choice.step)
         if self._unit == 0.0:
             self.cost.measured(choice, found.seconds, found.iterations)
             self._unit = self.cost.work(choice, found.iterations)
         self._work += self.cost.work(choice, found.iterations)
         self.cost.counted(choice.step, found.iterations)
         return found
+
+    def given(self) -> Tried:
+        """The model as it was given, with the given step: what would have been run."""
+        forms = tuple(part.given for part in self.parts)
+        return self.attempt(Choice(forms, Step(self.runs.h)), "given")[0]
+
+    def unreached(self, best: Tried) -> InputError:
+        """What to raise where nothing is within the tolerance."""
+        return InputError(
+            f"no model that was tried is within {self.tolerance:g}; the best has an error of "
+            f"{best.error:.2g}, with the step {best.choice.step}: give a smaller h, a larger "
+            "tolerance or a larger budget")
 
     def error(self, run: Run) -> float:
         """Error of a run with that of the reference."""

@@ -1,6 +1,7 @@
 """What is to be kept: histories of results by name, and frequencies of small motion."""
 
 import re
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,8 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.analysis.linearization import modes, vibrations
 from sebody.analysis.simulation import Simulation
-from sebody.errors import InputError
+from sebody.errors import InputError, LimitWarning
+from sebody.model.model import Model
 from sebody.results.result import Result
 
 FREQUENCY = re.compile(r"frequency ([1-9]\d*)")
@@ -58,6 +60,18 @@ class Quantities:
             owner = name.rpartition(".")[0]
             found |= {owner, *owner.split(".")}
         return found
+
+    def check(self, model: Model, h: float) -> None:
+        """Refuse quantities that a model does not have, by its state at the start.
+
+        Raises
+        ------
+        InputError
+            A quantity does not exist, or the model cannot be started.
+        """
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LimitWarning)
+            self.of(Simulation(model, h).result(), h)
 
     def of(self, result: Result, h: float) -> Values:
         """The quantities of a run.

@@ -9,6 +9,7 @@ from sebody.analysis.advice.estimates import expected, least
 from sebody.analysis.advice.forms import Form
 from sebody.analysis.advice.indicators.activity import activity
 from sebody.analysis.advice.laboratory import FINER, Laboratory, Tried
+from sebody.analysis.advice.reference import ORDER_FACTOR
 
 LONGER = (4, 2)             # steps that are tried, in given ones
 MOST_ALONE = 6              # forms of a part that are tried alone
@@ -34,6 +35,7 @@ class Search:
         self.lab, self.budget, self.tolerance = lab, budget, lab.tolerance
         self.untried: list[str] = []
         self.planar = self.shared = self.variable = False
+        self.exact: dict[str, float] = {}       # errors of what should change nothing
         self._failed: list[Choice] = []
 
     def go(self) -> Tried:
@@ -64,7 +66,9 @@ class Search:
             if self.spent() or not self._applies(changed):
                 continue
             found, run = self.lab.attempt(changed, "alone")
-            if run and self.lab.apart(run, changed.step.h) <= EXACT * self.tolerance:
+            if run:
+                self.exact[name] = self.lab.apart(run, changed.step.h)
+            if self.exact.get(name, inf) <= EXACT * self.tolerance:
                 setattr(self, name, True)
             else:
                 self._failed.append(changed)
@@ -170,6 +174,13 @@ class Search:
         return next((one for one in sorted(found, key=self.lab.cost.of)
                      if not any(one.poorer(other) for other in excluded)
                      and judged(self.lab.estimates.contributions(one)) <= tolerance), None)
+
+    def halved(self, choice: Choice) -> float | None:
+        """Error of the step of a choice, from its run with half of it; None without one."""
+        coarse, fine = self._tried(choice), self._tried(choice._replace(step=choice.step.finer()))
+        if coarse is None or fine is None or inf in (coarse.error, fine.error):
+            return None
+        return ORDER_FACTOR / (ORDER_FACTOR - 1.0) * abs(coarse.error - fine.error)
 
     def _confirmed(self, found: Tried) -> bool:
         """Whether the error stays within the tolerance with half the step."""

@@ -13,7 +13,7 @@ _TOGETHER = ("weld", "prismatic")       # joints whose nodes turn together
 _NAMES = {"position": "positions", "rotation": "rotations"}
 
 
-def shared(model: Mechanism, name: str) -> Variant:
+def shared(model: Mechanism, name: str | None = None) -> Variant:
     """The model with shared or fixed triplets in the place of equations of a joint.
 
     Positions that equations hold together become one, and rotations of welds and prismatic joints:
@@ -22,8 +22,8 @@ def shared(model: Mechanism, name: str) -> Variant:
 
     Parameters
     ----------
-    name : str
-        Of the joint; see `can_be_shared` for those there are.
+    name : str, optional
+        Of the joint; by default all joints are treated so that can be, one after the other.
 
     Returns
     -------
@@ -34,34 +34,38 @@ def shared(model: Mechanism, name: str) -> Variant:
     InputError
         No such joint, or one without equations that sharing replaces.
     """
-    inputs.name(name, "name of a joint")
-    if name not in (joint.name for joint in model.joints):
-        raise InputError(f"joint {name!r} is unknown: the model has "
-                         f"{', '.join(joint.name for joint in model.joints) or 'none'}")
-    kinds = _kinds(model, _named(model, name))
-    if not kinds:
-        possible = can_be_shared(model)
-        raise InputError(f"joint {name!r} has no equations that shared positions or rotations can "
-                         f"replace; of this model {', '.join(possible) or 'no joint'} has some")
+    if name is not None:
+        inputs.name(name, "name of a joint")
+        if name not in (joint.name for joint in model.joints):
+            raise InputError(f"joint {name!r} is unknown: the model has "
+                             f"{', '.join(joint.name for joint in model.joints) or 'none'}")
+    possible = can_be_shared(model)
+    if not possible or name not in (None, *possible):
+        what = "the model has no joint with" if name is None else f"joint {name!r} has no"
+        others = f"; of this model {', '.join(possible)} has some" if possible else ""
+        raise InputError(f"{what} equations that shared positions or rotations can replace{others}")
     made = copied(model)
-    joint = _named(made, name)
-    for kind in kinds:
-        _share(made, joint, kind)
+    said = [_without_equations(made, joint) for joint in made.joints if name in (None, joint.name)]
     saved = unknowns(model) - unknowns(made)
+    return Variant(made, f"{'; '.join(filter(None, said))}: {saved} unknowns fewer")
+
+
+def _without_equations(model: Mechanism, joint: Joint) -> str:
+    """Share what can be shared of a joint; in words."""
+    kinds = _kinds(model, joint)
+    if not kinds:       # what it joins became held when another joint was treated
+        return ""
+    for kind in kinds:
+        _share(model, joint, kind)
     what = " and ".join(_NAMES[kind] for kind in kinds)
-    how = (f"{joint.node.name} and {joint.to.name} share" if _is_free(made, joint.to) else
+    how = (f"{joint.node.name} and {joint.to.name} share" if _is_free(model, joint.to) else
            f"{joint.node.name} is fixed in")
-    return Variant(made, f"{name} takes {joint.multipliers or 'no'} equations: {how} {what}, "
-                         f"{saved} unknowns fewer")
+    return f"{joint.name} takes {joint.multipliers or 'no'} equations, {how} {what}"
 
 
 def can_be_shared(model: Mechanism) -> list[str]:
     """Names of the joints that `shared` can rid of equations."""
     return [joint.name for joint in model.joints if _kinds(model, joint)]
-
-
-def _named(model: Mechanism, name: str) -> Joint:
-    return next(joint for joint in model.joints if joint.name == name)
 
 
 def _is_free(model: Mechanism, node: Node) -> bool:

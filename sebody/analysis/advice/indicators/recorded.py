@@ -43,6 +43,7 @@ class Recorded:
         self.every = max(1, len(result.rows) // STATES)
         self.duration = float(result.t[-1])
         self.interval = self.every * float(result.t[1] - result.t[0])
+        self.indicated: dict[tuple, float] = {}     # errors by indicator and what they depend on
         self._found: dict[tuple, Deformation] = {}
         self._bodies: dict[tuple[str, int], list[tuple[list[Node], ReducedBody]]] = {}
 
@@ -116,6 +117,15 @@ class Recorded:
         if triplet is None or id(triplet) not in self.result.numbering.triplets:
             return None
         return self.result[f"{node.name}.{quantity}"][::self.every]
+
+    @cached_property
+    def motion_frequency(self) -> float:
+        """Mean angular frequency of the motion of the nodes: of accelerations over velocities."""
+        v, a = (np.stack([one for node in self.result.model.nodes.values()
+                          if (one := self.read(node, name)) is not None])
+                for name in ("velocity", "acceleration"))
+        size = float(np.sqrt((v**2).mean()))
+        return float(np.sqrt((a**2).mean())) / size if size > 0.0 else 0.0
 
     def mass(self, part: Part) -> float:
         """Mass of a part."""

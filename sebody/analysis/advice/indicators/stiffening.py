@@ -62,7 +62,7 @@ def spin(recorded: Recorded, part: Part, form: Form) -> float:
     share = SPIN[form.inertia]
     if share == 0.0:
         return 0.0
-    change = max(share * (float(np.abs(recorded.spins(nodes)).max()) / _first_frequency(body))**2
+    change = max(share * (float(np.abs(recorded.spins(nodes)).max()) / first_frequency(body))**2
                  for nodes, body in recorded.bodies(part, form.bodies))
     whole = recorded.deformation(recorded.nodes(part))
     return (min(change, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
@@ -70,7 +70,7 @@ def spin(recorded: Recorded, part: Part, form: Form) -> float:
             + detuned(recorded, part, min(change / 2, 1.0)))
 
 
-def _first_frequency(body: ReducedBody) -> float:
+def first_frequency(body: ReducedBody) -> float:
     """Lowest frequency with the coordinates of one node held, of all nodes."""
     d = body.coordinates.shape[1]
     owner = np.repeat([*body.position_nodes, *body.rotation_nodes],
