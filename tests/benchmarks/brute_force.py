@@ -11,15 +11,16 @@ table. Three rules save runs; no indicator of advise is used.
 3. In a model of several parts a form is left out if another form of its part takes less time and
    errs less alone.
 
+As `advise` does, the search wants a choice to be within the tolerance with half its step, too;
+what is so by luck is counted apart.
+
 Planar models and shared triplets change nothing but the time: they are taken where they can be
 made, agree with the richest model and take less time.
 """
 
 import heapq
 import itertools
-import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -31,9 +32,7 @@ from sebody.analysis.advice.quantities import Quantities, Values, changes_of, di
 from sebody.analysis.advice.runs import Runs
 from sebody.analysis.advice.search import LONGER
 from sebody.errors import InputError, SimulationError
-from sebody.model import beams
 from sebody.model.model import Model
-from sebody.reduction import ReducedBody
 
 SLACK = 1.5
 SPOILS = 2.0
@@ -212,18 +211,29 @@ class BruteForce:
             found.append(kept)
         return found
 
-    def cheapest(self, tolerance: float) -> tuple[list[Found], int]:
-        """Choices within a tolerance, quickest first, and how many choices ran for them."""
-        best, found, count = np.inf, [], 0
+    def cheapest(self, tolerance: float) -> tuple[list[Found], list[Found], int]:
+        """Choices within a tolerance, quickest first.
+
+        Returns
+        -------
+        sure, all : list of Found
+            Those that are within it with half the step, too, and all of them.
+        int
+            How many choices ran.
+        """
+        best, sure, found, count = np.inf, [], [], 0
         for choice in self._cheapest_first(self.forms(tolerance)):
             if self.predicted(choice) > SLACK * best:
                 break
             one = self.run(choice)
             count += 1
             if one.error <= tolerance:
-                best = min(best, one.seconds)
                 found.append(one)
-        return sorted(found, key=lambda one: one.seconds), count
+                finer = choice._replace(step=choice.step.finer())
+                if self.run(finer).error <= tolerance:
+                    best = min(best, one.seconds)
+                    sure.append(one)
+        return *(sorted(own, key=lambda one: one.seconds) for own in (sure, found)), count
 
     def _cheapest_first(self, forms: list[list[Form]]) -> Iterator[Choice]:
         """All choices by their predicted times, without making all of them first."""
@@ -246,22 +256,3 @@ class BruteForce:
             for k, i in enumerate(places):
                 if i + 1 < len(columns[k]):
                     push((*places[:k], i + 1, *places[k + 1:]), choice.step)
-
-
-@contextmanager
-def many_variants() -> Iterator[None]:
-    """Parts of beams are reduced once; poor variants need not warn."""
-    reduce, known = beams._part, {}
-
-    def once(model: Model, ends: list, *others: object) -> ReducedBody:
-        key = repr([*(node.point for node in ends), *others])
-        if key not in known:
-            known[key] = reduce(model, ends, *others)
-        return known[key]
-    beams._part = once
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    finally:
-        beams._part = reduce

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 LEAST, MOST = 3, 9      # runs of each
 AGREE = 1.05            # ratio of the two quickest runs from which the quickest is trusted
+LONG = 20.0             # seconds of all runs of one, after which it does not run again
 
 
 class Times(NamedTuple):
@@ -16,7 +17,7 @@ class Times(NamedTuple):
 
 def repeated(runs: Sequence[Callable[[], float]], least: int = LEAST, most: int = MOST
              ) -> list[Times]:
-    """Run each several times, until its two quickest runs agree.
+    """Run each several times, until its two quickest runs agree or it has taken long enough.
 
     All have their turn before one has its next, so that a while in which the machine is busy does
     not fall on all runs of one.
@@ -31,7 +32,7 @@ def repeated(runs: Sequence[Callable[[], float]], least: int = LEAST, most: int 
     seconds: list[list[float]] = [[] for _ in runs]
     for round_ in range(most):
         for run, own in zip(runs, seconds, strict=True):
-            if round_ < least or not _settled(own):
+            if sum(own) < LONG and (round_ < least or not _settled(own)):
                 own.append(run())
     return [Times(min(own), max(own)) for own in seconds]
 
