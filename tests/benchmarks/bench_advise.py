@@ -3,8 +3,8 @@
     python tests/benchmarks/bench_advise.py [--json] [--keep FILE] [SCENE ...]
 
 Errors are measured anew, against the richest model with sixteen times as many steps, extrapolated;
-times are those of the quickest of several runs that take turns. With `--keep` scenes that are done
-are read from the file, and an interrupted run goes on with the next one.
+times are the processor's in the quickest of several runs that take turns. With `--keep` scenes that
+are done are read from the file, and an interrupted run goes on with the next one.
 """
 
 import argparse
@@ -19,15 +19,13 @@ import numpy as np
 
 from sebody.analysis.advice import Advice, advise
 from sebody.analysis.advice.changes import Step
-from sebody.analysis.advice.quantities import Quantities
-from sebody.analysis.advice.runs import Runs
 from sebody.errors import SebodyError
 from sebody.files import replacing
-from sebody.studies.chart.timing import repeated
+from sebody.studies.chart.timing import poor_variants, processor_seconds, repeated
 
 sys.path.insert(0, str(Path(__file__).parent))
 from advice_scenes import SCENES, AdviceScene
-from brute_force import BruteForce, Found
+from brute_force import BruteForce, Found, begun
 
 TOLERANCES = (1e-2, 1e-3)
 QUICKEST = 4        # choices of the full search whose times are measured again
@@ -82,13 +80,14 @@ def _step(advice: Advice) -> Step:
 
 def _seconds(full: BruteForce, advice: Advice, step: Step, passing: list[Found]) -> dict:
     """Times of runs that take turns, by what they are of."""
-    runs = Runs(Quantities(full.names), full.h, full.t_end)
     models = {"chosen": (advice.model, step), "richest": (full.builder.make(full.richest).model,
                                                           full.fine),
               "given": (full.model, Step(full.h))}
     models |= {id(one): (full.builder.make(one.choice).model, one.choice.step)
                for one in passing}
-    times = repeated([lambda own=own: runs.run(*own).seconds for own in models.values()])
+    with poor_variants():
+        times = repeated([lambda own=own: processor_seconds(begun(*own, full.h), full.t_end)
+                          for own in models.values()])
     return {name: one.quickest for name, one in zip(models, times, strict=True)}
 
 
