@@ -53,7 +53,7 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (460, 217, 128, 3),
               "column": (81, 277, 352, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "02266007cdd6"     # hash of sebody/kernels, which this file was made for
+ROOM = "f1fddd2cb44d"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

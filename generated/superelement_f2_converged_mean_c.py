@@ -90,7 +90,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "02266007cdd6"     # hash of sebody/kernels, which this file was made for
+ROOM = "f1fddd2cb44d"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -52,7 +52,7 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (414, 86, 2, 3),
               "column": (16, 107, 3, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "02266007cdd6"     # hash of sebody/kernels, which this file was made for
+ROOM = "f1fddd2cb44d"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -68,7 +68,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "02266007cdd6"     # hash of sebody/kernels, which this file was made for
+ROOM = "f1fddd2cb44d"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

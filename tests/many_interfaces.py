@@ -103,9 +103,17 @@ def motion(body, y):
 
 
 def loaded(body, case, share=1.0):
-    """Coordinates and lowest frequencies under a share of the loads, which grow in four steps."""
+    """Coordinates and lowest frequencies under a share of the loads, which grow step by step."""
+    for steps in (4, 16, 64):       # where a step is too large, iterations run away
+        y, frequencies = _loaded(body, case, share, steps)
+        if motion(body, y) < 1.0:
+            break
+    return y, frequencies
+
+
+def _loaded(body, case, share, steps):
     held, y = coordinates_of(body, case.held), None
-    for part in np.linspace(share / 4, share, 4):
+    for part in np.linspace(share / steps, share, steps):
         at = Spinning(body, np.sqrt(part) * case.spin, held)
         mass, turning, stiffness, z, _ = at.equilibrium(part * case.load, start=y)
         y = z[:at.n]

@@ -115,7 +115,8 @@ def holds(part: Superelement, axis: NDArray | None) -> list[Held]:
 def first_frequency(part: Superelement) -> float:
     """Lowest vibration with one boundary node held, of all nodes; infinite where none can move.
 
-    A node without a rotation is held with the rotation of best fit.
+    A node without a rotation is held with the rotation of best fit, or where all nodes are on a
+    line, which it does not see rotate about itself, with the mean of the rotations.
     """
     return _lowest(part, lambda k: part.body.mass)
 
@@ -152,7 +153,7 @@ def _lowest(part: Superelement, inertia: Callable[[int], NDArray]) -> float:
             own = rotated[body.rotation_nodes.index(node)]
             free = np.eye(len(body.mass))[:, ~np.vstack([moved[k], own]).any(axis=0)]
         else:
-            free = null_space(np.vstack([moved[k], _fit(body, moved)]))
+            free = null_space(np.vstack([moved[k], _turn(body, moved, rotated)]))
         if free.shape[1]:
             largest = max(largest, eigh(free.T @ inertia(k) @ free, free.T @ body.stiffness @ free,
                                         eigvals_only=True)[-1])
@@ -271,6 +272,14 @@ def _of_field(part: Superelement, axis: NDArray, held: Held) -> NDArray:
 def _twice(p: NDArray, n: NDArray) -> NDArray:
     """H with ``t . H t / 2 = p . (t x (t x n)) / 2``."""
     return (np.outer(n, p) + np.outer(p, n)) / 2 - p @ n * np.eye(3)
+
+
+def _turn(body: ReducedBody, moved: NDArray, rotated: NDArray) -> NDArray:
+    """Rows of the rotation with which a node that has none is held."""
+    points = body.coordinates[list(body.position_nodes)]
+    on_line = np.linalg.matrix_rank(points - points.mean(axis=0), tol=1e-6 * np.abs(
+        points - points.mean(axis=0)).max()) < 2
+    return rotated.mean(axis=0) if on_line and len(rotated) else _fit(body, moved)
 
 
 def _fit(body: ReducedBody, moved: NDArray) -> NDArray:

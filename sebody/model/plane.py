@@ -12,8 +12,8 @@ from sebody.errors import InputError
 POINTS = ("position",)
 VECTORS = ("velocity", "acceleration", "displacement", "force", "reaction", "momentum")
 AXIAL = ("angular_velocity", "angular_acceleration", "moment", "reaction_moment")
-NUMBERS = ("t", "torque", "thrust", "power", "work", "kinetic", "strain", "potential",
-           "external_work")
+SAME = ("t", "torque", "thrust", "power", "work", "kinetic", "strain", "potential",
+        "external_work", "section_forces", "stress", "von_mises")   # numbers, or in own axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,4 +103,4 @@ class Plane:
 _MAPS: dict[str, Callable[[Plane, NDArray], NDArray]] = (
     dict.fromkeys(POINTS, Plane.points) | dict.fromkeys(VECTORS, Plane.vectors)
     | dict.fromkeys(AXIAL, Plane.axial) | {"rotation": Plane.rotations}
-    | dict.fromkeys(NUMBERS, lambda plane, values: values))
+    | dict.fromkeys(SAME, lambda plane, values: values))

@@ -21,6 +21,7 @@ from sebody.errors import InputError
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import coordinate_names, unit_scale
 from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.plane_recovery import planar_recovery
 
 # Couplings below this, relative to what they couple, are rounding: matrices from files have some
 # eight digits. They would change motions in the plane by their squares.
@@ -59,7 +60,7 @@ class _Basis(NamedTuple):
 def planar_body(body: ReducedBody, axes: ArrayLike, what: str = "the body") -> PlanarBody:
     """The even motions of a body about the plane of its boundary nodes.
 
-    Displacements inside the body are not recovered.
+    Displacements and stresses inside are recovered of beams, whose FE nodes are all in the plane.
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ def planar_body(body: ReducedBody, axes: ArrayLike, what: str = "the body") -> P
         Matrices or constants that couple motion in the plane with motion out of it.
     """
     axes = inputs.rotation(axes, "axes of the plane")
-    turned = replace(body, recovery=None).rotated(axes.T)
+    turned = body.rotated(axes.T)
     held = len(turned.mass) - turned.modes
     names = coordinate_names(turned.keeps, 3, turned.modes)
     boundary = np.concatenate([np.tile(AXES, len(turned.position_nodes)),
@@ -96,13 +97,17 @@ def planar_body(body: ReducedBody, axes: ArrayLike, what: str = "the body") -> P
     kept = turn[:, signs > 0]
     loads = {name: turn.T @ load for name, load in turned.loads.items()}
     odd = tuple(name for name, load in loads.items() if _odd_load(load, signs, turned.stiffness))
+    even = [k for k, name in enumerate(loads) if name not in odd]
+    slaved, flat = np.zeros((0, 0)), None
+    if invariants is not None:
+        flat, slaved = _planar_invariants(invariants, turned, turn, signs, what)
 
     def restricted(matrix: NDArray | None) -> NDArray | None:
         return None if matrix is None else kept.T @ matrix @ kept
     made = ReducedBody(
         restricted(turned.stiffness), restricted(turned.mass), turned.coordinates[:, :2],
         turned.keeps, int((modes.signs > 0).sum()), restricted(turned.damping),
-        invariants and _planar_invariants(invariants, turned, turn, signs, what),
+        flat, planar_recovery(turned, kept, slaved, even),
         notes=(*turned.notes, "motion in a plane of symmetry"),
         loads={name: load[signs > 0] for name, load in loads.items() if name not in odd})
     return PlanarBody(made, modes.turn[:, modes.signs > 0], odd)
@@ -114,9 +119,12 @@ def _check_matrix(what: str, matrix: NDArray, signs: NDArray, names: list[str]) 
     odd = np.where(np.outer(signs, signs) < 0, np.abs(matrix) / np.outer(size, size), 0.0)
     i, j = sorted(np.unravel_index(np.argmax(odd), odd.shape), key=lambda k: -signs[k])
     if odd[i, j] > _ROUNDING:
+        modes = any(names[k].startswith("mode") for k in (i, j))
         raise InputError(f"{what} {names[i]}, in the plane, with {names[j]}, out of it (by "
                          f"{odd[i, j]:.2g} of both; x and y are in the plane): the body is not "
-                         "symmetric about the plane")
+                         "symmetric about the plane" + modes * (
+                             ", or has a part of the modes of one frequency: keep all or none of "
+                             "them"))
 
 
 def _odd_load(load: NDArray, signs: NDArray, stiffness: NDArray) -> bool:
@@ -178,8 +186,11 @@ def _modes(body: ReducedBody, invariants: InertiaInvariants | None, boundary: ND
 
 
 def _planar_invariants(i: InertiaInvariants, body: ReducedBody, turn: NDArray, signs: NDArray,
-                       what: str) -> InertiaInvariants:
-    """Constants of the even motions, with the load modes and resultants that act on them."""
+                       what: str) -> tuple[InertiaInvariants, NDArray]:
+    """Constants of the even motions, with the load modes and resultants that act on them.
+
+    Then the old load modes of unit new ones.
+    """
     n = len(turn)
     whole = block_diag(turn, np.eye(i.slaved))
     mass = whole.T @ i.Mbar @ whole
@@ -196,7 +207,8 @@ def _planar_invariants(i: InertiaInvariants, body: ReducedBody, turn: NDArray, s
         J2=whole.T @ i.J2 @ whole, Mbar=whole.T @ i.Mbar @ whole,
         Q=np.einsum("ab,bij->aij", back, i.Q), lam=lam, E=E, Ghat=Ghat)
     _check_constants(full, signs, slaved.signs, resultants.signs, what)
-    return _even(full, signs, slaved.signs, resultants.signs)
+    found, eta = _even(full, signs, slaved.signs, resultants.signs)
+    return found, slaved.turn[:, eta]
 
 
 def _load_modes(body: ReducedBody, i: InertiaInvariants, mass: NDArray, signs: NDArray
@@ -258,8 +270,11 @@ def _outer(vectors: tuple[NDArray, ...]) -> NDArray:
 
 
 def _even(i: InertiaInvariants, signs: NDArray, slaved: NDArray, resultants: NDArray
-          ) -> InertiaInvariants:
-    """The part of even motions; what is of second order and does not act on them is left out."""
+          ) -> tuple[InertiaInvariants, NDArray]:
+    """The part of even motions; what is of second order and does not act on them is left out.
+
+    Then which load modes stay.
+    """
     y = np.flatnonzero(signs > 0)
     Q, Ghat = (array[:, y][:, :, y] for array in (i.Q, i.Ghat))
     eta, e = (np.flatnonzero((own > 0) & (np.abs(array).max(axis=(1, 2), initial=0.0)
@@ -270,4 +285,4 @@ def _even(i: InertiaInvariants, signs: NDArray, slaved: NDArray, resultants: NDA
     return InertiaInvariants(
         i.mass, i.c0[:2], i.S1[:2, z], i.J0[2:, 2:], i.g[2:, z], i.h[2:, 2:, z],
         i.K[2:, pairs[0], pairs[1]], i.J2[2:, 2:, pairs[0], pairs[1]], i.Mbar[pairs], Q[eta],
-        i.lam[e], i.E[np.ix_(y, e)], Ghat[e], i.origin[:2])
+        i.lam[e], i.E[np.ix_(y, e)], Ghat[e], i.origin[:2]), eta

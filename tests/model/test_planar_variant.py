@@ -1,12 +1,16 @@
 """A planar model in the place of a spatial one: both move alike, and what is not planar is said."""
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, generalized_alpha, harmonic, simulate
 from sebody.fem import Section, straight_beam
-from sebody.model.variants import planar
+from sebody.fem import frame as beams
+from sebody.model.variants import keep_modes, planar
 from sebody.reduction import craig_bampton
 
 H, STEPS = 0.002, 40
@@ -50,11 +54,17 @@ def assert_same(model: Model, made: Model, quantities, h: float = H) -> None:
         assert np.abs(own - expected[name]).max() <= CLOSE * size, name
 
 
+@cache
+def damped_beam(section: Section, up: tuple[float, ...]):
+    """From tip to base."""
+    return reduced(at(100, 40, 0), at(0, 0, 0), 4, section, up, damping=0.01)
+
+
 def beam(section: Section = SQUARE, up=Y, **options) -> Model:
     """A beam that a torque turns about a hinge."""
     model = Model()
     base, tip = model.node("base", at(0, 0, 0)), model.node("tip", at(100, 40, 0))
-    body = reduced(tip.point, base.point, 4, section, up, damping=0.01)
+    body = damped_beam(section, tuple(up))
     model.superelement("beam", body, [base, tip], **options)
     model.revolute(base, Z, name="hinge")
     model.torque(base, -2e3 * Z, wind, name="motor")
@@ -64,7 +74,8 @@ def beam(section: Section = SQUARE, up=Y, **options) -> Model:
 
 QUANTITIES = ("tip.position", "tip.velocity", "tip.rotation", "base.angular_velocity",
               "energy.kinetic", "energy.strain", "motor.power", "hinge.force", "beam.base.moment",
-              "momentum")
+              "momentum", "beam.node2.displacement", "beam.node2.velocity",
+              "beam.node2.section_forces")
 
 
 @pytest.mark.parametrize("section", [FLAT, SQUARE])
@@ -88,6 +99,38 @@ def test_modes_of_one_frequency_are_turned_until_they_are_in_the_plane():
     assert abs(frequencies[1] / frequencies[0] - 1) < 1e-6      # a pair, in any direction
     kept = planar(model).model.bodies["beam"].body
     assert np.allclose(np.sqrt(np.diag(kept.stiffness)[-2:]), frequencies[[0, 2]], rtol=1e-6)
+
+
+def test_half_a_pair_of_modes_is_in_no_plane():
+    model = beam(SQUARE)
+    with pytest.raises(InputError, match="its mass couples .*mode 2, .*symmetric about the plane, "
+                                         "or has a part of the modes of one frequency: "
+                                         "keep all or none of them"):
+        planar(keep_modes(model, "beam", 3).model)
+    assert planar(keep_modes(model, "beam", 2).model).model.bodies["beam"].body.modes == 1
+
+
+POINTS = [(0, 0, 0), (50, 0, 0), (60, 30, 0), (10, 40, 0)]
+
+
+@pytest.mark.parametrize(("keeps", "frame", "inertia"), [
+    (("full", "translation", "rotation", "translation"), "converged_mean", None),
+    (("full", "translation", "rotation", "translation"), "converged_mean", "d"),
+    (("translation",) * 4, "positions", "b")])
+def test_frames_of_beams_with_any_boundary(keeps, frame, inertia):
+    """A closed frame in the plane, of whose modes some move in it and others out of it."""
+    points = [at(*place) for place in POINTS]
+    fe_model = beams(points, [(0, 1), (1, 2), (2, 3), (3, 0)], FLAT, 4, up=Z)
+    model = Model()
+    nodes = [model.node(name, *one) for name, *one in zip("abcd", points, keeps, strict=True)]
+    model.superelement("frame", craig_bampton(fe_model, list(enumerate(keeps)), 6), nodes,
+                       frame=frame, inertia=inertia)
+    model.fix("a", "position")
+    model.force("b", TURN @ (0, 2e3, 0), wind)
+    model.gravity(TURN @ (0, -9.0, 0))
+    made = planar(model).model
+    assert 0 < made.bodies["frame"].body.modes < 6
+    assert_same(model, made, ("b.position", "d.velocity", "frame.node6.velocity", "energy.strain"))
 
 
 def rigid(model: Model, name: str, node, mass: float = 1.0, **options) -> None:
@@ -180,6 +223,7 @@ def test_joints_loads_and_drives_of_all_kinds_act_as_in_space():
           for kind in ("position", "rotation")), "sliding.velocity", "hung.position",
         "knee.force", "guide.force", "ball.force", "shaken.reaction", "shaker.thrust",
         "twist.torque", "turned.reaction_moment", "motor.torque", "motor.moment", "pusher.work",
+        "crank.node3.section_forces",
         "energy.kinetic", "energy.strain", "energy.potential", "energy.external_work"))
 
 
@@ -264,10 +308,10 @@ def test_a_section_at_an_angle_is_no_plane_beam():
 
 def test_a_load_on_a_body_must_be_in_the_plane():
     model = beam()
-    body = model.bodies["beam"].body
-    skew = body.loads["wind"].copy()
+    placed = model.bodies["beam"]
+    skew = placed.body.loads["wind"].copy()
     skew[:3] += 5.0 * Z
-    object.__setattr__(body, "loads", {"wind": body.loads["wind"], "skew": skew})
+    placed.body = replace(placed.body, loads={"skew": skew, **placed.body.loads}, recovery=None)
     assert planar(model).model.bodies["beam"].body.loads.keys() == {"wind"}
     model.body_load("beam", "skew", name="gust")
     with pytest.raises(InputError, match="'gust' has a part out of the plane"):

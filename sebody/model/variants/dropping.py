@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
+from scipy.linalg import eigh, null_space
 
 from sebody import inputs
 from sebody.errors import InputError
@@ -14,7 +14,7 @@ from sebody.reduction import ReducedBody
 from sebody.reduction.condensation import Released, released
 
 _KINDS = ("position", "rotation")
-_SHIFT = 1e-9           # of squared frequencies: a free body's stiffness is singular
+_SAME = 1e-12           # relative: velocities that are rounding
 
 
 def drop_triplet(model: Mechanism, name: str, node: Node | str, what: str = "rotation") -> Variant:
@@ -115,12 +115,17 @@ def _rates(old: Superelement, found: Released) -> NDArray:
     rates = np.concatenate([*(t.rate for t in (*old.positions, *old.rotations)), old.mode_rates])
     held = len(found.bound)
     left = rates - found.basis[:, :held] @ rates[found.bound]
-    return found.basis[:, held:].T @ old.body.mass @ left
+    modes = found.basis[:, held:].T @ old.body.mass @ left
+    momentum = np.sqrt(rates @ old.body.mass @ rates)       # of modes of unit mass
+    return np.where(np.abs(modes) > _SAME * momentum, modes, 0.0)
 
 
 def _first_frequency(body: ReducedBody) -> float:
     """Lowest frequency of the free body, in cycles per unit of time."""
-    rigid = body.rigid_modes.shape[1]
-    shift = np.trace(body.stiffness) / np.trace(body.mass) * _SHIFT
-    inverse = eigh(body.mass, body.stiffness + shift * body.mass, eigvals_only=True)
-    return float(np.sqrt(max(1 / inverse[-1 - rigid] - shift, 0.0)) / (2 * np.pi))
+    diagonal = np.diag(body.stiffness)
+    scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, diagonal.max()))
+    K, M = (scale[:, None] * one * scale for one in (body.stiffness, body.mass))
+    middle = body.coordinates.mean(axis=0)
+    vibrations = null_space((M @ (body.rigid_modes_about(middle) / scale[:, None])).T)
+    squares = eigh(vibrations.T @ M @ vibrations, vibrations.T @ K @ vibrations, eigvals_only=True)
+    return float(1 / (2 * np.pi * np.sqrt(squares[-1])))

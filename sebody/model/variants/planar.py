@@ -1,6 +1,7 @@
 """A planar model in the place of a spatial one that is symmetric about a plane."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +30,9 @@ def planar(model: Mechanism) -> Variant:
     It stays there where the reflection about the plane changes nothing: nodes and forces in the
     plane, joint axes and torques normal to it or, of sliding joints, in it, bodies whose matrices
     do not couple motion in the plane with motion out of it. Bodies keep the internal modes that
-    move in the plane, those of one frequency turned where needed. Their displacements inside, and
-    how beams were built, are not kept: divide a beam before.
+    move in the plane, those of one frequency turned where needed. Displacements and stresses inside
+    are kept of bodies all of whose FE nodes are in the plane. How beams were built is not: divide
+    them before.
 
     Parameters
     ----------
@@ -47,26 +49,28 @@ def planar(model: Mechanism) -> Variant:
     Raises
     ------
     InputError
-        A planar model, or what is not symmetric about the plane: the first thing that was found.
+        A planar model, what is not symmetric about the plane (the first thing that was found), or
+        no planar kernel for a body.
     """
     if model.planar:
         raise InputError("the model is planar already")
     if not model.nodes:
         raise InputError("the model has no nodes, so it is in no plane")
-    first = None
+    refused = None
     for normal in _normals(model):
         plane = Plane.through(next(iter(model.nodes.values())).point, normal)
         try:
-            made = _flat(model, plane)
+            flat_model = _Flat.of(model, Flattening(plane, model.size()))
         except InputError as error:
-            first = first or InputError(
+            refused = refused or InputError(
                 f"the model is not symmetric about the plane through {place(plane.origin)} normal "
                 f"to {place(plane.normal)}, so its motion leaves it: {error}")
         else:
+            made = _built(model, flat_model)
             before, after = unknowns(model), unknowns(made)
             return Variant(made, f"the model is planar, normal to {place(plane.normal)}: {after} "
                                  f"instead of {before} unknowns")
-    raise first
+    raise refused
 
 
 def _normals(model: Mechanism) -> Iterator[NDArray]:
@@ -100,68 +104,62 @@ def _upright(vector: NDArray) -> NDArray:
     return vector / np.copysign(np.linalg.norm(vector), largest) if largest else vector
 
 
-def _flat(model: Mechanism, plane: Plane) -> Mechanism:
-    """The planar model, if all of the model is symmetric about the plane."""
-    made, flat = type(model)(planar=True), Flattening(plane, model.size())
-    made.plane = plane
-    made.nodes = {name: flat.node(node) for name, node in model.nodes.items()}
-    made.grounds = [flat.node(node) for node in model.grounds]
-    made.gravity_field = flat.vector(model.gravity_field, "gravity")
-    for triplet in model.triplets():
-        flat.triplet(triplet).motions = [flat.motion(motion) for motion in triplet.motions]
-    made.joints = [flat_joint(flat, joint) for joint in model.joints]
-    joints = dict(zip(map(id, model.joints), made.joints, strict=True))
-    made.rigid_bodies = {name: flat_element(flat, one) for name, one in model.rigid_bodies.items()}
-    for load in model.loads:
-        if load.mode is None and load.body is None:
-            made.loads.append(flat_element(flat, load))
-    made.connections = [
-        Connection(one.kind, flat.node(one.node), one.to and flat.node(one.to),
-                   one.joint and joints[id(one.joint)], one.spare) for one in model.connections]
-    bodies = {name: _body(made, flat, body) for name, body in model.bodies.items()}
-    made.loads = _in_order(model, made, bodies)
-    made.own_names, made.default_names = set(model.own_names), model.default_names.copy()
-    return made
+class _Flat(NamedTuple):
+    """What of a model is symmetric about a plane."""
+
+    flat: Flattening
+    model: Mechanism                    # planar, without superelements and loads
+    bodies: dict[str, PlanarBody]
+    rates: dict[str, NDArray]           # of the modes
+    loads: dict[int, list[Element]]     # of each load but those on bodies, by its id
+
+    @classmethod
+    def of(cls, model: Mechanism, flat: Flattening) -> "_Flat":
+        """All of a model.
+
+        Raises
+        ------
+        InputError
+            What is not symmetric.
+        """
+        made = type(model)(planar=True)
+        made.plane = flat.plane
+        made.nodes = {name: flat.node(node) for name, node in model.nodes.items()}
+        made.grounds = [flat.node(node) for node in model.grounds]
+        made.gravity_field = flat.vector(model.gravity_field, "gravity")
+        for triplet in model.triplets():
+            flat.triplet(triplet).motions = [flat.motion(motion) for motion in triplet.motions]
+        made.joints = [flat_joint(flat, joint) for joint in model.joints]
+        made.rigid_bodies = {name: flat_element(flat, one)
+                             for name, one in model.rigid_bodies.items()}
+        joints = dict(zip(map(id, model.joints), made.joints, strict=True))
+        made.connections = [
+            Connection(one.kind, flat.node(one.node), one.to and flat.node(one.to),
+                       one.joint and joints[id(one.joint)], one.spare)
+            for one in model.connections]
+        on_nodes = {id(load): [flat_element(flat, load)] for load in model.loads
+                    if load.mode is None and load.body is None}
+        bodies = {name: planar_body(body.body, flat.plane.axes, f"superelement {name!r}")
+                  for name, body in model.bodies.items()}
+        rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}
+        for load in model.loads:
+            if load.mode is not None:
+                on_nodes[id(load)] = _mode_forces(load, bodies[load.mode[0]])
+            elif load.body is not None and load_name(load) in bodies[load.body.name].odd_loads:
+                raise InputError(f"{load.name!r} has a part out of the plane")
+        return cls(flat, made, bodies, rates, on_nodes)
 
 
-def _body(made: Mechanism, flat: Flattening, old: Superelement) -> PlanarBody:
-    """Put a superelement into the planar model."""
-    what = f"superelement {old.name!r}"
-    found = planar_body(old.body, flat.plane.axes, what)
+def _rates(old: Superelement, found: PlanarBody) -> NDArray:
+    """Initial velocities of the planar modes."""
     rates = found.modes.T @ old.mode_rates
-    if np.abs(old.mode_rates - found.modes @ rates).max(initial=0.0) > (
-            _ODD * np.abs(old.mode_rates).max(initial=0.0)):
-        raise InputError(f"{what} has initial velocities of modes out of the plane")
-    frame_node = (old.body.position_nodes[int(np.argmax(old.alpha))]
-                  if FRAMES[old.frame].on_one_node else 0)
-    invariants = found.body.invariants
-    stiffening = old.stiffening and invariants is not None and invariants.stiffens
-    new = superelement(made, old.name, found.body, [flat.node(node) for node in old.nodes],
-                       frame=old.frame, inertia=old.inertia, frame_node=frame_node,
-                       stiffening=stiffening)
-    new.mode_rates = rates
-    return found
-
-
-def _in_order(model: Mechanism, made: Mechanism, bodies: dict[str, PlanarBody]) -> list[Element]:
-    """All loads in their order, those on bodies and modes, too."""
-    on_nodes, found = iter(made.loads), []
-    for load in model.loads:
-        if load.body is not None:
-            found.append(_body_load(load, made.bodies[load.body.name], bodies[load.body.name]))
-        elif load.mode is not None:
-            found += _mode_forces(load, bodies[load.mode[0]])
-        else:
-            found.append(next(on_nodes))
-    return found
-
-
-def _body_load(load: Element, new: Superelement, found: PlanarBody) -> Element:
-    own = load_name(load)
-    if own in found.odd_loads:
-        raise InputError(f"{load.name!r} has a part out of the plane")
-    return Element(load.name, body_load_kind(FRAMES[new.frame].kernel, True), new.places,
-                   {"P": new.body.loads[own]}, history=load.history, body=new)
+    bound = [triplet.rate for triplet in (*old.positions, *old.rotations)]
+    odd = np.concatenate([0.0 * v for v in bound] + [old.mode_rates - found.modes @ rates])
+    every = np.concatenate([*bound, old.mode_rates])
+    if odd @ old.body.mass @ odd > _ODD**2 * (every @ old.body.mass @ every):
+        raise InputError(f"superelement {old.name!r} has initial velocities of modes out of the "
+                         "plane")
+    return rates
 
 
 def _mode_forces(load: Element, found: PlanarBody) -> list[Element]:
@@ -175,3 +173,31 @@ def _mode_forces(load: Element, found: PlanarBody) -> list[Element]:
     return [Element(load.name if len(own) == 1 else f"{load.name} ({k + 1})", "mode_force", (),
                     {"factor": load.constants["factor"] * parts[m]}, history=load.history,
                     mode=(name, int(m))) for k, m in enumerate(own)]
+
+
+def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
+    """The planar model, with superelements and all loads in their order."""
+    made = flat_model.model
+    for old in model.bodies.values():
+        _add_body(made, old, flat_model)
+    for load in model.loads:
+        if load.body is None:
+            made.loads += flat_model.loads[id(load)]
+        else:
+            body = made.bodies[load.body.name]
+            made.loads.append(Element(
+                load.name, body_load_kind(FRAMES[body.frame].kernel, True), body.places,
+                {"P": body.body.loads[load_name(load)]}, history=load.history, body=body))
+    made.own_names, made.default_names = set(model.own_names), model.default_names.copy()
+    return made
+
+
+def _add_body(made: Mechanism, old: Superelement, flat_model: _Flat) -> None:
+    body = flat_model.bodies[old.name].body
+    frame_node = (old.body.position_nodes[int(np.argmax(old.alpha))]
+                  if FRAMES[old.frame].on_one_node else 0)
+    stiffening = old.stiffening and body.invariants is not None and body.invariants.stiffens
+    new = superelement(made, old.name, body, [flat_model.flat.node(node) for node in old.nodes],
+                       frame=old.frame, inertia=old.inertia, frame_node=frame_node,
+                       stiffening=stiffening)
+    new.mode_rates = flat_model.rates[old.name]
