@@ -14,8 +14,8 @@ table. Three rules save runs; no indicator of advise is used.
 As `advise` does, the search wants a choice to be within the tolerance with half its step, too;
 what is so by luck is counted apart.
 
-Planar models and shared triplets change nothing but the time: they are taken where they can be
-made, agree with the richest model and take less time.
+Planar models, shared and dropped triplets are to change nothing but the time: they are taken
+where they can be made, agree with the richest model and take less time.
 """
 
 import heapq
@@ -41,7 +41,7 @@ SPOILS = 2.0
 FINEST = 8              # steps of the reference in one given step; twice as many, extrapolated
 TIMES = 3               # runs of which the quickest counts, for predictions
 LOCAL = [10.0**-k for k in range(1, 7)]     # local tolerances of variable steps
-EXACT = 1e-5            # error that a planar model or shared triplets may make
+EXACT = 5e-5            # error that what should change nothing may make
 
 
 def begun(model: Model, step: Step, grid: float) -> Simulation:
@@ -84,10 +84,10 @@ class BruteForce:
         self._histories = Quantities(wanted.histories)
         self._of_forms: dict[tuple[Form, ...], list[float]] = {}
         self.parts: list[Part] = parts_of(self.model, wanted.owners)
-        self.builder = Builder(self.model, self.parts)
+        self.builder = Builder(self.model, self.parts, wanted.owners)
         self.steps = self._steps()
         self.fine = Step(self.h / max(FINER))
-        self.exact = {"planar": False, "shared": False}
+        self.exact = {"shared": False, "dropped": False, "planar": False}
         self.reference, self.own_error = self._reference()
         self.sizes = changes_of(self.reference.histories)
 
@@ -185,7 +185,7 @@ class BruteForce:
         return found
 
     def _look_at_exact(self, base: Choice, whole: Values) -> None:
-        """Planar and shared, where they can be made, agree and pay."""
+        """What should change nothing, where it can be made, agrees and pays."""
         for name in self.exact:
             changed = {**self.exact, name: True}
             richest = self.richest._replace(step=base.step, **changed)

@@ -97,7 +97,7 @@ class _Chart:
         self.quantity = quantity or self._moving(scene.tip)
         self.quantities = Quantities(self.quantity)
         self.parts: list[Part] = parts_of(self.model, self.quantities.owners)
-        self.builder = Builder(self.model, self.parts)
+        self.builder = Builder(self.model, self.parts, self.quantities.owners)
         self.given = tuple(part.given for part in self.parts)
         self.richest = tuple(part.richest for part in self.parts)
 
