@@ -83,15 +83,18 @@ def grouped(mass: NDArray, stiffness: NDArray) -> NDArray:
     return np.lexsort((np.arange(free), labels[:free], -sizes, slaved))
 
 
-def without_rounding(values: InertiaInvariants) -> InertiaInvariants:
-    """Constants with zeros where rotations and sums leave but rounding."""
+def without_rounding(values: InertiaInvariants, stiffness: NDArray) -> InertiaInvariants:
+    """Constants with zeros where rotations and sums leave but rounding.
+
+    Geometric stiffness is small or large by what the elastic stiffness of the same coordinates is:
+    beside its own entries, those of a coordinate that has but rounding would all be kept.
+    """
     i, n = values, len(values.E)
-    of_z = np.sqrt(np.abs(np.diag(i.Mbar)))
-    stretch = np.sqrt(np.abs(i.Ghat).max(axis=(0, 2), initial=0.0))
+    of_z, stretch = (np.sqrt(np.abs(np.diag(A))) for A in (i.Mbar, stiffness))
     return replace(
         i, K=_small(i.K, of_z, ROUNDING), J2=_small(i.J2, of_z, ROUNDING),
         Mbar=_small(i.Mbar, of_z, ROUNDING), Q=_small(i.Q, of_z[:n], ROUNDING),
-        Ghat=_small(i.Ghat, stretch, STIFF))
+        Ghat=np.reshape([_small(G, stretch, STIFF) for G in i.Ghat], i.Ghat.shape))
 
 
 def stiff_without_rounding(stiffness: NDArray) -> NDArray:

@@ -56,9 +56,9 @@ def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, condit
     coordinates, basis = free_coordinates(conditions, counts, turn)
     by = of_coordinates(turn.T, counts)
     of_z = by.T @ basis
-    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis))
     S, C = (None if A is None else stiff_without_rounding(of_z.T @ A @ of_z)
             for A in (stiffness, damping))
+    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis), S)
     order = grouped(inertia.Mbar, S)
     coordinates = coordinates._replace(order=order)
     inertia = _restricted(inertia, np.eye(len(order))[:, order])
@@ -81,8 +81,8 @@ def packed(invariants: InertiaInvariants, stiffness: NDArray, coordinates: Free,
             "turn": coordinates.turn[:, 0] if planar else coordinates.turn.ravel(),
             "axes": coordinates.axes, "axes_back": coordinates.axes.T, "order": coordinates.order,
             "c0": i.c0, "J0": [i.J0[pair] for pair in pairs], "moment_columns": moments.T,
-            "moment_rows": moments, "of_place": rows([*(i.J2[pair] for pair in pairs), *across], N),
-            "of_rate": rows([*(across - i.K), *across], N), "Mz": rows([i.Mbar], N),
+            "of_place": rows([*(i.J2[pair] for pair in pairs), *across], N),
+            "of_rate": rows([*across, *(across - i.K)], N), "Mz": rows([i.Mbar], N),
             "Cz": rows([] if damping is None else [damping], free),
             "followers": rows(i.Q, free), "lam": i.lam, "E": i.E,
             "stretched": rows([*i.Ghat, stiffness], free)}
