@@ -74,7 +74,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "9d8d82e5b494"     # hash of sebody/kernels, which this file was made for
+ROOM = "2f105d8a6508"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -36,7 +36,8 @@ class Free(NamedTuple):
 
 
 def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, conditions: NDArray,
-                       counts: Counts, damping: NDArray | None = None) -> dict[str, ArrayLike]:
+                       counts: Counts, damping: NDArray | None = None,
+                       of_stresses: float = 0.0) -> dict[str, ArrayLike]:
     """Values by name.
 
     Parameters
@@ -51,14 +52,17 @@ def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, condit
         Those of the body's kernel.
     damping : (n, n), optional
         Reduced damping.
+    of_stresses : float
+        Rounding in geometric stiffnesses, see `without_rounding`; none by default.
     """
     turn = body_axes(invariants, counts)
     coordinates, basis = free_coordinates(conditions, counts, turn)
     by = of_coordinates(turn.T, counts)
     of_z = by.T @ basis
+    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis),
+                               of_stresses)
     S, C = (None if A is None else stiff_without_rounding(of_z.T @ A @ of_z)
             for A in (stiffness, damping))
-    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis), S)
     order = grouped(inertia.Mbar, S)
     coordinates = coordinates._replace(order=order)
     inertia = _restricted(inertia, np.eye(len(order))[:, order])

@@ -66,12 +66,14 @@ class View(types.Type):
     """The compiled type of a group."""
 
     def __init__(self, name: str, members: tuple, sources: str):
-        self.members, self.sources = members, sources
+        self.members = members
+        # one text: Numba hashes the key of a type thousands of times, and texts only once
+        self._key = " ".join([name, sources, *(f"{own}: {kind.key}" for own, kind in members)])
         super().__init__(f"View({name})")
 
     @property
-    def key(self) -> tuple:
-        return self.name, self.members, self.sources
+    def key(self) -> str:
+        return self._key
 
     def place(self, name: str) -> tuple[int, types.Type] | None:
         """Word and type of a member."""

@@ -102,7 +102,8 @@ def equilibrate(system, state):
         diagonal = max(abs(state.matrix[system.diagonal[i]]), THIN * mass * system.inertias[i])
         state.scale[i] = 0.0 if system.is_multiplier[i] > 0.0 else 1.0 / np.sqrt(diagonal)
     sums = state.correction
-    sums[:] = 0.0
+    for i in range(sums.size):      # a loop: an assigned slice compiles slowly
+        sums[i] = 0.0
     for k in range(system.rows.size):
         if system.is_multiplier[system.rows[k]] > 0.0:
             entry = state.matrix[k] * state.scale[system.columns[k]]

@@ -77,18 +77,22 @@ def _set_relaxation(system, state, relaxation):
 @compiled
 def project_inverse(system, state, inverse, n):
     """Project the scaled inverse of A, transposed, in place."""
-    R, result, row = np.zeros((n, n)), inverse.copy(), np.empty(n)
+    R, result, row = np.empty((n, n)), np.empty((n, n)), np.empty(n)
     for k in range(n):
         for j in range(n):
             R[k, j] = (state.relaxation[k] * system.is_multiplier[k] * state.scale[k]
                        * state.scale[k] * inverse[k, j])
+            result[k, j] = inverse[k, j]
     for _ in range(PROJECTIONS):
         for i in range(n):
-            row[:] = result[i]
+            for j in range(n):          # loops: assigned slices take seconds to compile
+                row[j] = result[i, j]
             for k in range(n):
                 for j in range(n):
                     result[i, j] -= row[k] * R[k, j]
-    inverse[:] = result
+    for i in range(n):
+        for j in range(n):
+            inverse[i, j] = result[i, j]
 
 
 @compiled

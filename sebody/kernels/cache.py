@@ -33,6 +33,8 @@ class FunctionCache(NullCache):
         Hash of all sources the machine code depends on.
     """
 
+    kind = ""       # of what is kept of a function, in the names of files
+
     def __init__(self, function: Callable, made_from: str):
         assert function.__closure__ is None, f"{function.__name__}: the hash sees no closures"
         self._source = Path(function.__code__.co_filename)
@@ -41,7 +43,7 @@ class FunctionCache(NullCache):
 
     @property
     def _name(self) -> str:
-        return _file_name(self._source, self._function)
+        return _file_name(self._source, self._function, self.kind)
 
     def holds_any(self) -> bool:
         """Whether the function was compiled, for whatever signature."""
@@ -53,8 +55,10 @@ class FunctionCache(NullCache):
         for content in store.read(self._source, self._name, self._made_from):
             kept = pickle.loads(content).get(sig)
             if kept is not None:
-                return CompileResult._rebuild(target_context, *pickle.loads(kept))
+                return self._rebuilt(target_context, *pickle.loads(kept))
         return None
+
+    _rebuilt = staticmethod(CompileResult._rebuild)
 
     def save_overload(self, sig, data: CompileResult) -> None:
         """Keep the compiled code for a signature."""
@@ -75,8 +79,8 @@ def is_kept(source: Path, function: str, made_from: str) -> bool:
     return store.holds(source, _file_name(source, function), _stamp(made_from))
 
 
-def _file_name(source: Path, function: str) -> str:
-    name = f"{source.stem}.{function}".replace("<", "").replace(">", "")
+def _file_name(source: Path, function: str, kind: str = "") -> str:
+    name = ".".join(filter(None, (source.stem, function, kind))).replace("<", "").replace(">", "")
     return f"{name}.{sys.implementation.cache_tag}.{_processor()}.sebody"
 
 

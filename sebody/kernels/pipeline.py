@@ -12,25 +12,20 @@ from functools import partial
 from pathlib import Path
 
 from llvmlite import ir
-from numba import njit
 from numba.core import types
 from numba.core.ccallback import CFunc
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
 from numba.core.ir import Jump
-from numba.core.lowering import Lower
 from numba.core.sigutils import normalize_signature
-from numba.core.typed_passes import (
-    AnnotateTypes,
-    BaseNativeLowering,
-    IRLegalization,
-    NoPythonBackend,
-    NopythonTypeInference,
-)
-from numba.core.untyped_passes import FixupArgs, IRProcessing, TranslateByteCode
+from numba.core.transforms import canonicalize_cfg
+from numba.core.typed_passes import BaseNativeLowering, NoPythonBackend
+from numba.core.untyped_passes import FixupArgs, TranslateByteCode
 
 from sebody.kernels.cache import FunctionCache, is_kept
+from sebody.kernels.callees import Function
 from sebody.kernels.layout import ARGUMENTS
+from sebody.kernels.lookups import Lowering, TypeInference
 from sebody.kernels.sources import KERNELS, function_hash, in_room, kernel_hash
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(types.float64)}
@@ -38,35 +33,6 @@ _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(typ
 SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
 
 CONTRACT = {"contract"}     # a product and a sum in one rounding
-
-
-class _Remembering:
-    """A typing context that resolves a function of given number types only once."""
-
-    def __init__(self, context):
-        self._context, self._found = context, {}
-
-    def __getattr__(self, name):
-        return getattr(self._context, name)
-
-    def resolve_function_type(self, function, arguments, keywords):
-        key = function, arguments
-        if keywords or not all(isinstance(a, types.Number) for a in arguments):
-            return self._context.resolve_function_type(function, arguments, keywords)
-        if key not in self._found:
-            self._found[key] = self._context.resolve_function_type(function, arguments, keywords)
-        return self._found[key]
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class _TypeInference(NopythonTypeInference):
-    def run_pass(self, state):
-        context = state.typingctx
-        state.typingctx = _Remembering(context)
-        try:
-            return super().run_pass(state)
-        finally:
-            state.typingctx = context
 
 
 _SHORT = (("llvm.loop.vectorize.enable", ir.Constant(ir.IntType(1), 0)),
@@ -80,7 +46,7 @@ def mark_short(module: ir.Module, jump: ir.Instruction) -> None:
     jump.set_metadata("llvm.loop", loop)
 
 
-class _ShortLoops(Lower):
+class _ShortLoops(Lowering):
     """Tells LLVM of every loop that it is short."""
 
     def lower_inst(self, inst):
@@ -98,14 +64,29 @@ class _Lowering(BaseNativeLowering):
         return _ShortLoops
 
 
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _OneJumpBack(FunctionPass):
+    """Gives every loop one jump back; nothing in a kernel has a lifetime that matters."""
+
+    _name = "one_jump_back"
+
+    def __init__(self):
+        super().__init__()
+
+    def run_pass(self, state):
+        state.func_ir.blocks = canonicalize_cfg(state.func_ir.blocks)
+        state.type_annotation = ""
+        return True
+
+
 class KernelPasses(CompilerBase):
     """Numba's pipeline for kernels: bytecode, types, machine code."""
 
     def define_pipelines(self) -> list[PassManager]:
         """The one pipeline."""
         manager = PassManager("kernel")
-        for one in (TranslateByteCode, FixupArgs, IRProcessing, _TypeInference, IRLegalization,
-                    AnnotateTypes, _Lowering, NoPythonBackend):
+        for one in (TranslateByteCode, FixupArgs, _OneJumpBack, TypeInference, _Lowering,
+                    NoPythonBackend):
             manager.add_pass(one, one.__name__)
         manager.finalize()
         return [manager]
@@ -121,9 +102,8 @@ def compiled(function: Callable | None = None, **options) -> Callable:
     if function is None:
         return partial(compiled, **options)
     rounding = CONTRACT if in_room(function, KERNELS) else False
-    dispatcher = njit(**{"error_model": "numpy", "fastmath": rounding} | options)(function)
-    dispatcher._cache = FunctionCache(function, function_hash(function))
-    return dispatcher
+    options = {"nopython": True, "error_model": "numpy", "fastmath": rounding} | options
+    return Function(function, options, function_hash(function))
 
 
 def kernel_function(function: Callable) -> CFunc:

@@ -71,7 +71,7 @@ def not_writable(path: Path) -> Path:
     return path
 
 
-FILES = ["program.double.sebody", "program.sources", "program.with_one.sebody"]
+FILES = ["program.double.callee.sebody", "program.sources", "program.with_one.sebody"]
 
 
 def test_beside_the_source(program):

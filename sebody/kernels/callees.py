@@ -1,0 +1,167 @@
+"""Functions as parts of the compiled functions that call them.
+
+Numba optimizes every function and makes machine code of it before a caller takes a copy, which is
+optimized once more with the caller: what is called four calls deep is compiled five times, and most
+of that never runs. Here a caller gets the LLVM code as it was lowered. It is optimized and becomes
+machine code as a part of what Python or the time loop calls, and nowhere else.
+"""
+
+from collections.abc import Callable
+
+from llvmlite import binding
+from numba.core import types
+from numba.core.codegen import CPUCodegen, JITCodeLibrary
+from numba.core.compiler import CompilerBase, CompileResult
+from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.registry import CPUDispatcher
+from numba.core.typed_passes import (
+    AnnotateTypes,
+    BaseNativeLowering,
+    IRLegalization,
+    NoPythonBackend,
+    PreLowerStripPhis,
+)
+from numba.core.untyped_passes import (
+    FixupArgs,
+    GenericRewrites,
+    IRProcessing,
+    ReconstructSSA,
+    TranslateByteCode,
+)
+
+from sebody.kernels.cache import FunctionCache
+from sebody.kernels.lookups import Lowering, TypeInference
+from sebody.kernels.sources import KERNELS, in_room
+
+
+class _Library(JITCodeLibrary):
+    """LLVM code that is linked to that of callers, and no more."""
+
+    optimized = False
+
+    def finalize(self) -> None:
+        """Take in what the function calls."""
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        if self.optimized:
+            self._optimize_final_module()
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage.name == "external":
+                function.linkage = "linkonce_odr"       # callers of a caller may have a copy, too
+        self._take(self._final_module)
+
+    def _take(self, module: binding.ModuleRef) -> None:
+        self._final_module = self._shared_module = module
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+    def serialize_using_object_code(self) -> tuple[str, bytes]:
+        """What is kept of the code."""
+        self._ensure_finalized()
+        return self.name, self._final_module.as_bitcode()
+
+    @classmethod
+    def of(cls, codegen: CPUCodegen, kept: tuple[str, bytes]) -> "_Library":
+        """The code that was kept."""
+        name, code = kept
+        library = cls(codegen, name)
+        library._take(binding.parse_bitcode(code))
+        return library
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _EntryLowering(BaseNativeLowering):
+    _name = "entry_lowering"
+
+    @property
+    def lowering_class(self):
+        return Lowering
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _CalleeLowering(_EntryLowering):
+    _name = "callee_lowering"
+
+    def run_pass(self, state):
+        library = _Library(state.targetctx.codegen(), state.func_id.func_qualname)
+        # kernels are slower by a twentieth where their products are not optimized on their own
+        library.optimized = in_room(state.func_id.func, KERNELS)
+        state.library, flags = library, state.flags
+        flags.no_cpython_wrapper = flags.no_cfunc_wrapper = flags.no_compile = True
+        super().run_pass(state)
+        lowered, key = state["cr"], object()
+        state.targetctx.insert_user_function(key, lowered.fndesc, [library])
+        state["cr"] = lowered._replace(cfunc=key)
+        return True
+
+
+class _EntryPasses(CompilerBase):
+    """Numba's pipeline for functions that Python calls, without passes that find nothing to do."""
+
+    lowering = _EntryLowering
+
+    def define_pipelines(self) -> list[PassManager]:
+        """The one pipeline."""
+        manager = PassManager("function")
+        for one in (TranslateByteCode, FixupArgs, IRProcessing, GenericRewrites, ReconstructSSA,
+                    TypeInference, PreLowerStripPhis, IRLegalization, AnnotateTypes,
+                    self.lowering, NoPythonBackend):
+            manager.add_pass(one, one.__name__)
+        manager.finalize()
+        return [manager]
+
+
+class _CalleePasses(_EntryPasses):
+    """The same as far as LLVM code."""
+
+    lowering = _CalleeLowering
+
+
+class _CalleeCache(FunctionCache):
+    """LLVM code that is kept."""
+
+    kind = "callee"
+
+    @staticmethod
+    def _rebuilt(context, library, fndesc, env, signature, objectmode, lifted, typeann, reload_init,
+                 envs) -> CompileResult:
+        return CompileResult(
+            target_context=context, typing_context=context.typing_context,
+            library=_Library.of(context.codegen(), library), environment=env, entry_point=object(),
+            fndesc=fndesc, type_annotation=typeann, signature=signature, objectmode=objectmode,
+            lifted=lifted, typing_error=None, call_helper=None, metadata=None,
+            reload_init=reload_init, referenced_envs=envs)
+
+
+class Callee(CPUDispatcher):
+    """A function as a part of others, for every signature; Python cannot call it."""
+
+    def __init__(self, function: Callable, options: dict, made_from: str):
+        super().__init__(function, targetoptions=options, pipeline_class=_CalleePasses)
+        self._cache = _CalleeCache(function, made_from)
+
+    def add_overload(self, cres: CompileResult) -> None:
+        """Remember what is compiled."""
+        self.overloads[tuple(cres.signature.args)] = cres
+
+
+class Function(CPUDispatcher):
+    """A compiled function: what Python calls, and what other compiled functions take in."""
+
+    def __init__(self, function: Callable, options: dict, made_from: str):
+        super().__init__(function, targetoptions=options, pipeline_class=_EntryPasses)
+        self._cache = FunctionCache(function, made_from)
+        self.callee = Callee(function, options, made_from)
+        # constants make kernels faster; elsewhere they come with the code that callers take in
+        self._specialized = in_room(function, KERNELS)
+
+    def get_call_template(self, args, kws):
+        """For Numba: the signature of a call in a compiled function."""
+        if not self._specialized:
+            args = [types.unliteral(kind) for kind in args]
+        return self.callee.get_call_template(args, kws)
+
+    def get_overload(self, sig):
+        """For Numba: the function of a signature, for its callers."""
+        return self.callee.get_overload(sig)
