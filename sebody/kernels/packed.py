@@ -38,7 +38,8 @@ def pack(matrices: ArrayLike, shape: tuple[int, int, int]) -> NDArray:
     by_run = _by_run(stack)
     size = packed_size(*shape)
     if 1 + sum(_group_size(run, group) for run, group in _groups(by_run)) > size:
-        by_run = {(0, columns): [strip for strip, _ in _strips(stack)]}
+        by_run = {(0, columns): [(k, i) for k in range(count)
+                                 for i in range(0, stack.shape[1], LANES)]}
     groups = list(_groups(by_run))
     row = np.zeros(size)
     head = 1 + GROUP * len(groups)
@@ -70,24 +71,19 @@ def unpack(row: NDArray, shape: tuple[int, int, int]) -> NDArray:
     return stack[:, :rows]
 
 
-def _strips(stack: NDArray) -> Iterator[tuple[Strip, NDArray]]:
-    """Strips of the matrices, and the columns where each has entries."""
-    count, rows, columns = stack.shape
-    filled = (stack.reshape(count, rows // LANES, LANES, columns) != 0.0).any(axis=2)
-    for k, matrix in enumerate(filled):
-        for block, columns in enumerate(matrix):
-            yield (k, LANES * block), columns.nonzero()[0]
-
-
 def _by_run(stack: NDArray) -> dict[Run, list[Strip]]:
     """Strips by their runs of columns."""
+    count, rows, columns = stack.shape
+    blocks = rows // LANES
+    filled = (stack.reshape(count * blocks, LANES, columns) != 0.0).any(axis=1)
+    strip, column = filled.nonzero()
+    begins = np.ones(len(strip) + 1, dtype=bool)        # one more, behind the last
+    begins[1:-1] = (np.diff(strip) != 0) | (np.diff(column) > GAP)
     found: dict[Run, list[Strip]] = {}
-    for strip, columns in _strips(stack):
-        if len(columns):
-            cuts = (np.diff(columns) > GAP).nonzero()[0]
-            for first, last in zip(columns[np.r_[0, cuts + 1]], columns[np.r_[cuts, -1]],
-                                   strict=True):
-                found.setdefault((int(first), int(last) + 1), []).append(strip)
+    for number, first, last in zip(*(array.tolist() for array in (
+            strip[begins[:-1]], column[begins[:-1]], column[begins[1:]])), strict=True):
+        k, block = divmod(number, blocks)
+        found.setdefault((first, last + 1), []).append((k, LANES * block))
     return found
 
 
