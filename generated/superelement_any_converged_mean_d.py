@@ -74,7 +74,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "fa7d67bd7a56"     # hash of sebody/kernels, which this file was made for
+ROOM = "1580c5773524"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

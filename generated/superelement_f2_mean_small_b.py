@@ -51,7 +51,7 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (337, 136, 153, 3),
               "column": (77, 172, 362, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "fa7d67bd7a56"     # hash of sebody/kernels, which this file was made for
+ROOM = "1580c5773524"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -52,7 +52,7 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (212, 61, 5, 3),
               "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "fa7d67bd7a56"     # hash of sebody/kernels, which this file was made for
+ROOM = "1580c5773524"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

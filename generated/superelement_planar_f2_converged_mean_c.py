@@ -88,7 +88,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "fa7d67bd7a56"     # hash of sebody/kernels, which this file was made for
+ROOM = "1580c5773524"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
