@@ -63,11 +63,13 @@ class Spinning:
                    + np.tensordot(force[self.n:], self.Q, 1))
         return Z.T @ force + elastic - load, tangent, z, Z
 
-    def equilibrium(self, load=None, gravity=None):
+    def equilibrium(self, load=None, gravity=None, start=None):
         """Mass, gyroscopic matrix, stiffness of the free coordinates; z and Z."""
         load = np.zeros(self.n) if load is None else load
         gravity = np.zeros(len(self.S1)) if gravity is None else gravity
         y, grid = np.zeros(self.n), np.ix_(self.free, self.free)
+        if start is not None:
+            y[:] = start
         for _ in range(30):
             force, tangent, z, Z = self.gradient(y, load, gravity)
             step = np.linalg.solve(tangent[grid], force[self.free])

@@ -172,14 +172,14 @@ def _moved_states(run: Simulation | Result, spin: Spin, X: NDArray, omega: NDArr
         second = second + rate @ turning.T + moved @ place.T
         rate = rate + moved @ velocity.T
     extent = np.full(numbering.total, np.inf)   # of what has no size of its own: any
-    turned = {}
+    rotated = {}
     for node in (*run.model.nodes.values(), *run.model.grounds):
         for triplet in (node.position, node.rotation):
             if triplet is not None and id(triplet) in numbering.triplets:
                 own = coordinates(numbering, triplet)
                 extent[own] = 1.0 if triplet.rotational else run.model.size()
                 if triplet.rotational and not run.model.planar:
-                    turned[numbering.rotations[id(triplet)]] = own
+                    rotated[numbering.rotations[id(triplet)]] = own
     largest = (np.abs(moved) / extent).max(axis=1)
     scale = SMALL / np.where(largest > 0, largest, 1.0)
     parts, rows = state.recorded_parts, []
@@ -189,7 +189,7 @@ def _moved_states(run: Simulation | Result, spin: Spin, X: NDArray, omega: NDArr
             step = (factor * change * np.array([moved[k], rate[k], second[k]])).real
             for name, values in zip("qva", step, strict=True):
                 row[parts[name]] += values
-            for number, own in turned.items():
+            for number, own in rotated.items():
                 first = parts["R"].start + 9 * number
                 R = row[first:first + 9].reshape(3, 3)
                 row[first:first + 9] = (R @ Rotation.from_rotvec(step[0][own]).as_matrix()).ravel()

@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh, null_space
+from scipy.linalg import LinAlgError, eigh, null_space
 
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import matrix
@@ -111,7 +111,10 @@ def _fastest(part: Recording, row: NDArray, energy: float) -> float:
         return 0.0
     K, M = (basis.T @ A[np.ix_(moving, moving)] @ basis for A in (K, M))
     M = (M + M.T) / 2 + MASSLESS * np.trace(M) / len(M) * np.eye(len(M))
-    squares, shapes = eigh((K + K.T) / 2, M)
+    try:
+        squares, shapes = eigh((K + K.T) / 2, M)
+    except LinAlgError:     # a mass that is not positive: bent far out of the linear range
+        return 0.0
     modal = shapes.T @ M @ (basis.T @ acceleration[moving])
     excited = (squares > 0.0) & (modal**2 > 2.0 * energy * np.abs(squares))
     return float(np.sqrt(squares[excited].max(initial=0.0)))

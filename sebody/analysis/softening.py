@@ -39,7 +39,7 @@ class Carriers(NamedTuple):
 
     arms: NDArray           # (p, 3) from the pivot
     moved: NDArray          # (p, 3, n) displacements by y
-    turned: NDArray         # (q, 3, n) rotations by y that turn their own axes
+    rotated: NDArray         # (q, 3, n) rotations by y that turn their own axes
     mass: NDArray           # (3 (p + q), 3 (p + q)) of their velocities
 
 
@@ -98,16 +98,16 @@ def _of_all_axes(part: Superelement, held: Held) -> NDArray:
 def holds(part: Superelement, axis: NDArray | None) -> list[Held]:
     """Every node as the pivot, held with the frame and by itself, for an axis or for all."""
     body = part.body
-    moved, turned = rows_of(body)
+    moved, rotated = rows_of(body)
     points = _in_space(body.coordinates)
     of_frame = (_fit(body, moved) if part.frame == "positions" else
-                np.einsum("j,jin->in", part.alpha_r, turned))
+                np.einsum("j,jin->in", part.alpha_r, rotated))
     found = []
     for k, node in enumerate(body.position_nodes):
         free = null_space(np.vstack([moved[k], of_frame]))
         turns = [np.zeros_like(of_frame)]
         if node in body.rotation_nodes and _principal(body, node, axis):
-            turns.append(turned[body.rotation_nodes.index(node)])
+            turns.append(rotated[body.rotation_nodes.index(node)])
         found += [Held(points[node], turn, free) for turn in turns]
     return found
 
@@ -115,7 +115,8 @@ def holds(part: Superelement, axis: NDArray | None) -> list[Held]:
 def first_frequency(part: Superelement) -> float:
     """Lowest vibration with one boundary node held, of all nodes; infinite where none can move.
 
-    A node without a rotation is held with the rotation of best fit.
+    A node without a rotation is held with the rotation of best fit, or where all nodes are on a
+    line, which it does not see rotate about itself, with the mean of the rotations.
     """
     return _lowest(part, lambda k: part.body.mass)
 
@@ -127,7 +128,7 @@ def cautious_limit(part: Superelement) -> float:
     momenta may have in D: it is for deciding whether the limits are looked at.
     """
     body = part.body
-    turned = rows_of(body)[1]
+    rotated = rows_of(body)[1]
     d, traits = body.coordinates.shape[1], INERTIA_OPTIONS[part.inertia]
     own_axes = traits.material and not (traits.rates or traits.field or body.planar)
 
@@ -135,8 +136,8 @@ def cautious_limit(part: Superelement) -> float:
         soft = 4.0 * body.mass
         if own_axes:
             point = body.coordinates[body.position_nodes[k]]
-            momenta = turned @ (body.mass @ body.rigid_modes_about(point)[:, d:])
-            for psi, p in zip(turned, momenta, strict=True):
+            momenta = rotated @ (body.mass @ body.rigid_modes_about(point)[:, d:])
+            for psi, p in zip(rotated, momenta, strict=True):
                 soft = soft + 4.0 * np.linalg.norm(p) * psi.T @ psi
         return soft
     return _lowest(part, softest)
@@ -145,14 +146,14 @@ def cautious_limit(part: Superelement) -> float:
 def _lowest(part: Superelement, inertia: Callable[[int], NDArray]) -> float:
     """Lowest frequency with the k-th position held, of all, with an inertia (n, n) for each."""
     body = part.body
-    moved, turned = rows_of(body)
+    moved, rotated = rows_of(body)
     largest = 0.0
     for k, node in enumerate(body.position_nodes):
         if node in body.rotation_nodes:     # held coordinates are left out
-            own = turned[body.rotation_nodes.index(node)]
+            own = rotated[body.rotation_nodes.index(node)]
             free = np.eye(len(body.mass))[:, ~np.vstack([moved[k], own]).any(axis=0)]
         else:
-            free = null_space(np.vstack([moved[k], _fit(body, moved)]))
+            free = null_space(np.vstack([moved[k], _turn(body, moved, rotated)]))
         if free.shape[1]:
             largest = max(largest, eigh(free.T @ inertia(k) @ free, free.T @ body.stiffness @ free,
                                         eigvals_only=True)[-1])
@@ -178,13 +179,13 @@ def rows_of(body: ReducedBody) -> tuple[NDArray, NDArray]:
     n, d = len(body.mass), body.coordinates.shape[1]
     positions, rotations = len(body.position_nodes), len(body.rotation_nodes)
     unit = np.eye(n)
-    moved, turned = np.zeros((positions, 3, n)), np.zeros((rotations, 3, n))
+    moved, rotated = np.zeros((positions, 3, n)), np.zeros((rotations, 3, n))
     moved[:, :d] = unit[:d * positions].reshape(positions, d, n)
     axes = slice(2, 3) if body.planar else slice(0, 3)
     angles = 1 if body.planar else 3
     first = d * positions
-    turned[:, axes] = unit[first:first + angles * rotations].reshape(rotations, angles, n)
-    return moved, turned
+    rotated[:, axes] = unit[first:first + angles * rotations].reshape(rotations, angles, n)
+    return moved, rotated
 
 
 def _principal(body: ReducedBody, node: int, axis: NDArray | None) -> bool:
@@ -203,10 +204,10 @@ def _moments(body: ReducedBody, node: int) -> NDArray:
 
 def _of_nodes(body: ReducedBody, material: bool, held: Held) -> Carriers:
     """The boundary nodes, with angular velocities in axes of the nodes (B) or of the frame (A)."""
-    moved, turned = rows_of(body)
+    moved, rotated = rows_of(body)
     points = _in_space(body.coordinates[list(body.position_nodes)])
-    rows = np.vstack([moved.reshape(-1, moved.shape[2]), turned.reshape(-1, moved.shape[2])])
-    return Carriers(points - held.pivot, moved, turned if material else 0.0 * turned,
+    rows = np.vstack([moved.reshape(-1, moved.shape[2]), rotated.reshape(-1, moved.shape[2])])
+    return Carriers(points - held.pivot, moved, rotated if material else 0.0 * rotated,
                     rows @ body.mass @ rows.T)
 
 
@@ -215,12 +216,12 @@ def _rigid_part(body: ReducedBody, held: Held) -> Carriers:
     rows = carried_constants(body)["rigid_rows"]
     d, n = body.coordinates.shape[1], len(body.mass)
     axes = slice(2, 3) if body.planar else slice(0, 3)
-    moved, turned, mass = np.zeros((1, 3, n)), np.zeros((1, 3, n)), np.zeros((6, 6))
-    moved[0, :d], turned[0, axes] = rows[:d] / body.total_mass, rows[d:]
+    moved, rotated, mass = np.zeros((1, 3, n)), np.zeros((1, 3, n)), np.zeros((6, 6))
+    moved[0, :d], rotated[0, axes] = rows[:d] / body.total_mass, rows[d:]
     rigid = body.rigid_modes_about(body.centre_of_mass)[:, d:]
     mass[:3, :3] = body.total_mass * np.eye(3)
     mass[3:, 3:][axes, axes] = rigid.T @ body.mass @ rigid
-    return Carriers(_in_space(body.centre_of_mass[None]) - held.pivot, moved, turned, mass)
+    return Carriers(_in_space(body.centre_of_mass[None]) - held.pivot, moved, rotated, mass)
 
 
 def _of_carriers(carriers: Carriers, axis: NDArray, turn: NDArray) -> NDArray:
@@ -230,18 +231,18 @@ def _of_carriers(carriers: Carriers, axis: NDArray, turn: NDArray) -> NDArray:
     turns by -t.
     """
     across = _skew(axis)
-    places, angles = len(carriers.arms), len(carriers.turned)
+    places, angles = len(carriers.arms), len(carriers.rotated)
     rest = np.concatenate([np.cross(axis, carriers.arms).ravel(), np.tile(axis, angles)])
     tilt = -across @ turn                                   # t x n
     first = np.vstack([
         *(across @ u - _skew(X) @ tilt for X, u in zip(carriers.arms, carriers.moved, strict=True)),
-        *(across @ (psi - turn) for psi in carriers.turned)])
+        *(across @ (psi - turn) for psi in carriers.rotated)])
     D = first.T @ carriers.mass @ first
     momenta = (carriers.mass @ rest).reshape(-1, 3)
     for X, u, p in zip(carriers.arms, carriers.moved, momenta[:places], strict=True):
         mixed = tilt.T @ (-_skew(p) @ u)                    # p . ((t x n) x u)
         D += mixed + mixed.T + turn.T @ _twice(np.cross(X, p), axis) @ turn
-    for psi, p in zip(carriers.turned, momenta[places:], strict=True):
+    for psi, p in zip(carriers.rotated, momenta[places:], strict=True):
         mixed = tilt.T @ (-_skew(p) @ psi)                  # -p . (psi x (t x n))
         D += mixed + mixed.T + psi.T @ _twice(p, axis) @ psi + turn.T @ _twice(p, axis) @ turn
     return D
@@ -271,6 +272,14 @@ def _of_field(part: Superelement, axis: NDArray, held: Held) -> NDArray:
 def _twice(p: NDArray, n: NDArray) -> NDArray:
     """H with ``t . H t / 2 = p . (t x (t x n)) / 2``."""
     return (np.outer(n, p) + np.outer(p, n)) / 2 - p @ n * np.eye(3)
+
+
+def _turn(body: ReducedBody, moved: NDArray, rotated: NDArray) -> NDArray:
+    """Rows of the rotation with which a node that has none is held."""
+    points = body.coordinates[list(body.position_nodes)]
+    on_line = np.linalg.matrix_rank(points - points.mean(axis=0), tol=1e-6 * np.abs(
+        points - points.mean(axis=0)).max()) < 2
+    return rotated.mean(axis=0) if on_line and len(rotated) else _fit(body, moved)
 
 
 def _fit(body: ReducedBody, moved: NDArray) -> NDArray:

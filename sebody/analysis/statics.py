@@ -109,8 +109,6 @@ def _balance(run: Simulation, tolerance: float, spin: Spin, resisted: bool = Fal
     smaller the corrections get.
     """
     system, state, n = run.system, run.state, run.numbering.free
-    size = system.magnitude[:n]
-    sized = size > 0.0              # not modes and multipliers, which have no magnitude
     state.frames_old[:] = state.frames
     resistance = float(resisted)
     for _ in range(RESISTED if resisted else ITERATIONS):
@@ -120,7 +118,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin, resisted: bool = Fal
         correction = np.zeros(run.numbering.total)
         correction[:n] = _solution(solver, residual)
         to_body_axes(system, state.frames, correction, True)
-        change = np.abs(correction[:n][sized] / size[sized]).max()
+        change = _size(run, correction)
         if not np.isfinite(change) or change > 1.0 and not resisted:
             return False
         if resisted:
@@ -133,6 +131,20 @@ def _balance(run: Simulation, tolerance: float, spin: Spin, resisted: bool = Fal
             spin.move(run)
             return True
     return False
+
+
+def _size(run: Simulation, correction: NDArray) -> float:
+    """Size of a correction, relative to magnitudes of positions and rotations.
+
+    Modes and multipliers have no magnitude. Where nothing has one, as in a body that is held at all
+    its nodes, the correction is compared with what it leads to.
+    """
+    n = run.numbering.free
+    size, correction = run.system.magnitude[:n], correction[:n]
+    if np.any(size > 0.0):
+        return float(np.abs(correction[size > 0.0] / size[size > 0.0]).max())
+    largest = np.abs(run.state.q[:n] - correction).max()
+    return 0.0 if largest == 0.0 else float(np.abs(correction).max() / largest)
 
 
 def _solution(solver: Scaled, residual: NDArray) -> NDArray:

@@ -9,6 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sebody.assembly.body_axes import ROUNDING
 from sebody.assembly.carried import carried_constants
 from sebody.assembly.contracts import (
     check_element,
@@ -190,7 +191,7 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     counts = counts_of(body)
     conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts, values)
     return values | floating_constants(body.invariants.about(origin), reduced.stiffness,
-                                       conditions, counts, reduced.damping)
+                                       conditions, counts, reduced.damping, ROUNDING)
 
 
 def frame_constants(body: Superelement) -> dict[str, ArrayLike]:

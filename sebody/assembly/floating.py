@@ -36,7 +36,8 @@ class Free(NamedTuple):
 
 
 def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, conditions: NDArray,
-                       counts: Counts, damping: NDArray | None = None) -> dict[str, ArrayLike]:
+                       counts: Counts, damping: NDArray | None = None,
+                       of_stresses: float = 0.0) -> dict[str, ArrayLike]:
     """Values by name.
 
     Parameters
@@ -51,12 +52,15 @@ def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, condit
         Those of the body's kernel.
     damping : (n, n), optional
         Reduced damping.
+    of_stresses : float
+        Rounding in geometric stiffnesses, see `without_rounding`; none by default.
     """
     turn = body_axes(invariants, counts)
     coordinates, basis = free_coordinates(conditions, counts, turn)
     by = of_coordinates(turn.T, counts)
     of_z = by.T @ basis
-    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis))
+    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis),
+                               of_stresses)
     S, C = (None if A is None else stiff_without_rounding(of_z.T @ A @ of_z)
             for A in (stiffness, damping))
     order = grouped(inertia.Mbar, S)
@@ -81,8 +85,8 @@ def packed(invariants: InertiaInvariants, stiffness: NDArray, coordinates: Free,
             "turn": coordinates.turn[:, 0] if planar else coordinates.turn.ravel(),
             "axes": coordinates.axes, "axes_back": coordinates.axes.T, "order": coordinates.order,
             "c0": i.c0, "J0": [i.J0[pair] for pair in pairs], "moment_columns": moments.T,
-            "moment_rows": moments, "of_place": rows([*(i.J2[pair] for pair in pairs), *across], N),
-            "of_rate": rows([*(across - i.K), *across], N), "Mz": rows([i.Mbar], N),
+            "of_place": rows([*(i.J2[pair] for pair in pairs), *across], N),
+            "of_rate": rows([*across, *(across - i.K)], N), "Mz": rows([i.Mbar], N),
             "Cz": rows([] if damping is None else [damping], free),
             "followers": rows(i.Q, free), "lam": i.lam, "E": i.E,
             "stretched": rows([*i.Ghat, stiffness], free)}

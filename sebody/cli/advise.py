@@ -1,18 +1,28 @@
-"""``sebody advise``: the bodies, modes and step that some quantities of a scene need."""
+"""``sebody advise``: the cheapest model of a scene that keeps some quantities."""
 
 import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from sebody.cli.inputs import build_scene
+from sebody.cli import interrupts, scene_files
+from sebody.cli.inputs import build_scene, check_picture, given_arguments, source
+
+if TYPE_CHECKING:
+    from sebody.analysis import Advice
+    from sebody.scenes.scene import Scene
+
+KINDS = {"reference": "richest model", "alone": "one part alone", "together": "together",
+         "confirmation": "half the step", "given": "as given"}
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
-        "advise", help="which bodies may be rigid, how many modes and which step are enough")
-    parser.add_argument("scene", metavar="SCENE",
-                        help="name of a scene or a file, FILE.py: the richest model of interest")
+        "advise", help="the cheapest model that keeps some quantities of a scene")
+    parser.add_argument("scene", metavar="SCENE", help="name of a scene or a file, FILE.py")
     parser.add_argument("--quantity", action="append", required=True, metavar="NAME",
-                        help="quantity to keep, such as tip.position; may be repeated")
+                        help="quantity to keep, such as tip.position, hinge.force or 'frequency "
+                             "1'; may be repeated")
     parser.add_argument("--tolerance", type=float, default=1e-3, metavar="E",
                         help="largest error, relative to a quantity's largest change "
                              "(default 1e-3)")
@@ -20,22 +30,72 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--step", type=float, metavar="H",
                         help="usual time step, the scene's by default; the reference has a quarter")
     parser.add_argument("--budget", type=float, default=20.0, metavar="N",
-                        help="time of the search, in runs of the whole model (default 20)")
+                        help="work of the search, in runs of the richest model (default 20)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         dest="changes", help="change a parameter of the scene; may be repeated")
+    parser.add_argument("--output", type=Path, metavar="FILE.png",
+                        help="draw error against time of all runs, with the choice")
+    parser.add_argument("--code", action="store_true", help="print the chosen model as Python")
     return parser
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print all runs of the search and the advice."""
-    from sebody.analysis.advice import advise
-
+    """Print all runs of the search and the advice; draw them."""
+    check_picture(options.output)
     scene = build_scene(options.scene, options.changes)
-    advice = advise(scene.model, scene.h if options.step is None else options.step,
-                    scene.t_end if options.t_end is None else options.t_end,
-                    options.quantity, options.tolerance, options.budget)
-    print(f"{'error':>9} {'step':>9} {'seconds':>9}  change")
+    advice = _advised(options, scene)
+    print(f"{'predicted':>9} {'error':>9} {'step':>9} {'seconds':>9}  change")
     for trial in advice.table:
-        print(f"{trial.error:9.2g} {trial.step:9.3g} {trial.seconds:9.2g}  {trial.change}")
-    print(advice.summary())
-    return 0
+        print(f"{trial.predicted:9.2g} {trial.error:9.2g} {trial.step:9.3g} {trial.seconds:9.2g}  "
+              f"{trial.change}")
+    *lines, last = advice.summary().splitlines()
+    print("\n".join(lines))
+    if options.code:
+        print("\n" + advice.code(_given(options)) + "\n")
+    if options.output:
+        _draw(advice, scene.name, options.output)
+        print(f"picture: {options.output}")
+    print(last)
+    return interrupts.exit_code()
+
+
+def _advised(options: argparse.Namespace, scene: "Scene") -> "Advice":
+    """The advice, also of a search that Ctrl-C has ended."""
+    from sebody.analysis import advise
+    from sebody.analysis.progress import Progress
+
+    bar = Progress()
+
+    def progress(fraction: float) -> None:
+        bar(fraction)
+        interrupts.look()
+
+    with interrupts.held():
+        try:
+            return advise(scene.model, scene.h if options.step is None else options.step,
+                          scene.t_end if options.t_end is None else options.t_end,
+                          options.quantity, options.tolerance, options.budget, progress)
+        finally:
+            bar.close()
+
+
+def _given(options: argparse.Namespace) -> list[str]:
+    """Lines of Python that build the scene."""
+    build, _, file = source(options.scene)
+    arguments = ", ".join(f"{name}={value!r}" for name, value in
+                          given_arguments(options.scene, build, options.changes).items())
+    if scene_files.is_file(options.scene):
+        return ["from runpy import run_path",
+                f"model = run_path({file!r})['build']({arguments}).model"]
+    return [f"from {build.__module__} import build", f"model = build({arguments}).model"]
+
+
+def _draw(advice: "Advice", name: str, path: Path) -> None:
+    """The runs of the search on a chart."""
+    from sebody.studies import chart
+
+    points = [chart.Point(KINDS[one.kind], one.change, one.error, one.seconds / advice.t_end, 0,
+                          one.step, 0.0) for one in advice.table]
+    choice = chart.Point("chosen", "chosen", advice.error, advice.seconds / advice.t_end, 0,
+                         advice.step, 0.0)
+    chart.draw(name, points, chart.front([*points, choice]), 0.0, path, choice, advice.tolerance)

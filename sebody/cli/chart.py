@@ -1,37 +1,54 @@
 """``sebody chart``: error against computing time."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
-from sebody.cli.inputs import check_distinct, check_picture
+from sebody.cli.inputs import build_scene, check_distinct, check_picture
 from sebody.files import check_target
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
-        "chart", help="error against computing time, over formulations, divisions and steps")
-    parser.add_argument("scene", metavar="SCENE", help="name of a scene that has a chart")
+        "chart", help="error against computing time of all that a scene can be built from")
+    parser.add_argument("scene", metavar="SCENE", help="name of a scene or a file, FILE.py")
     parser.add_argument("--output", type=Path, metavar="FILE.png", help="draw it")
     parser.add_argument("--csv", type=Path, metavar="FILE.csv", help="write the points")
+    parser.add_argument("--quantity", metavar="NAME",
+                        help="quantity that is compared, such as tip.position; by default the "
+                             "position of the scene's tip")
+    parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
+    parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
+                        dest="changes", help="change a parameter of the scene; may be repeated")
     return parser
 
 
 def run(options: argparse.Namespace) -> int:
     """Measure, print, write and draw."""
+    from sebody import inputs
     from sebody.studies import chart
 
     check_picture(options.output)
     if options.csv:
         check_target(options.csv, "table")
     check_distinct({"--output": options.output, "--csv": options.csv})
-    points, exact = chart.measure(options.scene)
-    print(chart.report(options.scene, points, exact))
+    scene = build_scene(options.scene, options.changes)
+    given = {"h": options.step, "t_end": options.t_end}
+    changed = {name: inputs.number(value, name, above=0) for name, value in given.items()
+               if value is not None}
+    if options.scene in chart.SCENES and not (options.quantity or changed or options.changes):
+        study = chart.measure(options.scene)
+    else:
+        study = chart.measure_any(replace(scene, **changed), options.quantity)
+    name = f"{scene.name}, {study.quantity}"
+    print(chart.report(name, study.points, study.error))
     if options.csv:
-        chart.write_csv(points, options.csv)
+        chart.write_csv(study.points, options.csv)
         print(f"table: {options.csv}")
     if options.output:
-        chart.draw(options.scene, points, chart.front(chart.own(points)), exact.error,
+        chart.draw(name, study.points, chart.front(chart.own(study.points)), study.error,
                    options.output)
         print(f"picture: {options.output}")
     return 0

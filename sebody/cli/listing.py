@@ -3,6 +3,7 @@
 import argparse
 import inspect
 import re
+import textwrap
 from collections.abc import Callable
 
 from sebody.cli.inputs import described, parameters, source
@@ -77,4 +78,5 @@ def _list_all() -> None:
           "  d: rigid part of the motion and rates of deformation\n"
           "  layout any: every other one; faster or damped: python -m sebody.derive LAYOUT")
     print("\njoints and loads")
-    print("  " + ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout))
+    names = ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout)
+    print(textwrap.fill(names, 100, initial_indent="  ", subsequent_indent="  "))

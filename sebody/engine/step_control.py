@@ -9,6 +9,7 @@ import numpy as np
 
 from sebody.engine.links import place_dependent
 from sebody.engine.state import (
+    AUX_STEP,
     CHOSEN,
     CORNER,
     CURRENT_STEP,
@@ -99,13 +100,19 @@ def choose_step(system, state):
 
 @compiled
 def go_on(system, state):
-    """Set the time after an accepted step."""
+    """Set the time after an accepted step.
+
+    Rates of accelerations jump at a corner: auxiliary accelerations, which are ahead by a part of
+    the step, start there from the accelerations themselves. A longer step would otherwise carry
+    the rate of a short pulse on.
+    """
     clock, control = state.clock, state.control
     clock[TIME] += clock[CURRENT_STEP]
     if control[CORNER] < system.corners.size:
         corner = system.corners[control[CORNER]]
         if abs(clock[TIME] - corner) < 1e-6 * clock[CURRENT_STEP]:
             clock[TIME] = corner
+            clock[AUX_STEP] = np.inf
 
 
 @compiled

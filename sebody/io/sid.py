@@ -101,12 +101,12 @@ def _lines(body: ReducedBody, names: tuple[str, ...], squares: NDArray, modes: N
 
 
 def _node(name: str, place: NDArray, phi: NDArray, psi: NDArray, nq: int) -> Iterator[str]:
-    turned = np.cross(psi.T[:, None, :], np.eye(3)[None]).transpose(2, 0, 1)   # psi x e_k
+    rotated = np.cross(psi.T[:, None, :], np.eye(3)[None]).transpose(2, 0, 1)   # psi x e_k
     yield from (f"      new node = {name}", "        rframe = body ref")
     yield from _taylor("origin", place[:, None], phi[:, :, None], nq, "        ")
     yield from _taylor("phi", phi, None, nq, "        ")
     yield from _taylor("psi", psi, None, nq, "        ")
-    yield from _taylor("AP", np.eye(3), turned, nq, "        ")
+    yield from _taylor("AP", np.eye(3), rotated, nq, "        ")
     yield "      end node"
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from copy import deepcopy
+from functools import lru_cache
 from itertools import pairwise
 
 from numpy.typing import ArrayLike
@@ -16,6 +17,8 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import node
 from sebody.model.parts import Beam, Node
 from sebody.reduction import ReducedBody, craig_bampton
+
+KEPT = 64       # bodies of beams that are kept for further models
 
 
 def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
@@ -102,9 +105,21 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
 
 def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements: int, modes: int,
           up: ArrayLike | None, damping: float) -> ReducedBody:
-    """One superelement of a beam."""
-    first, last = (node.point for node in ends)
-    fe_model = (planar_beam(first, last, section, elements) if model.planar else
-                straight_beam(first, last, section, elements, up))
+    """One superelement of a beam; models of the same beam, as variants are, share it."""
+    points = tuple(tuple(map(float, node.point)) for node in ends)
+    axis = None if up is None else tuple(map(float, up))
+    arguments = model.planar, points, section, elements, modes, axis, damping
+    try:
+        hash(section)
+    except TypeError:       # of arrays
+        return _reduced.__wrapped__(*arguments)
+    return _reduced(*arguments)
+
+
+@lru_cache(maxsize=KEPT)
+def _reduced(planar: bool, ends: tuple, section: AnySection, elements: int, modes: int,
+             up: tuple | None, damping: float) -> ReducedBody:
+    fe_model = (planar_beam(*ends, section, elements) if planar else
+                straight_beam(*ends, section, elements, up))
     body = craig_bampton(fe_model, [(0, "full"), (elements, "full")], modes)
     return body.damped(damping) if damping else body

@@ -96,7 +96,10 @@ class History:
         return found
 
     def jumps(self) -> list[tuple[float, NDArray, NDArray]]:
-        """Times after the start at which value or rates jump, with what they are on both sides."""
+        """Times after the start at which value or rates jump, with what they are on both sides.
+
+        What does not jump but for rounding is the same on both sides.
+        """
         found = []
         for k, t in enumerate(self.times):
             if t <= 0.0:
@@ -104,8 +107,9 @@ class History:
             after = self.of_piece(k, t)
             before = self.of_piece(k - 1, t) if k else np.array([after[0], 0.0, 0.0])
             size = np.maximum(np.abs(after), self._summands(k - 1, t) if k else 0.0)
-            if (np.abs(after - before) > SMALL * size).any():
-                found.append((t, before, after))
+            jump = np.abs(after - before) > SMALL * size
+            if jump.any():
+                found.append((t, np.where(jump, before, after), after))
         return found
 
     def with_corners(self) -> "History":
@@ -268,7 +272,7 @@ def _refuse_jumps(given: History) -> None:
     """Refuse a motion that no body can follow."""
     for t, before, after in given.jumps():
         for k, what in enumerate(("position", "rate")):
-            if abs(after[k] - before[k]) > SMALL * max(abs(after[k]), abs(before[k])):
+            if before[k] != after[k]:
                 raise InputError(
                     f"motion of a drive: its {what} jumps from {before[k]:.6g} to {after[k]:.6g} "
                     f"at t = {t:.6g}, which no body can follow: go there by rest_to_rest, "

@@ -20,6 +20,7 @@ from sebody.model.parts import (
     Superelement,
     Triplet,
 )
+from sebody.model.plane import Plane
 
 
 @dataclass(eq=False)
@@ -44,6 +45,7 @@ class Mechanism:
     own_names: set[str] = field(default_factory=set, init=False)    # names given by the user
     default_names: Counter[str] = field(default_factory=Counter, init=False)    # how often wanted
     gravity_field: NDArray = field(init=False)
+    plane: Plane | None = field(default=None, init=False)   # of a planar model made from a spatial
 
     def __post_init__(self) -> None:
         self.planar = inputs.flag(self.planar, "planar")

@@ -20,10 +20,15 @@ def hold(model: Mechanism, node: Node, kind: str) -> Triplet:
 def can_share(one: Triplet, other: Triplet) -> bool:
     """Whether two triplets can be one: at most one of them is fixed or hangs on another node.
 
-    Two that are fixed at one place and not moved are one already.
+    Two that are fixed at one place and not moved are one already. One that hangs on the other by
+    links closes a loop.
     """
+    if one is other:
+        return True
+    if any(t is one or t is other for a in (one, other) if a.root for t in a.parents()):
+        return False
     still = [t.fixed and not t.motions for t in (one, other)]
-    return one is other or all(still) or any(t.solved for t in (one, other))
+    return all(still) or any(t.solved for t in (one, other))
 
 
 def share(model: Mechanism, gone: Triplet, kept: Triplet, kind: str) -> None:
@@ -41,5 +46,5 @@ def share(model: Mechanism, gone: Triplet, kept: Triplet, kind: str) -> None:
         element.triplets = tuple(kept if t is gone else t for t in element.triplets)
     for one in model.triplets():
         if one.root is gone:
-            one.root = kept
+            one.root, one.arms = kept.root or kept, (*kept.arms, *one.arms)
         one.arms = tuple((kept if r is gone else r, arm) for r, arm in one.arms)

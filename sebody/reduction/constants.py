@@ -36,11 +36,11 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
         Loads on these DOFs, in the order of the body's.
     """
     shapes = boundary.ties.spread(component.basis)
-    invariants = None
+    invariants = extra = None
     if fe_model.mass_field is not None:
-        invariants, load_modes = _invariants(body, fe_model, boundary, component, interior)
-        shapes = np.hstack([shapes, load_modes])
-    notes = (*body.notes, _inertia_note(fe_model), _stiffening_note(invariants))
+        invariants, extra = _invariants(body, fe_model, boundary, component, interior)
+        shapes = np.hstack([shapes, extra.load_modes])
+    notes = (*body.notes, _inertia_note(fe_model), _stiffening_note(extra))
     recovery = _recovery(fe_model, shapes)
     if fe_model.stress:
         static = static_correction(fe_model, boundary, component, interior, body, forces)
@@ -72,17 +72,18 @@ def _inertia_note(fe_model: FEModel) -> str:
         "; nodal rotations carry none" if massless else "")
 
 
-def _stiffening_note(invariants: InertiaInvariants | None) -> str:
-    if invariants is None or not invariants.resultants + invariants.slaved:
+def _stiffening_note(extra: Stiffening | None) -> str:
+    if extra is None or not len(extra.Q) + len(extra.lam):
         return "no stiffening by stresses"
-    return (f"stiffening by stresses: {invariants.slaved} load modes, {invariants.resultants} "
-            "resultants of second order")
+    rest = "; the others change little" if len(extra.lam) < extra.motions else ""
+    return (f"stiffening by stresses: {len(extra.Q)} load modes, {len(extra.lam)} of "
+            f"{extra.motions} resultants of second order{rest}")
 
 
 def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
                 component: ComponentModes, interior: ClampedInterior
-                ) -> tuple[InertiaInvariants, NDArray]:
-    """Integrals about the mean of the boundary nodes, and the load modes (n_dofs, n_eta)."""
+                ) -> tuple[InertiaInvariants, Stiffening]:
+    """Integrals about the mean of the boundary nodes, and what is of second order."""
     origin = body.coordinates.mean(axis=0)
     integrals = MassIntegrals(fe_model.mass_field, origin)
     shapes = boundary.ties.spread(component.basis)
@@ -96,7 +97,7 @@ def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     _check_mass(found["Mbar"][:len(body.mass), :len(body.mass)], body.mass)
     return InertiaInvariants(
         mass=float(fe_model.mass_field.mass.sum()), **found, Q=extra.Q, lam=extra.lam, E=extra.E,
-        Ghat=extra.Ghat, origin=origin), extra.load_modes
+        Ghat=extra.Ghat, origin=origin), extra
 
 
 def _check_mass(found: NDArray, mass: NDArray) -> None:

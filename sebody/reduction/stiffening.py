@@ -30,12 +30,17 @@ from sebody.reduction.clamped import canonical_turn
 _NULL = 1e-8
 _ROUNDING = 1e-10  # of a geometric stiffness that is none, relative to the largest
 _REPEATED = 1e-6  # relative distance of squared periods that count as equal
+_LOWEST = 6     # frequencies that count, or as many as elastic boundary motions if they are more
 # What a prestress changes is measured in squared frequencies of the free body, when it, or the load
 # it answers, moves the body by a tenth of its size or turns it by 0.1 rad. So far a tension would
 # buckle the body. Where no other prestress changes a frequency to first order, as in straight
 # beams, whose bending and twist change one another alone, those that change less than _WEAK are
 # left out: all of them if the section is compact. In frames, plates and solids they act together.
 _WEAK, _FIRST_ORDER, _LARGEST_MOTION = 0.02, 1e-3, 0.1
+# Of more resultants than _MANY only those are kept that change the strain energy of some motion by
+# more than _SLIGHT of it, moving the body as far. The others are of bending and twist: what they
+# change is of the order of the rotation they make, tensions change a multiple of that.
+_MANY, _SLIGHT = 18, 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +51,8 @@ class Stiffening:
     ----------
     load_modes : (n_dofs, n_eta)
         Shapes of unit modal mass, zero on the boundary.
+    motions : int
+        Number of elastic boundary motions, each of which could have a resultant.
     """
 
     load_modes: NDArray
@@ -53,6 +60,7 @@ class Stiffening:
     lam: NDArray
     E: NDArray
     Ghat: NDArray
+    motions: int = 0
 
 
 class GeometricStiffness:
@@ -116,10 +124,19 @@ class GeometricStiffness:
         shapes = self._basis[:, held] @ self._boundary
         turn, G = self._prestresses(shapes, shapes)
         size = self._largest(shapes @ turn)     # motions d_e of largest rotation 1
+        kept = self._that_matter(G / size[:, None, None])
+        turn, G, size = turn[:, kept], G[kept], size[kept]
         E = np.zeros((len(self._stiffness), len(size)))
         E[held] = self._stiffness[held, held] @ self._boundary @ turn * size
         return Stiffening(answers @ (weights / np.sqrt(modal)), Q, 1 / size**2, E,
-                          G / size[:, None, None])
+                          G / size[:, None, None], shapes.shape[1])
+
+    def _that_matter(self, Ghat: NDArray) -> NDArray:
+        """Which resultants to keep, of geometric stiffnesses of motions of largest rotation 1."""
+        if len(Ghat) <= _MANY:
+            return np.ones(len(Ghat), dtype=bool)
+        relative = self._elastic.T @ Ghat @ self._elastic
+        return _LARGEST_MOTION * np.linalg.norm(relative, 2, axis=(1, 2)) > _SLIGHT
 
     def _prestresses(self, shapes: NDArray, motions: NDArray) -> tuple[NDArray, NDArray]:
         """Turn (k, m) of orthonormal shapes (n_dofs, k) to the m that matter, and their G.
@@ -145,16 +162,18 @@ class GeometricStiffness:
     def _changes(self, relative: NDArray) -> tuple[float, float]:
         """Largest change of a squared frequency by a stiffness over the elastic one.
 
-        To first order, and in all.
+        To first order, and in all. The change is that of the lowest frequencies: higher ones lie so
+        close that bending and twist of nearly one frequency change each other more, and the more
+        modes a body has the more often; but such short waves do not change what the body does.
         """
         inverse, shapes = np.linalg.eigh(self._flexible)
         matrix = shapes.T @ relative @ shapes
-        equal = np.abs(inverse[:, None] - inverse) <= _REPEATED * inverse[-1]
+        equal = np.abs(inverse[:, None] - inverse) <= _REPEATED * np.maximum.outer(inverse, inverse)
         first = np.abs(np.linalg.eigvalsh(np.where(equal, matrix, 0.0))).max()
-        counted, most = inverse > _ROUNDING * inverse[-1], 0.0
+        lowest, most = slice(-max(self._boundary.shape[1], _LOWEST), None), 0.0
         for changed in (np.eye(len(matrix)) + matrix, np.eye(len(matrix)) - matrix):
             if np.linalg.eigvalsh(changed)[0] <= _WEAK:     # it buckles, or nearly
                 return first, np.inf
             found = eigh(np.diag(inverse), changed, eigvals_only=True)
-            most = max(most, np.abs(inverse[counted] / found[counted] - 1).max())
+            most = max(most, np.abs(inverse[lowest] / found[lowest] - 1).max())
         return first, most

@@ -134,8 +134,8 @@ def rotation_vectors(matrices: NDArray) -> NDArray:
     last = np.maximum.accumulate(np.where(known, np.arange(len(angles)), -1))
     last[last < 0] = np.flatnonzero(known)[0]
     axes = (vectors / np.maximum(angles, SMALL_ANGLE)[:, None])[last]
-    turned = np.einsum("ni,ni->n", axes[1:], axes[:-1]) < 0
-    signs = np.concatenate([[1.0], np.cumprod(np.where(turned, -1.0, 1.0))])
+    rotated = np.einsum("ni,ni->n", axes[1:], axes[:-1]) < 0
+    signs = np.concatenate([[1.0], np.cumprod(np.where(rotated, -1.0, 1.0))])
     return np.unwrap(signs * angles)[:, None] * signs[:, None] * axes
 
 

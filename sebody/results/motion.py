@@ -74,8 +74,8 @@ def body_motion(recording: Recording, body: Superelement, rows: slice | NDArray)
                     - 2 * found.cross(spin, local_rate))
     n = len(x)
     y, y_rate, y_second = (
-        np.hstack([moved.reshape(n, -1), turned.reshape(n, -1), values[:, modes]])
-        for moved, turned, values in ((r - X, found.psi, q), (local_rate, found.psi_rate, v),
+        np.hstack([moved.reshape(n, -1), rotated.reshape(n, -1), values[:, modes]])
+        for moved, rotated, values in ((r - X, found.psi, q), (local_rate, found.psi_rate, v),
                                       (local_second, found.psi_second, a)))
     return BodyMotion(origin, R, _turned_back(R, velocity), spin, _turned_back(R, acceleration),
                       spin_rate, y, y_rate, y_second)
@@ -217,8 +217,8 @@ class _Spatial:
                  + _inverse_tangent(psi, angular_rate + np.cross(w, carried)))
         if FRAMES[body.frame].traits.needs_rotations:
             self.spin_rate = _solved(matrix, alpha @ known)
-        turned = np.einsum("njkl,nl->njk", back, self.spin_rate)
-        self.psi_second = known - _inverse_tangent(psi, turned)
+        rotated = np.einsum("njkl,nl->njk", back, self.spin_rate)
+        self.psi_second = known - _inverse_tangent(psi, rotated)
 
 
 def _solved(matrices: NDArray, vectors: NDArray) -> NDArray:
@@ -241,17 +241,17 @@ def _weighted_inverse(alpha: NDArray, psi: NDArray) -> NDArray:
 def _inverse_tangent(psi: NDArray, w: NDArray) -> NDArray:
     """``T^-1(psi) w = w + psi x w / 2 + e psi x (psi x w)``."""
     e, _ = _coefficients(psi)
-    turned = np.cross(psi, w)
-    return w + turned / 2 + e * np.cross(psi, turned)
+    rotated = np.cross(psi, w)
+    return w + rotated / 2 + e * np.cross(psi, rotated)
 
 
 def _inverse_tangent_rate(psi: NDArray, rate: NDArray, w: NDArray) -> NDArray:
     """The rate of ``T^-1(psi)`` as psi changes at `rate`, times w."""
     e, slope = _coefficients(psi)
-    turned = np.cross(psi, w)
+    rotated = np.cross(psi, w)
     along = 2 * np.einsum("njk,njk->nj", psi, rate)[..., None]
-    return (np.cross(rate, w) / 2 + slope * along * np.cross(psi, turned)
-            + e * (np.cross(rate, turned) + np.cross(psi, np.cross(rate, w))))
+    return (np.cross(rate, w) / 2 + slope * along * np.cross(psi, rotated)
+            + e * (np.cross(rate, rotated) + np.cross(psi, np.cross(rate, w))))
 
 
 def _coefficients(psi: NDArray) -> tuple[NDArray, NDArray]:

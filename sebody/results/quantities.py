@@ -152,7 +152,7 @@ def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
                          "reaction; the force of a joint is <joint>.force")
     values = recording.forces.sums[:, at]
     if id(triplet) not in recording.numbering.rotations:
-        return values
+        return values[:, 0] if triplet.rotational else values       # in a plane
     return np.einsum("nij,nj->ni", _rotation(recording, triplet, at), values)
 
 

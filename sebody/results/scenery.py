@@ -122,9 +122,9 @@ def _node(result: Result, node: Node, states: NDArray) -> DrawnNode | None:
     known = result.numbering.triplets
     if id(node.position) not in known:
         return None
-    turned = node.rotation is not None and id(node.rotation) in known
+    rotated = node.rotation is not None and id(node.rotation) in known
     return DrawnNode(node.name, _spatial(result[f"{node.name}.position"][states]),
-                     quaternions(result[f"{node.name}.rotation"][states]) if turned else None)
+                     quaternions(result[f"{node.name}.rotation"][states]) if rotated else None)
 
 
 def quaternions(rotations: NDArray) -> NDArray:

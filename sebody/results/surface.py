@@ -113,7 +113,7 @@ def _beams(points: NDArray, moves: NDArray, turns: NDArray, pairs: NDArray,
     pieces = max(1, -(-PIECES // len(pairs)))
     s = np.linspace(0.0, 1.0, pieces + 1)
     along = _between(points[None], np.zeros((1, *points.shape)), points, pairs, s)[0][0]
-    moved, turned = _between(moves, turns, points, pairs, s)
+    moved, rotated = _between(moves, turns, points, pairs, s)
     rings, corners = len(pairs) * (pieces + 1), outlines.shape[1]
     offsets = np.repeat(outlines, pieces + 1, axis=0).reshape(-1, 3)
     ring = np.arange(rings).reshape(len(pairs), -1)
@@ -124,7 +124,7 @@ def _beams(points: NDArray, moves: NDArray, turns: NDArray, pairs: NDArray,
     ends = [corners * ring[k, at] + _cap(outlines[k])[:, ::way] for k, pair in enumerate(pairs)
             for at, node, way in ((0, pair[0], -1), (-1, pair[1], 1)) if degree[node] != 2]
     triangles = np.concatenate([_triangles(sides.reshape(-1, 4)), *ends])
-    return Surface(along, moved, turned, np.repeat(np.arange(rings), corners), offsets,
+    return Surface(along, moved, rotated, np.repeat(np.arange(rings), corners), offsets,
                    triangles, np.zeros((0, 2), dtype=int), np.repeat(pairs, pieces + 1, axis=0),
                    np.tile(s, len(pairs)))
 
@@ -157,8 +157,8 @@ def _between(moves: NDArray, turns: NDArray, points: NDArray, pairs: NDArray, s:
     rise = (6 * s * (1 - s) * (u1 - u0) + (1 - s) * (1 - 3 * s) * slopes[0]
             + s * (3 * s - 2) * slopes[1]) / np.maximum(length, 1e-300)
     moved = cubic + _along(ramp - cubic, e)
-    turned = _along(t0 + s * (t1 - t0), e) + np.cross(np.broadcast_to(e, rise.shape), rise)
-    return moved.reshape(len(moves), -1, 3), turned.reshape(len(moves), -1, 3)
+    rotated = _along(t0 + s * (t1 - t0), e) + np.cross(np.broadcast_to(e, rise.shape), rise)
+    return moved.reshape(len(moves), -1, 3), rotated.reshape(len(moves), -1, 3)
 
 
 def _along(vectors: NDArray, e: NDArray) -> NDArray:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sebody import LimitWarning, Model, Simulation, generalized_alpha, simulate
-from sebody.analysis import equilibrium, linearize
+from sebody.analysis import equilibrium, linearize, quality
 from sebody.cli.entry import main
 from sebody.fem import Section, planar_beam
 from sebody.reduction import craig_bampton
@@ -45,6 +45,14 @@ def test_vibrations_that_the_step_does_not_resolve(unit, tilt):
     assert message.startswith("vibrations of 70.7")         # 50 sqrt(2), nearly along the spring
     assert "take 4 steps a period (limit 6): take a step of 0.0049" in message
     assert said(lambda: oscillator(8.0, unit, tilt)) == []
+
+
+def test_a_mass_that_is_not_positive_spoils_no_result(monkeypatch):
+    """Bent far out of the linear range bodies may have one; the run is over and is kept."""
+    matrix = quality.matrix
+    monkeypatch.setattr(quality, "matrix", lambda *state, mass, **weights: matrix(
+        *state, mass=-mass, **weights))
+    assert said(lambda: oscillator(4.0)) == []
 
 
 def test_bodies_that_are_carried_along_do_not_vibrate():

@@ -119,6 +119,39 @@ def test_a_mechanism_has_no_equilibrium():
         equilibrium(model)
 
 
+@pytest.mark.parametrize("point", [(0.0, 0.0, 0.0), (0.3, -2.0, 1.0)])
+def test_a_lone_mass_rests_where_nothing_pulls_and_nowhere_else(point):
+    """Also at the origin, where the model has no extent that corrections could be compared with."""
+    for pull in (0.0, 1.0):
+        model = Model()
+        model.point_mass("mass", model.node("here", point, "translation"), 2.0)
+        model.gravity((0.0, 0.0, -pull))
+        if pull:
+            with pytest.raises(SimulationError, match="no equilibrium was found above 0 of the "
+                                                      "load: .* a mechanism is free to move; use "
+                                                      "more steps or supports"):
+                equilibrium(model)
+        else:
+            assert equilibrium(model)["here.position"][-1] == pytest.approx(point)
+
+
+def test_a_body_that_is_held_at_both_ends_sags():
+    """Unknown are amplitudes of modes alone: rho A g L^4 / (384 EI), and the modes left out."""
+    model = Model(planar=True)
+    ends = [model.node(name, x) for name, x in (("a", (3.0, 1.0)), ("b", (3.0, 101.0)))]
+    model.beam("beam", ends, BERNOULLI, 16, 1, 8)
+    for end in ends:
+        model.fix(end)
+    model.gravity((1e-3, 0.0))
+    result = equilibrium(model, 2)
+    body = model.bodies["beam"].body
+    modes = result["beam.modes"][-1]
+    deepest = np.abs(body.displacements(np.concatenate([np.zeros(6), modes]))[:, :2]).max()
+    weight = 1e-3 * SECTION.density * SECTION.area
+    # modes left out have 1e-4 of the sag, elements of a consistent mass none
+    assert deepest == pytest.approx(weight * LENGTH**4 / (384 * EI), rel=5e-4)
+
+
 def test_wrong_steps_and_moving_states():
     with pytest.raises(InputError, match="steps is 0: give a whole number >= 1"):
         equilibrium(cantilever(2), 0)

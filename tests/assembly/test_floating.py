@@ -22,6 +22,7 @@ from sebody.kernels.layout import (
     superelement_counts,
 )
 from sebody.kernels.loader import load
+from sebody.kernels.packed import unpack
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.studies.check import states
 from sebody.studies.check.definitions import local_coordinates
@@ -126,6 +127,28 @@ def test_a_rigidly_moving_body_is_a_rigid_body(frame):
     assert energy[KINETIC] == pytest.approx((push @ p + spin @ H) / 2, rel=1e-9)
     assert np.abs(energy[2:8] - np.r_[p, H]).max() < 1e-9 * np.abs(H).max()
     assert abs(energy[STRAIN]) < 1e-9 * energy[KINETIC]
+
+
+@pytest.mark.parametrize("modes", [4, 52])
+def test_constants_of_a_beam_have_the_same_zeros_in_any_place_and_unit(modes):
+    """High modes are less exact: what they leave of zeros is no entry."""
+    found, turned = [], Rotation.from_rotvec([0.7, -0.4, 0.9]).as_matrix()
+    for unit, turn in ((1.0, np.eye(3)), (1.0, turned), (25.4, turned.T)):
+        section = Section(9.0 * unit**2, 6.75 * unit**4, 6.75 * unit**4, 11.387 * unit**4,
+                          2.1e6 / unit**2, 0.3, 7.8e-3 / unit**3)
+        model, ends = Model(), unit * np.array([[1.0, 2.0, 3.0], [146.0, 2.0, 3.0]]) @ turn.T
+        nodes = [model.node(f"n{k}", x) for k, x in enumerate(ends)]
+        model.beam("beam", nodes, section, 20, 1, modes)
+        body = model.bodies["beam"]
+        values, i, free = superelement_constants(body), body.invariants, 6 + modes
+        N = free + i.slaved
+        shapes = {"of_place": (9, N, N), "of_rate": (6, N, N), "Mz": (1, N, N),
+                  "followers": (2, free, free), "stretched": (2, free, free)}
+        matrices = [unpack(values[name], shape) for name, shape in shapes.items()]
+        matrices[-1] = matrices[-1][:1]      # that of the tension, not the elastic one
+        found.append([np.count_nonzero(one) for one in matrices])
+    assert found[1] == found[0] and found[2] == found[0]
+    assert sum(found[0]) < 0.12 * sum(np.prod(shape) for shape in shapes.values())
 
 
 @pytest.mark.parametrize("frame", ["mean", "mean_small"])

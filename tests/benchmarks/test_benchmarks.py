@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from sebody import Model
+from sebody.fem import planar_beam, rectangle
+from sebody.reduction import craig_bampton
 from sebody.scenes import planar_hinged_beam
 
 FOLDER = Path(__file__).parent
@@ -140,3 +143,44 @@ def test_sweeps_are_timed_beside_their_runs(monkeypatch, capsys):
     bench.main(["--json"], count=2)
     row = json.loads(capsys.readouterr().out)["structures, ms"]
     assert row["run"] > row["of it the model"] > 0.0
+
+
+def pendulum():
+    """A soft rod from reduced matrices, falling."""
+    model = Model(planar=True)
+    model.gravity((2.0, -9.0))
+    tip, base = model.node("tip", (0.9, -0.5)), model.node("base", (0.1, 0.2))
+    fe_model = planar_beam(base.point, tip.point, rectangle(0.01, 0.02, 7e10, 0.3, 2700.0), 6)
+    model.superelement("rod", craig_bampton(fe_model, [(0, "full"), (6, "full")], 1), [base, tip])
+    model.fix(base, "position")
+    return model
+
+
+def test_advice_is_compared_with_a_full_search(tmp_path, capsys):
+    bench = imported("bench_advise")
+    scenes = [bench.AdviceScene("rod", "", pendulum, 0.01, 0.4, ("tip.position",), True)]
+    keep = tmp_path / "numbers.json"
+    bench.main(["--json", "--keep", str(keep)], scenes)
+    found = json.loads(capsys.readouterr().out)
+    assert found["rod"]["forms"] == [7] and found == json.loads(keep.read_text())
+    for tolerance, row in found["rod"]["tolerances"].items():
+        assert row["measured"] <= float(tolerance) and row["least seconds"] <= row["seconds"]
+        assert row["predicted"] > 0.0 and row["search"] > 0.0 and row["choices run"] > 0
+    bench.main(["--keep", str(keep)], scenes)           # of what was kept
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[2].startswith("| rod | 0.01 | ")
+    assert "* within the tolerance: 2" in lines
+
+
+def test_scenes_for_advice_are_fixed():
+    """Twelve, six of them held back; their quantities are of parts they have."""
+    scenes = imported("advice_scenes").SCENES
+    assert len({scene.name for scene in scenes}) == 12
+    assert sum(scene.tuning for scene in scenes) == 6
+    for scene in scenes:
+        model = scene.build()
+        assert model.bodies
+        assert round(scene.t_end / scene.h) * scene.h == pytest.approx(scene.t_end)
+        parts = {*model.nodes, *(one.name for one in model.elements())}
+        assert {quantity.rpartition(".")[0] for quantity in scene.quantities
+                if quantity != "frequency 1"} <= parts

@@ -124,6 +124,16 @@ def test_a_plain_function_drives():
     assert history((plain, plain, plain)).at(2.0)[0] == pytest.approx(plain(2.0))
 
 
+def test_profiles_of_any_numbers_drive():
+    """Rates that meet but for rounding are no jumps, also where they are near zero."""
+    rng = np.random.default_rng(4)
+    for distance, speed, acceleration, start in rng.uniform(0.1, 20.0, (200, 4)):
+        drive = motion(trapezoidal(-distance, speed, acceleration, start=start))
+        assert drive.at(1e4) == pytest.approx([-distance, 0.0, 0.0])
+    drive = motion(trapezoidal(0.9, 2.0, 12.0))     # 0.9 / 2 + 2 / 12 rounds to a rate of -9e-16
+    assert drive.at(0.3) == pytest.approx([0.9 - 2.0 * (0.45 + 1.0 / 12.0 - 0.3), 2.0, 0.0])
+
+
 @pytest.mark.parametrize("make, message", [
     (lambda: motion(lambda time: np.interp(time, [0, 1], [0, 1])), "cannot be differentiated"),
     (lambda: motion(lambda time: abs(time - 1.0)), "cannot be differentiated .*no derivative in"),

@@ -7,6 +7,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from sebody import LimitWarning, Simulation, generalized_alpha, hht
 from sebody.analysis.limits import spin_limit
@@ -20,11 +21,32 @@ from sebody.studies.catalogue import kernel_files, scenes
 
 
 @pytest.mark.parametrize("name", atlas.CASES)
-def test_numbers_known_beforehand_are_measured(name):
+def test_numbers_known_beforehand_are_measured(name, tmp_path, monkeypatch):
     finding = atlas.explore(name)
+    check_picture(finding, tmp_path / "case.png", monkeypatch)
     assert finding.rows and finding.curves and finding.theory and finding.program
     wrong = [row for row in finding.rows if not row.passed]
     assert not wrong, wrong
+
+
+def check_picture(finding, path, monkeypatch):
+    """One line explains it, no text leaves it, and it shows more than a step."""
+    figures, save = [], Figure.savefig
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *args, **options: (
+        figures.append(figure), save(figure, *args, **options)))
+    atlas.draw([finding], path)
+    figure, = figures
+    axes, = figure.axes
+    figure.draw_without_rendering()         # at its own resolution, not that of the file
+    assert finding.line and "\n" not in finding.line
+    texts = [*axes.texts, axes.title, axes._left_title, axes.xaxis.label, axes.yaxis.label,
+             axes.xaxis, axes.yaxis, *([axes.legend_] if axes.legend_ else [])]
+    assert finding.line in [text.get_text() for text in axes.texts]
+    for one in texts:
+        box = one.get_tightbbox()
+        assert box is None or (box.x0 >= 0.0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0.0
+                               and box.y1 <= figure.bbox.y1), one
+    assert max(len(np.unique(y)) for _, y in finding.curves.values()) > 2
 
 
 def test_kernels_that_are_compiled_at_once_exist():

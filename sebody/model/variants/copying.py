@@ -11,7 +11,7 @@ from sebody.kernels.names import body_load_kind
 from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Superelement
+from sebody.model.parts import Element, Node, Superelement
 from sebody.reduction import ReducedBody
 
 
@@ -35,6 +35,19 @@ def copied(model: Mechanism) -> Mechanism:
                  if one is not None]
     constant += [motion.history for triplet in model.triplets() for motion in triplet.motions]
     return deepcopy(model, {id(one): one for one in constant})
+
+
+def unknowns(model: Mechanism) -> int:
+    """How many unknowns a model has, multipliers included."""
+    return (sum(t.start.size for t in model.triplets() if t.solved)
+            + sum(body.body.modes for body in model.bodies.values())
+            + sum(joint.multipliers for joint in model.joints))
+
+
+def fewer(model: Mechanism, made: Mechanism) -> str:
+    """How many unknowns a changed model saves, in words."""
+    saved = unknowns(model) - unknowns(made)
+    return f"{saved} unknown{'s' * (saved != 1)} fewer"
 
 
 def placed(model: Mechanism, name: str) -> Superelement:
@@ -64,17 +77,22 @@ def load_name(load: Element) -> str:
 
 
 def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
-             inertia: str | None, stiffening: bool | None) -> Superelement:
+             inertia: str | None, stiffening: bool | None,
+             nodes: tuple[Node, ...] | None = None) -> Superelement:
     """Put a reduced body, or other options, in the place of a superelement of the model.
 
-    Loads on the body follow. The body may have fewer modes than the one before.
+    Loads on the body follow. The body may have fewer modes than the one before, and fewer nodes,
+    which are then given.
     """
+    nodes = old.nodes if nodes is None else nodes
+    carrier = old.nodes[old.body.position_nodes[int(np.argmax(old.alpha))]]
+    on_node = FRAMES[old.frame].on_one_node and any(node is carrier for node in nodes)
     order = list(model.bodies)
     del model.bodies[old.name]
     model.own_names.discard(old.name)
-    made = superelement(model, old.name, body, old.nodes, frame=frame, inertia=inertia,
-                        frame_node=old.body.position_nodes[int(np.argmax(old.alpha))]
-                        if FRAMES[old.frame].on_one_node else 0, stiffening=stiffening)
+    made = superelement(model, old.name, body, nodes, frame=frame, inertia=inertia,
+                        frame_node=[id(n) for n in nodes].index(id(carrier)) if on_node else 0,
+                        stiffening=stiffening)
     made.mode_rates = old.mode_rates[:body.modes].copy()
     model.bodies = {name: model.bodies[name] for name in order}
     kind = body_load_kind(FRAMES[frame].kernel, model.planar)

@@ -10,7 +10,8 @@ from sebody.model.parts import Beam, Node, Triplet
 from sebody.model.variants.copying import Variant, copied, loads_on
 
 
-def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None) -> Variant:
+def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None,
+           **options) -> Variant:
     """The model with a beam of another number of superelements.
 
     Parameters
@@ -21,6 +22,8 @@ def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None
         Superelements from end to end.
     elements : int, optional
         Finite elements from end to end; as before by default.
+    **options
+        Arguments of `Model.beam` that are to be others than before, such as ``modes``.
 
     Returns
     -------
@@ -47,7 +50,7 @@ def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None
                         if not any(one.node is node for node in between)]
     elements = old.elements if elements is None else elements
     found = beam(made, name, (old.nodes[0], old.nodes[-1]), old.section, elements, bodies,
-                 **old.options)
+                 **{**old.options, **options})
     new = made.beams[-1]
     _start_like(found, old.nodes)
     ends = max(nodes.index(old.nodes[k].name) for k in (0, -1))
@@ -55,7 +58,10 @@ def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None
                            nodes.index(between[0].name) if between else ends + 1)
     made.bodies = _in_place(made.bodies, placed, [p.name for p in new.parts],
                             placed.index(old.parts[0].name))
-    return Variant(made, f"{name} has {_counted(new)} instead of {_counted(old)}")
+    others = [f"{key}={value!r}" for key, value in options.items()
+              if value != old.options.get(key)]
+    ending = f", with {', '.join(others)}" if others else ""
+    return Variant(made, f"{name} has {_counted(new)} instead of {_counted(old)}{ending}")
 
 
 def _counted(one: Beam) -> str:

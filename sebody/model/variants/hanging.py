@@ -1,9 +1,12 @@
 """Nodes that are there already, put at the ends of rigid links."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.model.joints import spherical
 from sebody.model.mechanism import Mechanism
+from sebody.model.nodes import attach
 from sebody.model.parts import Connection, Node, Triplet
 from sebody.model.sharing import can_share, share
 
@@ -13,20 +16,43 @@ def is_held(position: Triplet) -> bool:
     return position.fixed if position.root is None else position.root.fixed
 
 
-def hang(model: Mechanism, node: Node, carrier: Node, keep: str) -> None:
+def start_rate(triplet: Triplet) -> NDArray:
+    """Initial velocity: of what is prescribed that of its motions, at the end of links by these."""
+    if triplet.root is not None:
+        return start_rate(triplet.root) + sum(
+            _velocity(start_rate(rotation), arm) for rotation, arm in triplet.arms)
+    return triplet.rate + sum(motion.direction * motion.history.at(0.0)[1]
+                              for motion in triplet.motions)
+
+
+def hang(model: Mechanism, node: Node, carrier: Node, keep: str, body: str) -> bool:
     """Put a node at the end of a rigid link, with all that it shares triplets with.
+
+    Where links lead from one to the other already, or both to what is held, the link gets an end of
+    its own, which equations keep at the node.
 
     Parameters
     ----------
     keep : {'full', 'translation', 'rotation'}
         Which of its triplets.
+    body : str
+        Whose link it is.
+
+    Returns
+    -------
+    bool
+        Whether it takes equations.
 
     Raises
     ------
     InputError
-        Triplets that are both held, or nodes that are linked already.
+        Rotations that are both held, or nodes of one rigid body already.
     """
-    if keep != "rotation" and node.position is not carrier.position:
+    closed = (keep != "rotation" and node.position is not carrier.position
+              and _is_closed(node, carrier))
+    if closed:
+        _close(model, node, carrier, body)
+    elif keep != "rotation" and node.position is not carrier.position:
         _link(model, node, carrier)
     if keep != "translation" and node.rotation is not carrier.rotation:
         if not can_share(node.rotation, carrier.rotation):
@@ -35,6 +61,25 @@ def hang(model: Mechanism, node: Node, carrier: Node, keep: str) -> None:
                              "by a joint with explicit=True")
         share(model, node.rotation, carrier.rotation, "rotation")
         model.connections.append(Connection("rotation", node, carrier))
+    return closed
+
+
+def _is_closed(node: Node, carrier: Node) -> bool:
+    """Whether a further link between two nodes closes a loop of links, the ground included."""
+    one, other = (t if t.root is None else t.root for t in (node.position, carrier.position))
+    if one is other and node.rotation is carrier.rotation:
+        raise InputError(f"{node.name} and {carrier.name} are joined by rigid links already: they "
+                         "cannot be nodes of a further rigid body; open the loop by a joint with "
+                         "explicit=True")
+    return one is other or (one.fixed and other.fixed)
+
+
+def _close(model: Mechanism, node: Node, carrier: Node, body: str) -> None:
+    """A link with an end of its own, which equations keep at the node."""
+    name = f"{node.name} of {body}"
+    while name in model.nodes:
+        name += "'"
+    spherical(model, attach(model, name, node.point, carrier), node, explicit=True)
 
 
 def _link(model: Mechanism, node: Node, carrier: Node) -> None:
@@ -42,10 +87,6 @@ def _link(model: Mechanism, node: Node, carrier: Node) -> None:
         _begin_at(model, node.position)
     position, base = node.position, carrier.position
     root = base if base.root is None else base.root
-    if root is position or position.root is not None:
-        raise InputError(f"{node.name} and {carrier.name} are joined by rigid links already: they "
-                         "cannot be nodes of a further rigid body; open the loop by a joint with "
-                         "explicit=True")
     arms = (*base.arms, (carrier.rotation, node.point - carrier.point))
     _move_root(model, position, root, arms)
     position.rate, position.given = np.zeros_like(position.rate), False
@@ -58,14 +99,13 @@ def _begin_at(model: Mechanism, position: Triplet) -> None:
     if root.given and not all(rotation.given or rotation.fixed for rotation, _ in arms):
         raise InputError(f"{root.name} has an initial velocity and is on rigid links to a body "
                          "that is made rigid: give the angular velocities there, too, or none")
-    position.rate, position.given = root.rate + sum(
-        _velocity(rotation.rate, arm) for rotation, arm in arms), root.given
+    position.rate, position.given = start_rate(position), root.given
     position.root, position.arms = None, ()
     _move_root(model, root, position, tuple((rotation, -arm) for rotation, arm in reversed(arms)))
     root.rate, root.given = np.zeros_like(root.rate), False
 
 
-def _velocity(rate: np.ndarray, arm: np.ndarray) -> np.ndarray:
+def _velocity(rate: NDArray, arm: NDArray) -> NDArray:
     """Velocity of the end of an arm that turns."""
     return rate[0] * np.array([-arm[1], arm[0]]) if len(arm) == 2 else np.cross(rate, arm)
 

@@ -8,7 +8,7 @@ from sebody.model import bodies, loads
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.variants.copying import Variant, copied, load_name, loads_on, placed
-from sebody.model.variants.hanging import hang, is_held
+from sebody.model.variants.hanging import hang, is_held, start_rate
 from sebody.reduction import ReducedBody
 from sebody.reduction.summary import place
 
@@ -20,8 +20,9 @@ def rigid(model: Mechanism, name: str) -> Variant:
 
     Mass, centre of mass and inertia are those of the reduced mass. One boundary node carries the
     body, the others hang on it by rigid links; it is the one whose position is fixed, prescribed or
-    linked to such a one, if there is one. Forces on internal modes are left out, they do no
-    work; loads on the body become their resultants on the carrying node.
+    linked to such a one, if there is one. A link that closes a loop of rigid links, as the last one
+    of a four-bar, has an end of its own that equations keep at the node. Forces on internal modes
+    are left out, they do no work; loads on the body become their resultants on the carrying node.
 
     Parameters
     ----------
@@ -35,8 +36,8 @@ def rigid(model: Mechanism, name: str) -> Variant:
     Raises
     ------
     InputError
-        An unknown superelement, more than one boundary node that is held, none with position and
-        rotation, or initial velocities that are not those of a rigid body.
+        An unknown superelement, positions of two boundary nodes that are both fixed, no node with
+        position and rotation, or initial velocities that are not those of a rigid body.
     """
     placed(model, name)
     made = copied(model)
@@ -45,16 +46,16 @@ def rigid(model: Mechanism, name: str) -> Variant:
     carrier = _carrier(body)
     _check_rates(body, carrier)
     followers = [node for node in body.nodes if node is not carrier]
-    for node, keep in zip(body.nodes, body.body.keeps, strict=True):
-        if node is not carrier:
-            hang(made, node, carrier, keep)
+    closed = [node.name for node, keep in zip(body.nodes, body.body.keeps, strict=True)
+              if node is not carrier and hang(made, node, carrier, keep, name)]
     mass, inertia, centre = rigid_constants(body.body)
     offset = carrier.point - body.body.coordinates[body.nodes.index(carrier)]
     bodies.rigid_body(made, name, carrier, mass, inertia, centre + offset)
     left = _replace_loads(made, body, carrier)
     links = (f", with {', '.join(node.name for node in followers)} on rigid links"
              if followers else "")
-    ending = f"; {', '.join(left)} left out" if left else ""
+    ending = f", held at {', '.join(closed)} by equations" if closed else ""
+    ending += f"; {', '.join(left)} left out" if left else ""
     where = place(_shown(centre + offset, made.size()))
     return Variant(made, f"{name} is rigid: mass {mass:.4g}, centre of mass {where}, on node "
                          f"{carrier.name}{links}{ending}")
@@ -76,14 +77,15 @@ def _carrier(body: Superelement) -> Node:
     """The node that the others are to hang on."""
     what = f"superelement {body.name!r} cannot be made rigid"
     own = list(zip(body.nodes, body.body.keeps, strict=True))
-    still = list({id(node.position): node for node, keep in own
-                  if keep != "rotation" and is_held(node.position)}.values())
+    held = {id(node.position): node for node, keep in own
+            if keep != "rotation" and is_held(node.position)}.values()
+    still = [node for node in held if node.position.fixed]
     if len(still) > 1:
         raise InputError(f"{what}: the positions of {still[0].name} and {still[1].name} are both "
-                         "fixed, prescribed or linked to what is; hold one of them by a joint with "
-                         "explicit=True")
+                         "fixed or prescribed; hold one of them by a joint with explicit=True")
+    still = still or list(held)
     full = [node for node, keep in own
-            if keep == "full" and (not still or node.position is still[0].position)]
+            if keep == "full" and (not still or any(node.position is n.position for n in still))]
     if not full:
         raise InputError(f"{what}: it does not keep both position and rotation at "
                          + (f"{still[0].name}, which is held" if still else "any node")
@@ -93,7 +95,7 @@ def _carrier(body: Superelement) -> Node:
 
 def _check_rates(body: Superelement, carrier: Node) -> None:
     """Refuse initial velocities that the carrier and a rigid motion do not give."""
-    linear, angular = carrier.position.rate, carrier.rotation.rate
+    linear, angular = start_rate(carrier.position), start_rate(carrier.rotation)
     for node, keep in zip(body.nodes, body.body.keeps, strict=True):
         arm = node.point - carrier.point
         spin = (angular[0] * np.array([-arm[1], arm[0]]) if body.body.planar else

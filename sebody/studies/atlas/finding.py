@@ -33,6 +33,7 @@ class Finding:
     """A case: each row is one number known beforehand."""
 
     title: str
+    line: str               # what its picture shows, in a line
     theory: str             # what it says
     program: str            # what sebody does there
     xlabel: str
@@ -40,3 +41,4 @@ class Finding:
     rows: list[Row] = field(default_factory=list)
     curves: dict[str, tuple[ArrayLike, ArrayLike]] = field(default_factory=dict)
     logarithmic: str = ""   # axes, "x", "y" or "xy"
+    dashed: tuple[str, ...] = ()    # curves of what is not computed

@@ -25,33 +25,49 @@ def _beam(model: Model, length: float = 10.0, first: int = 0, last: int = 4,
     model.superelement("beam", body, ends, frame=frame)
 
 
-def _status(model: Model, angle: float) -> int:
-    """Status of the kernel when the second node is rotated."""
+def _rotated(model: Model, angle: float) -> tuple[Simulation, int]:
+    """A run with the second node rotated [deg], and the status of the kernel."""
     run = Simulation(model, 0.01)
     k = run.numbering.rotations[id(model.nodes["b"].rotation)]
     run.state.R[9 * k:9 * k + 9] = exp_map(0.0, 0.0, np.radians(angle))
-    return assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
+    return run, assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
+
+
+def _refused(model: Model, angle: float) -> bool:
+    return _rotated(model, angle)[1] != 0
+
+
+def _turn(frame: str, angle: float) -> float:
+    """Rotation of the frame [deg] where the second node is rotated; NaN if this is refused."""
+    model = Model()
+    _beam(model, frame=frame)
+    run, status = _rotated(model, angle)
+    axes = run.state.frames[:9].reshape(3, 3)
+    return float(np.degrees(np.arctan2(axes[1, 0], axes[0, 0]))) if status == 0 else np.nan
 
 
 def half_turn() -> Finding:
-    """How far one end of a body can be rotated against the other."""
+    """How far one end of a body can be rotated against the other, and what its frame does."""
     finding = Finding(
         "node rotations towards pi",
-        "The local rotation is a logarithm, which jumps at half a turn. Its derivative grows "
-        f"before: it is refused from {LIMIT:.1f} degrees on, between the ends of a body of two "
-        "nodes, whatever its frame.",
+        "the frame follows half the rotation; past 180 degrees it would flip",
+        "The local rotation is a logarithm, which jumps at half a turn, and with it a frame in "
+        f"the middle. It is refused before, from {LIMIT:.1f} degrees on, between the ends of a "
+        "body of two nodes, whatever its frame.",
         "Stops with a message that names the reason; warns long before, at 0.3 rad.",
-        "relative rotation [deg]", "refused")
+        "rotation of one node against the other [deg]", "rotation of the frame [deg]",
+        dashed=("middle, by the logarithm",))
     angles = np.arange(10.0, 180.0, 2.5)
-    for frame in ("converged_mean", "mean", "node"):
-        refused = []
-        for angle in angles:
-            model = Model()
-            _beam(model, frame=frame)
-            refused.append(float(_status(model, angle) != 0))
-        first = angles[int(np.argmax(refused))]
-        finding.rows.append(Row(f"{frame}: first refused [deg]", LIMIT, first, 2.5 / LIMIT))
-        finding.curves[frame] = angles, refused
+    for frame, share in (("converged_mean", 0.5), ("mean", 0.5), ("node", 0.0)):
+        turns = np.array([_turn(frame, angle) for angle in angles])
+        last = int(np.flatnonzero(np.isfinite(turns))[-1])
+        finding.rows += [
+            Row(f"{frame}: first refused [deg]", LIMIT, angles[last + 1], 2.5 / LIMIT),
+            Row(f"{frame}: turn of the frame before [deg]", share * angles[last], turns[last],
+                1e-9)]
+        finding.curves[frame] = angles[:last + 1], turns[:last + 1]
+    finding.curves["middle, by the logarithm"] = ((LIMIT, 180.0, 180.0, 270.0),
+                                                 (LIMIT / 2, 90.0, -90.0, -45.0))
     return finding
 
 
@@ -59,6 +75,7 @@ def collinear() -> Finding:
     """Frame by positions whose nodes nearly lie on a line."""
     finding = Finding(
         "nearly collinear nodes",
+        "the nearer the nodes to a line, the further a deflection turns the frame",
         "A frame of best fit turns about the line of its nodes by the deflection of the one beside "
         "it, divided by its distance: with the distance going to zero any deflection becomes a "
         "rotation.",
@@ -118,6 +135,7 @@ def massless_rotations() -> Finding:
     """Inertia of the rotation about a beam's axis, down to none."""
     finding = Finding(
         "nearly massless rotations",
+        "the motion tends to that without this inertia, in proportion to it",
         "A rotation with little inertia has a high frequency, which the scheme damps; the motion "
         "tends to that without it in proportion. Without any its acceleration is undetermined.",
         "Integrates down to 1e-10 of the beam's own inertia with option B, to 1e-8 with D, and "
@@ -160,6 +178,7 @@ def negative_weights() -> Finding:
     """A body whose centre of mass lies outside its nodes."""
     finding = Finding(
         "negative weights",
+        "energy drifts with the square of the step, as with any weights",
         "Nodes at 1/4 and 1/2 of a beam give the weights 0 and 1, at 0 and 1/4 the weights -1 and "
         "2: the frame is extrapolated, and one end turns twice as far against it as the ends "
         "against each other. Energy is kept to second order as with any weights.",
@@ -171,7 +190,7 @@ def negative_weights() -> Finding:
     finding.rows += [Row("weight of the first node", -1.0, weights[0], 1e-9),
                      Row("weight of the second node", 2.0, weights[1], 1e-9)]
     angles = np.arange(70.0, 100.0, 1.0)
-    refused = [_status(model, angle) != 0 for angle in angles]
+    refused = [_refused(model, angle) for angle in angles]
     finding.rows.append(Row("first refused relative rotation [deg]", LIMIT / 2,
                             angles[int(np.argmax(refused))], 1.0 / (LIMIT / 2)))
     steps = (0.02, 0.01, 0.005, 0.0025)

@@ -24,6 +24,7 @@ def impulses() -> Finding:
     """Energy that a beam on a spherical joint takes from an impulse at its tip."""
     finding = Finding(
         "strong impulses, options A, B and C",
+        "energy that a blow at the tip gives, against that of nonlinear beams",
         "A and B drop the velocity that the frame's rotation gives to the deformation. The energy "
         "an impulse gives is too low by a share that grows with it, with A several times that "
         "with B: the rest is spurious spin about the beam's axis. C drops nothing.",
@@ -70,6 +71,7 @@ def small_increments() -> Finding:
     """Forces of (20), in which increments of the frame are small, against those of (19)."""
     finding = Finding(
         "small increments of frames, (20) for (19)",
+        "forces of (20) are wrong by the square of the elastic rotation",
         "Equation (20) of the paper leaves out of (19) what is of second order in the elastic "
         "rotation: forces are wrong by its square, 3e-3 at 0.3 rad, and no gradient of an energy.",
         "Ships (20) as frame 'mean_small' for comparison; the default frame is exact.",

@@ -34,6 +34,7 @@ def soft_torsion() -> Finding:
     """Spin at which a blade of one body diverges in torsion; none does."""
     finding = Finding(
         "torsion of a turning blade, option B",
+        "a straight blade of option B diverges by twisting; a real one never does",
         "Option B takes angular velocities in the axes of the nodes, which turn as the blade "
         "twists, and momenta of bending work on that: a straight blade diverges in torsion, at W "
         "= 8.94 sqrt(G J / m L^4) with the mean frame, 4.10 with a node's. A real one does not.",

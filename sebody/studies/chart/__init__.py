@@ -1,58 +1,58 @@
-"""``sebody chart``: error against computing time, over formulations, divisions and steps."""
+"""``sebody chart``: error against computing time of all that a scene can be built from."""
 
 import csv
-import statistics
 from dataclasses import astuple, fields
+from functools import partial
 from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
 from sebody.analysis.first_run import prepare
-from sebody.analysis.simulation import simulate
+from sebody.analysis.simulation import Simulation
 from sebody.errors import SimulationError
 from sebody.files import check_target, replacing
 from sebody.studies.bench import peer
-from sebody.studies.chart.cases import COARSEST, SCENES, Point, Variant, builder, variants
+from sebody.studies.chart.any_scene import measure_any
+from sebody.studies.chart.cases import COARSEST, SCENES, Variant, builder, variants
 from sebody.studies.chart.draw import draw
+from sebody.studies.chart.points import Point, Study, front
 from sebody.studies.chart.references import Reference, reference
+from sebody.studies.chart.timing import poor_variants, processor_seconds, repeated
 
-RUNS = 3
+T_END = 30.0                    # of the peer's runs
 LEVELS = (1e-2, 1e-3, 3e-4)     # of error, at which front and peer are compared
 
 
-def measure(scene: str) -> tuple[list[Point], Reference]:
-    """Run all variants of a scene, and the peer where it is installed.
-
-    Raises
-    ------
-    InputError
-        A scene that has no chart.
-    """
+def measure(scene: str) -> Study:
+    """Run all variants of one of `SCENES`, and the peer where it is installed."""
     chosen = variants(scene)
     prepare(builder(scene)(**v.parameters).model for v in chosen)
     exact = reference(scene)
-    points = [p for v in chosen if (p := _point(scene, v, exact)) is not None]
+    with poor_variants():
+        points = _points(scene, chosen, exact)
     if peer.available():
         points += _peer(scene, exact)
-    return points, exact
+    return Study(points, SCENES[scene], exact.error)
 
 
-def _point(scene: str, variant: Variant, exact: Reference) -> Point | None:
-    """Measure a variant; None if its run fails."""
-    try:
-        results = []
-        for _ in range(RUNS):
-            built = builder(scene)(**variant.parameters)
-            h = built.h / variant.finer
-            results.append(simulate(built.model, h, built.t_end, variant.scheme,
-                                    output_every=round(COARSEST * variant.finer)))
-    except SimulationError:
-        return None
-    last = results[-1]
-    seconds = statistics.median(r.seconds for r in results)
-    return Point(variant.family, variant.label, _error(last[SCENES[scene]], exact),
-                 seconds / built.t_end, last.numbering.free, h, last.iterations_per_step)
+def _points(scene: str, chosen: list[Variant], exact: Reference) -> list[Point]:
+    """Measure variants; those whose runs fail are left out."""
+    found, runs = [], []
+    for variant in chosen:
+        built = builder(scene)(**variant.parameters)
+        begin = partial(Simulation, built.model, built.h / variant.finer, variant.scheme,
+                        round(COARSEST * variant.finer))
+        try:
+            result = begin().run_to(built.t_end).result()
+        except SimulationError:
+            continue
+        found.append((variant, result, built))
+        runs.append(lambda begin=begin, t_end=built.t_end: processor_seconds(begin(), t_end))
+    return [Point(variant.family, variant.label, _error(result[SCENES[scene]], exact),
+                  times.quickest / built.t_end, result.numbering.free, built.h / variant.finer,
+                  result.iterations_per_step, times.slowest / built.t_end)
+            for (variant, result, built), times in zip(found, repeated(runs), strict=True)]
 
 
 def _error(values, exact: Reference) -> float:
@@ -61,24 +61,14 @@ def _error(values, exact: Reference) -> float:
 
 
 def _peer(scene: str, exact: Reference) -> list[Point]:
-    """Points of the bench; its own references are of higher order."""
+    """Points of the bench, over 30 s; its own references are of higher order."""
     if scene not in ("hinged-beam", "planar-hinged-beam", "spherical-beam"):
         return []
     names = (scene, "planar-hinged-beam") if scene == "hinged-beam" else (scene,)
     return [Point(peer.NAME, m.variant.removeprefix(peer.NAME).strip() + f", h {m.h:g}",
-                  max(m.tip_error, exact.error), m.us_per_step * 1e-6 / m.h, m.unknowns, m.h,
+                  max(m.tip_error, exact.error), m.processor_seconds / T_END, m.unknowns, m.h,
                   m.iterations_per_step or 0.0)
             for name in names for m in peer.measure(name) if m.tip_error is not None]
-
-
-def front(points: list[Point]) -> list[Point]:
-    """The Pareto front: points that no other beats in both error and cost, cheapest first."""
-    best, kept = np.inf, []
-    for point in sorted(points, key=lambda p: (p.cost, p.error)):
-        if point.error < best:
-            kept.append(point)
-            best = point.error
-    return kept
 
 
 def own(points: list[Point]) -> list[Point]:
@@ -86,9 +76,9 @@ def own(points: list[Point]) -> list[Point]:
     return [p for p in points if p.family != peer.NAME]
 
 
-def report(scene: str, points: list[Point], exact: Reference) -> str:
+def report(name: str, points: list[Point], limit: float) -> str:
     """The points of the front by name, and the ratios of cost to the peer's."""
-    lines = [f"{scene}: reference good to {exact.error:.1e}, {len(own(points))} points",
+    lines = [f"{name}: reference good to {limit:.1e}, {len(own(points))} points",
              f"{'front':44} {'error':>9} {'ms per second':>14}"]
     lines += [f"{p.label:44} {p.error:9.1e} {1e3 * p.cost:14.4f}" for p in front(own(points))]
     for level in LEVELS:
@@ -120,4 +110,5 @@ def write_csv(points: list[Point], path: Path) -> None:
         file.write(table.getvalue().encode())
 
 
-__all__ = ["Point", "draw", "front", "measure", "own", "report", "write_csv"]
+__all__ = ["SCENES", "Point", "Study", "draw", "front", "measure", "measure_any", "own", "report",
+           "write_csv"]

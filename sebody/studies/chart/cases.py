@@ -1,14 +1,11 @@
-"""The variants of a chart: frames, inertia options, divisions, modes, steps, schemes."""
+"""Variants of scenes made for charts: frames, inertia, divisions, modes, steps, schemes."""
 
 import inspect
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from sebody.analysis.schemes import generalized_alpha, hht
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
-from sebody.studies import catalogue
+from sebody.studies.catalogue import builder
 
 # scene: the quantity whose history is compared
 SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
@@ -16,19 +13,6 @@ SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
           "slider-crank": "pin.rotation", "spin-up": "tip.position"}
 STEPS = {0.25: "4 h", 0.5: "2 h", 1.0: "h", 2.0: "h/2", 4.0: "h/4"}     # finer: name
 COARSEST = 4        # histories are compared on a grid of so many of the scene's own steps
-
-
-@dataclass(frozen=True)
-class Point:
-    """A point of a chart: a variant with its error and cost, both from the same runs."""
-
-    family: str
-    label: str
-    error: float                # relative L2, never below that of the reference
-    cost: float                 # computing seconds a simulated second
-    unknowns: int
-    h: float
-    iterations: float
 
 
 class Variant(NamedTuple):
@@ -39,19 +23,6 @@ class Variant(NamedTuple):
     parameters: dict        # of the scene's build
     finer: float = 1.0      # than the scene's own step
     scheme: Scheme = generalized_alpha()
-
-
-def builder(scene: str) -> Callable:
-    """The `build` of a scene.
-
-    Raises
-    ------
-    InputError
-        A scene that has no chart.
-    """
-    if scene not in SCENES:
-        raise InputError(f"there is no chart of scene {scene!r}: use {', '.join(SCENES)}")
-    return catalogue.builder(scene)
 
 
 def variants(scene: str) -> list[Variant]:
@@ -91,8 +62,12 @@ def _beams() -> list[Variant]:
             for n in (1, 2, 3, 5, 8) for f in STEPS]
 
 
+def schemes() -> dict[str, Scheme]:
+    """Schemes besides the default."""
+    return {"rho 0.5": generalized_alpha(0.5), "rho 1": generalized_alpha(1.0),
+            "HHT -0.1": hht(-0.1), "tolerance 1e-6": generalized_alpha(tolerance=1e-6),
+            "tangent of the paper": generalized_alpha(tangent="paper")}
+
+
 def _schemes() -> list[Variant]:
-    schemes = {"rho 0.5": generalized_alpha(0.5), "rho 1": generalized_alpha(1.0),
-               "HHT -0.1": hht(-0.1), "tolerance 1e-6": generalized_alpha(tolerance=1e-6),
-               "tangent of the paper": generalized_alpha(tangent="paper")}
-    return [Variant("schemes", name, {}, 1.0, scheme) for name, scheme in schemes.items()]
+    return [Variant("schemes", name, {}, 1.0, scheme) for name, scheme in schemes().items()]

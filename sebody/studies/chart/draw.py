@@ -1,75 +1,153 @@
 """The picture of a chart."""
 
+from collections.abc import Iterable
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
 
 from sebody.results.plots import write_picture
-from sebody.studies.chart.cases import Point
+from sebody.studies.chart import labels
+from sebody.studies.chart.points import Point
 
 COLORS = {"frames and inertia": "#c8452d", "modes": "#2a7f62", "modes, B": "#7fc8a9",
           "bodies": "#3c6fb6", "steps": "#b58a1b", "nonlinear beams": "#1f2a44",
           "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
+OTHERS = ("#c8452d", "#3c6fb6", "#2a7f62", "#8a4fa3", "#b58a1b", "#d98a6a", "#7fc8a9", "#1f2a44")
+INK, PALE = "#1f2a44", "#9aa5b8"
 MOST_NAMES = 7      # of the front that are written beside their points
 APART = 0.8         # of the error of the named point before: nearer names would cover one another
-EDGE = 6.0          # dots between the axis and a name
+DIFFER = 1.1        # cost of the slowest run over that of the quickest from which both are shown
+MARGIN = 0.1        # of the axes beside the points, of their extent
+COLUMNS = 5         # of the legend
+TITLE, FAMILY = 60, 30      # characters of a line of the title, of a family's name
 
 
-def draw(scene: str, points: list[Point], line: list[Point], limit: float,
-         path: str | Path) -> None:
-    """Error against computing time, one colour a family, the front as a line with its names."""
+def draw(name: str, points: Iterable[Point], line: Iterable[Point], limit: float,
+         path: str | Path, choice: Point | None = None, tolerance: float | None = None,
+         cost: str = "computing time a simulated second [s]") -> None:
+    """Error against computing time, one colour a family, the front as a line with its names.
+
+    Parameters
+    ----------
+    name : str
+        What is compared, for the title.
+    points : iterable of Point
+        Those without a finite error and a positive cost are left out.
+    line : iterable of Point
+        The front, see `front`.
+    limit : float
+        Error of the reference; not drawn if it is zero.
+    path : str or Path
+        File to write: png, pdf or svg.
+    choice : Point, optional
+        The point that was chosen, which gets a ring and its name.
+    tolerance : float, optional
+        Allowed error.
+    cost : str
+        What the cost is.
+
+    Raises
+    ------
+    InputError
+        A picture that cannot be made, see `sebody.results.plots.check_picture`.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    points, line = [p for p in points if _drawn(p)], [p for p in line if _drawn(p)]
     figure = Figure(figsize=(9.6, 6.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    for family, color in COLORS.items():
-        group = [p for p in points if p.family == family]
-        if group:
-            axes.plot([p.cost for p in group], [p.error for p in group],
-                      "^" if family == "Exudyn" else "o", color=color, markersize=5, label=family)
-    axes.step([p.cost for p in line], [p.error for p in line], where="post", color="#1f2a44",
-              linewidth=0.8, zorder=1)
-    line = _apart(line)
-    every = max(1, -(-len(line) // MOST_NAMES))
-    names = [axes.annotate(point.label, (point.cost, point.error), (-3, -4), fontsize=8, ha="right",
-                           va="top", textcoords="offset points", color="#1f2a44", zorder=4,
-                           bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8,
-                                 "pad": 0.5}) for point in line[::every]]
-    axes.axhline(limit, color="#9aa5b8", linewidth=0.8, linestyle="--")
-    axes.annotate("error of the reference", (1.0, limit), (-4, 3), ha="right", fontsize=7,
-                  xycoords=("axes fraction", "data"), textcoords="offset points", color="#6b7485")
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlabel("computing time a simulated second [s]")
-    axes.set_ylabel("relative L2 error")
-    axes.set_title(f"{scene}: error against time", loc="left")
+    axes.set_xlim(_around([c for p in points for c in (p.cost, max(p.cost, p.slowest))]))
+    axes.set_ylim(_around([*(p.error for p in points), *filter(None, (limit, tolerance))]))
+    _families(axes, points)
+    axes.step([p.cost for p in line], [p.error for p in line], where="post", color=INK,
+              linewidth=0.8, zorder=1)
+    named = _named(line)
+    if choice is not None and _drawn(choice):
+        axes.plot([choice.cost], [choice.error], "o", markersize=13, markerfacecolor="none",
+                  markeredgecolor="#c8452d", markeredgewidth=1.8, zorder=3)
+        named = [choice, *(p for p in named if p != choice)]
+    names = [_annotation(axes, point, "#c8452d" if point is choice else INK) for point in named]
+    if limit:
+        _level(axes, limit, "error of the reference", below=True)
+    if tolerance:
+        _level(axes, tolerance, f"tolerance {tolerance:g}")
+    axes.set_xlabel(labels.wrapped(cost, TITLE))
+    axes.set_ylabel("relative error")
+    axes.set_title(labels.wrapped(f"{name}: error against time", TITLE), loc="left",
+                   fontsize=10)
     axes.grid(color="#e6e9ef", which="both", linewidth=0.5)
     axes.set_axisbelow(True)
-    axes.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0.0, 0.08))
-    axes.margins(x=0.1)
-    _make_room(figure, axes, names)
+    _legend(figure, axes)
+    labels.make_room(figure, axes, names)
+    labels.place(figure, axes, names, np.array([(p.cost, p.error) for p in points]).reshape(-1, 2))
     write_picture(figure, path, 130)
 
 
-def _apart(line: list[Point]) -> list[Point]:
+def _drawn(point: Point) -> bool:
+    return bool(0.0 < point.error < np.inf and 0.0 < point.cost < np.inf)
+
+
+def _around(values: list[float]) -> tuple[float, float]:
+    """Ends of a logarithmic axis with some room at both sides of the values."""
+    low, high = (np.log10(f(values)) for f in (min, max)) if values else (-3.0, 0.0)
+    room = MARGIN * max(high - low, 1.0)
+    return 10.0**(low - room), 10.0**(high + room)
+
+
+def _families(axes, points: list[Point]) -> None:
+    """Points of each family in its colour; slower runs as a bar to the right."""
+    taken = {COLORS[p.family] for p in points if p.family in COLORS}
+    others = cycle([color for color in OTHERS if color not in taken] or OTHERS)
+    for family in dict.fromkeys([*COLORS, *(p.family for p in points)]):
+        group = [p for p in points if p.family == family]
+        if not group:
+            continue
+        color = COLORS[family] if family in COLORS else next(others)
+        axes.plot([p.cost for p in group], [p.error for p in group],
+                  "^" if family == "Exudyn" else "o", color=color, markersize=5,
+                  label=labels.wrapped(family, FAMILY, 2))
+        for p in group:
+            if p.slowest > DIFFER * p.cost:
+                axes.plot([p.cost, p.slowest], [p.error, p.error], "-|", color=color,
+                          linewidth=0.8, markersize=4, markevery=[1], alpha=0.6, zorder=1)
+
+
+def _named(line: list[Point]) -> list[Point]:
     """Points of the front that are named: none that is hardly better than a cheaper one."""
     found: list[Point] = []
     for point in line:
         if not found or point.error < APART * found[-1].error:
             found.append(point)
-    return found
+    last = len(found) - 1
+    return [found[round(k)] for k in np.linspace(0, last, min(MOST_NAMES, len(found)))]
 
 
-def _make_room(figure, axes, names: list) -> None:
-    """Begin the axis of times so far to the left that names end on it, not across it."""
-    figure.draw_without_rendering()
-    frame = axes.get_window_extent()
-    low, high = np.log10(axes.get_xlim())
-    for name in names:
-        # of the axis, at the left of the point; in logarithms the rest of it keeps its length
-        taken = (axes.transData.transform(name.xy)[0] - name.get_window_extent().x0
-                 + EDGE) / frame.width
-        low = min(low, (np.log10(name.xy[0]) - taken * high) / (1.0 - taken))
-    axes.set_xlim(10.0**low, 10.0**high)
+def _annotation(axes, point: Point, color: str):
+    return axes.annotate(labels.wrapped(point.label), (point.cost, point.error), (-3, -4),
+                         fontsize=8, ha="right", va="top", textcoords="offset points", color=color,
+                         zorder=4, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8,
+                                         "pad": 0.5})
+
+
+def _level(axes, level: float, what: str, below: bool = False) -> None:
+    axes.axhline(level, color=PALE, linewidth=0.8, linestyle="--")
+    axes.annotate(what, (1.0, level), (-4, -3 if below else 3), ha="right",
+                  va="top" if below else "bottom", fontsize=7, color="#6b7485",
+                  xycoords=("axes fraction", "data"), textcoords="offset points")
+
+
+def _legend(figure, axes) -> None:
+    """Below the axes, in as many columns as fit."""
+    handles, names = axes.get_legend_handles_labels()
+    for columns in range(min(COLUMNS, len(names)), 0, -1):
+        legend = figure.legend(handles, names, loc="outside lower center", ncols=columns,
+                               frameon=False, fontsize=8)
+        figure.draw_without_rendering()
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            break
+        legend.remove()

@@ -41,8 +41,8 @@ def kinetic_terms(case: Case) -> NDArray:
     J = _inertia(constants["Jc"])
     yd = derivative(lambda t: local_coordinates(along_path(case, t)), h)
     v = derivative(lambda t: _centre(along_path(case, t)), h)
-    turned = _rotation(case).T @ derivative(lambda t: _rotation(along_path(case, t)), h)
-    w = np.array([turned[2, 1], turned[0, 2], turned[1, 0]])
+    rotated = _rotation(case).T @ derivative(lambda t: _rotation(along_path(case, t)), h)
+    w = np.array([rotated[2, 1], rotated[0, 2], rotated[1, 0]])
     first, angle = rows[:case.dimension] @ yd, np.zeros(3)
     angle[3 - len(rows) + case.dimension:] = rows[case.dimension:] @ yd
     return np.array([mass * v @ v / 2, w @ J @ w / 2, yd @ constants["M"] @ yd / 2,

@@ -98,10 +98,10 @@ def kinetic_terms(case: Case) -> NDArray:
     constants, R0 = constants_of(case), frame_rotation(case).as_matrix()
     z = _whole(case, local_coordinates(case))
     zd = derivative(lambda t: _whole(case, local_coordinates(along_path(case, t))), h)
-    turned = R0.T @ derivative(lambda t: frame_rotation(along_path(case, t)).as_matrix(), h)
+    rotated = R0.T @ derivative(lambda t: frame_rotation(along_path(case, t)).as_matrix(), h)
     axes = np.eye(3)
     axes[:d, :d] = _coordinates(case).turn
-    w = axes.T @ [turned[2, 1], turned[0, 2], turned[1, 0]]
+    w = axes.T @ [rotated[2, 1], rotated[0, 2], rotated[1, 0]]
     velocities = case.v[:case.first_rotation].reshape(-1, d)
     v = axes.T @ np.r_[constants["alphas"] @ velocities @ R0[:d, :d], np.zeros(3 - d)]
     moments = constants["moment_columns"]

@@ -1,0 +1,79 @@
+"""How much of a model some quantities need: see the page beside this file."""
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from sebody import inputs
+from sebody.analysis.advice.conclusion import conclusion
+from sebody.analysis.advice.laboratory import Laboratory
+from sebody.analysis.advice.limits import refusal
+from sebody.analysis.advice.outcome import Advice, Reason, Trial, Unreached
+from sebody.analysis.advice.quantities import Quantities
+from sebody.analysis.advice.runs import Runs
+from sebody.analysis.advice.search import Search
+from sebody.analysis.progress import showing
+from sebody.errors import InputError
+from sebody.model.model import Model
+
+__all__ = ["Advice", "Reason", "Trial", "advise"]
+
+
+def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str],
+           tolerance: float = 1e-3, budget: float = 20.0,
+           progress: Callable[[float], None] | bool | None = None) -> Advice:
+    """Find the cheapest model that keeps some quantities within a tolerance.
+
+    Parameters
+    ----------
+    model : Model
+        Any that has the parts; beams of `Model.beam` are divided anew for the richest model.
+    h : float
+        A usual time step [time]; the reference has a quarter of it.
+    t_end : float
+        End of the runs, a whole number of steps [time].
+    quantities : str or iterable of str
+        Names as results have them, or ``frequency 1`` and so on, of the model linearised at its
+        start. The error of a quantity is its largest difference, relative to its largest change
+        from the start; that of a frequency is relative to it.
+    tolerance : float
+        Largest error.
+    budget : float
+        No further run is begun once the runs have taken so many times the time of the first.
+    progress : callable or bool, optional
+        As of `Simulation.run_to`; the bar begins anew with each run.
+
+    Returns
+    -------
+    Advice
+        Also after Ctrl-C, with the best until then, once there is a reference.
+
+    Raises
+    ------
+    InputError
+        Quantities that do not exist or do not change, or a tolerance that the richest model does
+        not reach: then `advice` of the exception is the best that was found.
+    SimulationError
+        The richest model does not run, or its error does not fall with the step.
+    """
+    inputs.instance(model, "model", Model, "give a sebody.Model")
+    wanted = Quantities(quantities)
+    h, t_end = inputs.number(h, "h", above=0), inputs.number(t_end, "t_end", above=0)
+    if not np.isclose(t_end / h, round(t_end / h), rtol=1e-9, atol=0):
+        raise InputError(f"t_end is {t_end:g}, {t_end / h:.6g} steps of {h:g}: give a whole number "
+                         "of steps")
+    tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
+    budget = inputs.number(budget, "budget", above=0)
+    wanted.check(model, h)
+    with showing(progress, t_end) as show:
+        lab = Laboratory(model, wanted, Runs(wanted, h, t_end, show), tolerance)
+        lab.start()
+        search = Search(lab, budget)
+        try:
+            found, given = search.go(), lab.given()
+        except KeyboardInterrupt:
+            return conclusion(search, search.best(), interrupted=True)
+    advice = conclusion(search, found, given)
+    if reason := refusal(search, found):
+        raise Unreached(reason, advice)
+    return advice

@@ -1,0 +1,39 @@
+"""Combinations of forms that no others beat in both cost and expected error."""
+
+from collections.abc import Sequence
+
+from sebody.analysis.advice.cost import of_form
+from sebody.analysis.advice.estimates import Estimates, expected
+from sebody.analysis.advice.forms import Form, Part
+
+MOST = 200      # combinations that are carried from part to part
+
+
+def combinations(parts: Sequence[Part], forms: Sequence[Sequence[Form]], estimates: Estimates,
+                 flat: bool) -> list[tuple[Form, ...]]:
+    """Forms of all parts, cheapest first."""
+    found: list[tuple[float, float, tuple[Form, ...]]] = [(0.0, 0.0, ())]
+    for k, (part, own) in enumerate(zip(parts, forms, strict=True)):
+        squares = [expected(estimates.of_form(k, form))**2 for form in own]
+        front = _front([(of_form(part, form, flat), square, (form,))
+                        for form, square in zip(own, squares, strict=True)])
+        found = _thinned(_front([(a + b, e + f, (*one, *other)) for a, e, one in found
+                                 for b, f, other in front]))
+    return [forms for _, _, forms in found]
+
+
+def _front(points: list[tuple[float, float, tuple[Form, ...]]]) -> list:
+    """Those that no cheaper one equals or beats in error."""
+    kept, best = [], float("inf")
+    for point in sorted(points):
+        if point[1] < best:
+            kept.append(point)
+            best = point[1]
+    return kept
+
+
+def _thinned(points: list) -> list:
+    """At most so many of a front, evenly, with both its ends."""
+    if len(points) <= MOST:
+        return points
+    return [points[round(k * (len(points) - 1) / (MOST - 1))] for k in range(MOST)]

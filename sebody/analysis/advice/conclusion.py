@@ -1,0 +1,64 @@
+"""What a search has found, as advice."""
+
+from sebody.analysis.advice.changes import Choice
+from sebody.analysis.advice.laboratory import Tried
+from sebody.analysis.advice.limits import doubts
+from sebody.analysis.advice.outcome import Advice
+from sebody.analysis.advice.reasons import neighbours, reasons
+from sebody.analysis.advice.search import Search
+from sebody.analysis.tolerance import Tolerance
+
+REPEATS = 2         # further runs of what is compared in time
+QUICK = 0.2         # seconds of runs that are repeated: longer ones are not disturbed much
+
+
+def conclusion(search: Search, found: Tried, given: Tried | None = None,
+               interrupted: bool = False) -> Advice:
+    """Advice from a choice that was found.
+
+    Parameters
+    ----------
+    given : Tried, optional
+        The model as it was given, with the given step.
+    """
+    lab, choice = search.lab, found.choice
+    made = lab.builder.make(choice)
+    seconds = found.seconds if interrupted else _quickest(search, found)
+    remarks = [] if given is None or interrupted else [
+        *_saved(search, seconds, given), *doubts(search), *neighbours(search, choice)]
+    return Advice(
+        made.model, choice.step.h, made.sentences, float(found.error), lab.tolerance,
+        tuple(lab.table), tuple(search.untried),
+        None if choice.step.local is None else Tolerance(choice.step.local),
+        float(found.predicted), seconds, lab.runs.t_end,
+        tuple(change.code() for change in made.changes), tuple(reasons(search, choice)),
+        tuple(remarks), interrupted)
+
+
+def _quickest(search: Search, found: Tried) -> float:
+    """Time of a run, the least of several where it is short."""
+    seconds = found.seconds
+    if seconds <= QUICK and not search.spent():
+        seconds = min([seconds, *(search.lab.run(found.choice).seconds for _ in range(REPEATS))])
+    return seconds
+
+
+def _saved(search: Search, seconds: float, given: Tried) -> list[str]:
+    """What a run saves against the richest model and the given one."""
+    lab = search.lab
+    richest: Choice = lab.richest
+    whole = next(one for one in lab.tried if one.choice == richest).seconds
+    least = given.seconds
+    if given.error < float("inf"):
+        least = _quickest(search, given)
+    told = (f"a run takes {_time(seconds)}, the richest model {_time(whole)}, "
+            f"{whole / seconds:.3g} times as long")
+    if given.error < float("inf"):
+        told += (f", the given one with its step {_time(least)}, {least / seconds:.3g} times, with "
+                 f"an error of {given.error:.2g}")
+    return [told, f"the search took {len(lab.table)} runs, as much as {lab.spent():.2g} of the "
+                  "richest model"]
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.3g} s" if seconds >= 1 else f"{1e3 * seconds:.3g} ms"

@@ -1,0 +1,165 @@
+"""The parts of a model, and the forms each of them may take."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from sebody.errors import InputError
+from sebody.model.frames import FRAMES
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Beam, Superelement
+from sebody.model.variants import divide
+from sebody.reduction import ReducedBody
+
+DIVISIONS = (1, 2, 4, 8)
+MOST_MODES = {True: 4, False: 8}        # of a whole beam, at least: planar or not
+FEWEST_ELEMENTS = 16                    # of a whole beam: two of each body of eight
+
+
+class Form(NamedTuple):
+    """What a part of a model is built as."""
+
+    rigid: bool
+    bodies: int         # superelements of a beam from end to end
+    modes: int          # internal ones of each
+    inertia: str
+    stiffening: bool
+    frame: str
+
+    @classmethod
+    def first(cls, part: "Part") -> "Form":
+        """One body without modes: what a rigid part is compared with."""
+        return part.richest._replace(bodies=1, modes=0)
+
+    def poorer(self, other: "Form") -> bool:
+        """Whether it has no more of anything than another, other things being alike."""
+        return self.rigid or (
+            not other.rigid and self.bodies <= other.bodies and self.modes <= other.modes
+            and RANKS[self.inertia] <= RANKS[other.inertia]
+            and self.stiffening <= other.stiffening)
+
+
+RANKS = {"a": 0, "b": 0, "d": 1, "c": 2}        # of inertia options, from the poorest
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A beam that `Model.beam` has built, or a superelement of another kind.
+
+    Parameters
+    ----------
+    name : str
+    beam : Beam, optional
+        How it was built; None of a superelement.
+    body : ReducedBody
+        That of the first superelement, as given.
+    given, richest : Form
+    forms : tuple of Form
+        All, in no order; the richest and the given one are among them.
+    elements : int
+        Finite elements of a beam in all forms.
+    """
+
+    name: str
+    beam: Beam | None
+    body: ReducedBody
+    given: Form
+    richest: Form
+    forms: tuple[Form, ...]
+    elements: int = 0
+
+    @property
+    def planar(self) -> bool:
+        """Whether it is in a plane."""
+        return self.body.planar
+
+    def superelements(self, form: Form) -> list[str]:
+        """Names of its superelements in a form."""
+        if form.bodies == 1:
+            return [self.name]
+        return [f"{self.name} {k}" for k in range(1, form.bodies + 1)]
+
+
+def parts_of(model: Mechanism, pinned: Iterable[str] = ()) -> list[Part]:
+    """The parts of a model, beams first in the place of their superelements.
+
+    Parameters
+    ----------
+    pinned : iterable of str
+        Names of nodes and superelements that quantities refer to: beams that own one of them are
+        not divided anew.
+    """
+    owners: dict[str, Beam] = {}
+    for beam in model.beams:
+        if _divisible(model, beam, set(pinned)):
+            owners |= {part.name: beam for part in beam.parts}
+    found: dict[str, Part] = {}
+    for name, body in model.bodies.items():
+        beam = owners.get(name)
+        if beam is None:
+            found[name] = _of_body(name, body)
+        elif beam.name not in found:
+            found[beam.name] = _of_beam(beam)
+    return list(found.values())
+
+
+def _divisible(model: Mechanism, beam: Beam, pinned: set[str]) -> bool:
+    own = {node.name for node in beam.nodes[1:-1]} | {part.name for part in beam.parts}
+    if own & pinned or len(beam.parts) > max(DIVISIONS):
+        return False
+    try:
+        divide(model, beam.name, 1, FEWEST_ELEMENTS)
+    except InputError:
+        return False
+    return True
+
+
+def _of_beam(beam: Beam) -> Part:
+    first = beam.parts[0]
+    planar = first.body.planar
+    given = _given(first, len(beam.parts))
+    most = max(MOST_MODES[planar], first.body.modes * given.bodies)
+    options = _options(first)
+    forms = {_rigid(given)}
+    for bodies in DIVISIONS:
+        least = -(-most // bodies)
+        forms |= {Form(False, bodies, modes, *option)
+                  for modes in _counts(least + (least % 2 and not planar)) for option in options}
+    forms.add(given)
+    elements = max(FEWEST_ELEMENTS, -(-beam.elements // max(DIVISIONS)) * max(DIVISIONS))
+    richest = max((f for f in forms if not f.rigid and f.bodies == max(DIVISIONS)),
+                  key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
+    return Part(beam.name, beam, first.body, given, richest, tuple(forms), elements)
+
+
+def _of_body(name: str, body: Superelement) -> Part:
+    given, most = _given(body, 1), body.body.modes
+    forms = {Form(False, 1, modes, *option) for modes in _counts(most)
+             for option in _options(body)} | {_rigid(given), given}
+    richest = max((f for f in forms if not f.rigid),
+                  key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
+    return Part(name, None, body.body, given, richest, tuple(forms))
+
+
+def _given(body: Superelement, bodies: int) -> Form:
+    return Form(False, bodies, body.body.modes, body.inertia, body.stiffening, body.frame)
+
+
+def _rigid(given: Form) -> Form:
+    return Form(True, 1, 0, "a", False, given.frame)
+
+
+def _counts(most: int) -> list[int]:
+    """Numbers of modes that are tried: none, powers of two, all."""
+    return sorted({0, *(2**k for k in range(most.bit_length()) if 2**k < most), most})
+
+
+def _options(body: Superelement) -> list[tuple[str, bool, str]]:
+    """Inertia, stiffening and frame that the part may have."""
+    frame = body.frame if not FRAMES[body.frame].traits.incremental else "converged_mean"
+    found = [("b", False, frame)]
+    invariants = body.body.invariants
+    if invariants is None:
+        return [*found, ("d", False, frame)]
+    found.append(("c", False, frame))
+    return [*found, ("c", True, frame)] if invariants.stiffens else found

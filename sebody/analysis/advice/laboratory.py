@@ -1,0 +1,186 @@
+"""Runs of choices: the richest model with several steps first, then what is compared with it."""
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from sebody.analysis.advice.changes import Builder, Choice, Step
+from sebody.analysis.advice.cost import Cost
+from sebody.analysis.advice.estimates import Estimates, expected
+from sebody.analysis.advice.forms import Part, parts_of
+from sebody.analysis.advice.indicators.recorded import Recorded
+from sebody.analysis.advice.outcome import Trial
+from sebody.analysis.advice.quantities import Quantities, difference
+from sebody.analysis.advice.reference import ORDER_FACTOR, Reference, reference, still
+from sebody.analysis.advice.runs import Run, Runs
+from sebody.errors import InputError, SimulationError
+from sebody.model.model import Model
+
+FINER = (4, 2, 1)       # parts of the given step, of the first runs of the richest model
+SHORTER = (8, 16)       # further ones, where the tolerance needs them
+GOOD = 0.2              # of the tolerance, that the reference may be off by without them
+SHARE = 0.5             # of the tolerance, that the reference must be good to
+WHOLE = "all as it is"
+
+
+@dataclass
+class Tried:
+    """A choice that ran, or failed."""
+
+    choice: Choice
+    error: float
+    predicted: float
+    seconds: float
+
+
+class Laboratory:
+    """All runs of a search, and what they are compared with.
+
+    Parameters
+    ----------
+    model : Model
+        As given.
+    quantities : Quantities
+    runs : Runs
+    tolerance : float
+    """
+
+    def __init__(self, model: Model, quantities: Quantities, runs: Runs, tolerance: float):
+        self.model, self.quantities, self.runs = model, quantities, runs
+        self.tolerance = tolerance
+        self.parts: list[Part] = parts_of(model, quantities.owners)
+        self.builder = Builder(model, self.parts, quantities.owners)
+        self.cost = Cost(model, self.parts, runs.t_end)
+        self.table: list[Trial] = []
+        self.tried: list[Tried] = []
+        self.bases: dict[float, Run] = {}       # runs of the richest model by their steps
+        self._work = self._unit = 0.0
+
+    @property
+    def richest(self) -> Choice:
+        """The richest choice, with the shortest step that it ran with."""
+        step = Step(min(self.bases, default=self.runs.h / FINER[0]))
+        return Choice(tuple(part.richest for part in self.parts), step)
+
+    def spent(self) -> float:
+        """Work of all runs, relative to that of the first."""
+        return self._work / self._unit
+
+    def start(self) -> None:
+        """Run the reference, and judge it.
+
+        Raises
+        ------
+        InputError
+            Quantities that do not exist or do not change, or a tolerance that the richest model
+            does not reach.
+        SimulationError
+            It does not run, or its error does not fall with the step.
+        """
+        choice = self.richest
+        first = self._base(choice.step.h)
+        for k in still(first.values):
+            what = f"quantity {self.quantities.histories[k]!r} does not change"
+            if not np.ptp(first.result.recorded("q"), axis=0).any():
+                raise InputError(f"{what}: the model does not move; give it loads, a drive or "
+                                 "initial velocities")
+            raise InputError(f"{what}: give one that the motion changes")
+        for part in FINER[1:]:
+            try:
+                self._base(self.runs.h / part)
+            except SimulationError:
+                if part > 1:
+                    raise
+        self.reference = self._reference()
+        for part in SHORTER:
+            most = ORDER_FACTOR**(len(SHORTER) - SHORTER.index(part))
+            if self.reference.error <= GOOD * self.tolerance or (
+                    self.reference.step_error / most > self.tolerance):
+                break
+            self._base(self.runs.h / part)
+            self.reference = self._reference()
+        self._judge()
+        errors = {h: self.error(run) for h, run in self.bases.items()}
+        finest = min(errors)
+        errors[finest] = max(self.reference.step_error, self.reference.error)
+        sentence = "; ".join(self.builder.make(choice).sentences) or WHOLE
+        for h in sorted(errors):
+            self.table.append(Trial(sentence, h, 0.0 if h == finest else errors[h],
+                                    self.bases[h].seconds))
+            self.tried.append(Tried(choice._replace(step=Step(h)), errors[h], errors[h],
+                                    self.bases[h].seconds))
+        recorded = Recorded(self.model, first.result, self.quantities.histories,
+                            self.reference.sizes, first.values.frequencies)
+        self.estimates = Estimates(recorded, self.parts,
+                                   {Step(h): error for h, error in errors.items()})
+
+    def _base(self, h: float) -> Run:
+        """Run the richest model with a step."""
+        choice = self.richest._replace(step=Step(h))
+        self.bases[h] = self.run(choice)
+        return self.bases[h]
+
+    def _reference(self) -> Reference:
+        return reference([self.bases[h].values for h in sorted(self.bases, reverse=True)])
+
+    def _judge(self) -> None:
+        """Refuse a tolerance that the reference is not good for."""
+        if self.reference.error <= SHARE * self.tolerance:
+            return
+        own, fine = self.reference.step_error, min(self.bases)
+        if not self.reference.falls:
+            raise SimulationError(
+                f"the error does not fall with the step: it stays at {own:.2g} with the step "
+                f"{fine:g}. The motion may be chaotic, then only its beginning can be computed: "
+                "use a larger tolerance or an earlier end", self.bases[fine].result)
+        raise InputError(f"with the step {fine:g} the whole model has an error of about "
+                         f"{own:.2g} from the step: give a smaller h, or a larger "
+                         f"tolerance than {self.tolerance:g}")
+
+    def run(self, choice: Choice) -> Run:
+        """Run a choice.
+
+        Raises
+        ------
+        InputError, SimulationError
+            It cannot be made, does not run, or lacks a quantity.
+        """
+        found = self.runs.run(self.builder.build(choice), choice.step)
+        if self._unit == 0.0:
+            self.cost.measured(choice, found.seconds, found.iterations)
+            self._unit = self.cost.work(choice, found.iterations)
+        self._work += self.cost.work(choice, found.iterations)
+        self.cost.counted(choice.step, found.iterations)
+        return found
+
+    def given(self) -> Tried:
+        """The model as it was given, with the given step: what would have been run."""
+        forms = tuple(part.given for part in self.parts)
+        return self.attempt(Choice(forms, Step(self.runs.h)), "given")[0]
+
+    def error(self, run: Run) -> float:
+        """Error of a run with that of the reference."""
+        stride = max(round(run.h / self.runs.h), 1)
+        return self.reference.error + difference(run.values, self.reference.values,
+                                                 self.reference.sizes, (1, stride))
+
+    def apart(self, run: Run, h: float) -> float:
+        """Difference of a run from the richest model with the same step."""
+        return difference(run.values, self.bases[h].values, self.reference.sizes, (1, 1))
+
+    def attempt(self, choice: Choice, kind: str) -> tuple[Tried, Run | None]:
+        """Run a choice and put it into the table; its error is infinite if it does not run."""
+        predicted, cost = expected(self.estimates.contributions(choice)), self.cost.of(choice)
+        error, seconds, run, sentence = inf, 0.0, None, ""
+        try:
+            sentence = "; ".join(self.builder.make(choice).sentences) or WHOLE
+            run = self.run(choice)
+            error, seconds = self.error(run), run.seconds
+        except (InputError, SimulationError) as reason:
+            sentence = f"{sentence}: {reason}" if sentence else str(reason)
+        self.table.append(Trial(sentence, choice.step.h, error, seconds, predicted, cost, kind,
+                                choice.step.local))
+        found = Tried(choice, error, predicted, seconds)
+        self.tried.append(found)
+        return found, run

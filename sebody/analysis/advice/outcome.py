@@ -1,0 +1,160 @@
+"""What advice is: the model, its numbers, and all runs that led to it."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import NamedTuple
+
+from sebody.analysis.tolerance import Tolerance
+from sebody.errors import InputError
+from sebody.model.model import Model
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A run of the search.
+
+    Parameters
+    ----------
+    change : str
+        What was changed, or why it did not run.
+    step : float
+        Its time step.
+    error : float
+        Largest relative error of the quantities; infinite of what did not run.
+    seconds : float
+        Time of the run in the compiled loop.
+    predicted : float
+        Error that was predicted before the run.
+    cost : float
+        Time that was predicted [s].
+    kind : str
+        What it was for: reference, alone, together, confirmation, given.
+    local : float, optional
+        Local tolerance of variable steps; then `step` is the grid.
+    """
+
+    change: str
+    step: float
+    error: float
+    seconds: float
+    predicted: float = 0.0
+    cost: float = 0.0
+    kind: str = "reference"
+    local: float | None = None
+
+
+class Unreached(InputError):
+    """No model within the tolerance; `advice` is the best there is, None without a reference."""
+
+    def __init__(self, message: str, advice: "Advice | None" = None):
+        super().__init__(message)
+        self.advice = advice
+
+
+class Reason(NamedTuple):
+    """What was chosen of a part, of the whole model or of the run, and why.
+
+    Parameters
+    ----------
+    of : str
+        Name of the part; model or step.
+    chosen, why : str
+    predicted, confirmed : float, optional
+        Errors that this alone makes.
+    """
+
+    of: str
+    chosen: str
+    why: str
+    predicted: float | None = None
+    confirmed: float | None = None
+
+    def __str__(self) -> str:
+        numbers = [f"{word} {value:.1g}" for word, value in (
+            ("predicted", self.predicted), ("confirmed", self.confirmed)) if value is not None]
+        told = ", ".join([*[self.why] * bool(self.why), *numbers])
+        return f"{self.of}: {self.chosen}" + (f"; {told}" if told else "")
+
+
+@dataclass(frozen=True, eq=False)
+class Advice:
+    """The cheapest model found that keeps the quantities.
+
+    Parameters
+    ----------
+    model : Model
+        It; the given one stays as it was.
+    step : float
+        Its time step, or the grid of its variable steps.
+    changes : tuple of str
+        What was changed, in sentences.
+    error : float
+        Largest relative error of the quantities, with that of the reference: confirmed.
+    tolerance : float
+    table : tuple of Trial
+        All runs, in their order; the first is the reference.
+    untried : tuple of str
+        Parts that were left as they are because the search had taken long enough.
+    local : Tolerance, optional
+        Of variable steps: the `tolerance` of `simulate`.
+    predicted : float
+        Error that was predicted before its run.
+    seconds : float
+        Time of its run.
+    t_end : float
+        End of its run.
+    lines : tuple of str
+        Calls of `sebody.model.variants` that make it from the given model.
+    reasons : tuple of Reason
+    remarks : tuple of str
+        What was found besides: times, neighbours at other tolerances, limits.
+    interrupted : bool
+        Whether Ctrl-C ended the search: this is the best until then.
+    """
+
+    model: Model
+    step: float
+    changes: tuple[str, ...]
+    error: float
+    tolerance: float
+    table: tuple[Trial, ...]
+    untried: tuple[str, ...] = ()
+    local: Tolerance | None = None
+    predicted: float = 0.0
+    seconds: float = 0.0
+    t_end: float = 0.0
+    lines: tuple[str, ...] = ()
+    reasons: tuple[Reason, ...] = ()
+    remarks: tuple[str, ...] = ()
+    interrupted: bool = False
+
+    def rows(self) -> list[dict]:
+        """The table as plain dictionaries, which ``pandas.DataFrame`` takes."""
+        return [asdict(one) for one in self.table]
+
+    def code(self, given: Sequence[str]) -> str:
+        """The model and its run as Python.
+
+        Parameters
+        ----------
+        given : sequence of str
+            Lines that make the given model, by the name ``model``, imports first.
+        """
+        names = sorted({line.partition("= ")[2].partition("(")[0] for line in self.lines})
+        imports = [f"from sebody import {'Tolerance, ' * bool(self.local)}simulate"]
+        if names:
+            imports.append(f"from sebody.model.variants import {', '.join(names)}")
+        local = f", tolerance=Tolerance({self.local.relative!r})" if self.local else ""
+        run = f"result = simulate(model, {self.step!r}, {self.t_end!r}{local})"
+        own = [line for line in given if line.startswith(("from ", "import "))]
+        return "\n".join([*own, *imports, "", *given[len(own):], *self.lines, run])
+
+    def summary(self) -> str:
+        """What was chosen and why, the time it saves, and the error."""
+        return "\n".join([
+            *map(str, self.reasons),
+            *([f"not tried: {', '.join(self.untried)}; raise the budget"] if self.untried else []),
+            *self.remarks,
+            *(["interrupted: this is the best until then"] if self.interrupted else []),
+            f"predicted error {self.predicted:.2g}",
+            f"confirmed error {self.error:.2g} <= {self.tolerance:g}"])

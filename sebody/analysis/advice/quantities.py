@@ -1,0 +1,126 @@
+"""What is to be kept: histories of results by name, and frequencies of small motion."""
+
+import re
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.analysis.linearization import modes
+from sebody.analysis.simulation import Simulation
+from sebody.errors import InputError, LimitWarning
+from sebody.model.model import Model
+from sebody.results.result import Result
+
+FREQUENCY = re.compile(r"frequency ([1-9]\d*)")
+RIGID = 1e-5        # of the highest frequency: below, motions are rigid
+
+
+class Values(NamedTuple):
+    """The quantities of one run: histories (n, ...) and frequencies, numbers."""
+
+    histories: list[NDArray]
+    frequencies: list[float]
+
+
+class Quantities:
+    """Names of quantities.
+
+    Parameters
+    ----------
+    names : str or iterable of str
+        As a result has them, and ``frequency 1``, the lowest one above zero of the model
+        linearised at its start, and so on.
+
+    Raises
+    ------
+    InputError
+        No names.
+    """
+
+    def __init__(self, names: object):
+        given = [names] if isinstance(names, str) else inputs.items(
+            names, "quantities", "give names of quantities")
+        if not given:
+            raise InputError("quantities: none is given; give names of quantities")
+        for name in given:
+            inputs.name(name, "name of a quantity")
+        self.names = list(given)
+        numbers = [FREQUENCY.fullmatch(name) for name in given]
+        self.histories = [n for n, number in zip(given, numbers, strict=True) if number is None]
+        self.numbers = [int(number[1]) for number in numbers if number]
+
+    @property
+    def owners(self) -> set[str]:
+        """Names of nodes and bodies that the quantities name, and parts of these names."""
+        found = set()
+        for name in self.histories:
+            owner = name.rpartition(".")[0]
+            found |= {owner, *owner.split(".")}
+        return found
+
+    def check(self, model: Model, h: float) -> None:
+        """Refuse quantities that a model does not have, by its state at the start.
+
+        Raises
+        ------
+        InputError
+            A quantity does not exist, or the model cannot be started.
+        """
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LimitWarning)
+            self.of(Simulation(model, h).result(), h)
+
+    def of(self, result: Result, h: float) -> Values:
+        """The quantities of a run.
+
+        Raises
+        ------
+        InputError
+            A quantity does not exist.
+        """
+        plane = result.model.plane
+        histories = [np.asarray(result[name]) if plane is None else
+                     plane.to_space(name, result[name]) for name in self.histories]
+        return Values(histories, self._frequencies(result, h) if self.numbers else [])
+
+    def _frequencies(self, result: Result, h: float) -> list[float]:
+        run = Simulation(result.model, h)
+        try:
+            omega = modes(run).omega
+        except InputError as reason:
+            raise InputError(f"the model has no frequencies at its start: {reason}") from reason
+        flexible = omega[omega > RIGID * omega.max(initial=0.0)]
+        if max(self.numbers) > len(flexible):
+            raise InputError(f"quantity 'frequency {max(self.numbers)}' does not exist: the model "
+                             f"has {len(flexible)} frequencies above zero")
+        return [float(flexible[k - 1]) for k in self.numbers]
+
+
+def difference(one: Values, other: Values, sizes: list[float], stride: tuple[int, int]) -> float:
+    """Largest relative difference of two runs; each history is taken with its stride.
+
+    Raises
+    ------
+    InputError
+        A history has other components.
+    """
+    errors = [abs(a / b - 1.0) for a, b in zip(one.frequencies, other.frequencies, strict=True)]
+    for a, b, size in zip(one.histories, other.histories, sizes, strict=True):
+        if a.shape[1:] != b.shape[1:]:
+            raise InputError("a quantity has other components")
+        off = a[::stride[0]] - b[::stride[1]]
+        errors.append(float(lengths(off).max()) / size)
+    return max(errors)
+
+
+def lengths(values: NDArray) -> NDArray:
+    """Norms of the states of a history, (n,)."""
+    return np.sqrt((values**2).sum(axis=tuple(range(1, values.ndim))))
+
+
+def changes_of(values: list[NDArray]) -> list[float]:
+    """Largest change of each history from its start."""
+    return [float(lengths(one - one[0]).max()) for one in values]

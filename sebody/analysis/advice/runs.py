@@ -1,0 +1,61 @@
+"""Runs of a model, and what is kept of them."""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from sebody.analysis.advice.changes import Step
+from sebody.analysis.advice.quantities import Quantities, Values
+from sebody.analysis.simulation import Simulation
+from sebody.analysis.tolerance import Tolerance
+from sebody.errors import LimitWarning
+from sebody.model.model import Model
+from sebody.results.result import Result
+
+
+class Run(NamedTuple):
+    """A run: its quantities on its grid, the grid's step, its time and Newton iterations."""
+
+    values: Values
+    h: float
+    seconds: float
+    iterations: float
+    result: Result
+
+
+@dataclass
+class Runs:
+    """Makes runs.
+
+    Parameters
+    ----------
+    quantities : Quantities
+    h : float
+        The given step.
+    t_end : float
+    progress : callable, optional
+        Called between and during runs.
+    """
+
+    quantities: Quantities
+    h: float
+    t_end: float
+    progress: Callable[[float], None] | None = None
+
+    def run(self, model: Model, step: Step) -> Run:
+        """Run a model; recorded on the grid of the given step, or of a longer one.
+
+        Raises
+        ------
+        InputError, SimulationError
+            It does not run, or lacks a quantity.
+        """
+        every = max(round(self.h / step.h), 1)
+        tolerance = None if step.local is None else Tolerance(step.local)
+        with warnings.catch_warnings():         # of variants that are taken, none is poor
+            warnings.simplefilter("ignore", LimitWarning)
+            result = Simulation(model, step.h, output_every=every, tolerance=tolerance
+                                ).run_to(self.t_end, self.progress).result()
+        return Run(self.quantities.of(result, step.h), step.h * every, result.seconds,
+                   result.iterations_per_step * result.steps, result)

@@ -1,0 +1,193 @@
+"""Joints, bodies, loads and springs of a spatial model in a plane of symmetry.
+
+A joint keeps those of its equations that restrict motion in the plane.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.model.parts import Axes, Element, Joint, positions, rotations
+from sebody.model.variants.flattening import Flattening
+
+TURNING_TOGETHER = ("weld", "prismatic")    # joints whose nodes keep any direction
+
+
+def flat_element(flat: Flattening, element: Element) -> Element:
+    """A rigid body, load or spring in the plane.
+
+    Raises
+    ------
+    InputError
+        It is not symmetric about the plane.
+    """
+    if element.kind not in _ELEMENTS:
+        raise InputError(f"{element.name!r} is a function of yours, of which no symmetry is known: "
+                         "build the planar model by hand")
+    kind, constants = _ELEMENTS[element.kind](flat, element)
+    return Element(element.name, kind, tuple(flat.place(p) for p in element.places), constants,
+                   history=element.history)
+
+
+def flat_joint(flat: Flattening, joint: Joint) -> Joint:
+    """A joint or drive in the plane, with fewer equations.
+
+    Raises
+    ------
+    InputError
+        It is not symmetric about the plane.
+    """
+    if joint.kind == "revolute" and not flat.is_normal(joint.axes.columns[:, 0]):
+        raise InputError(f"the axis of {joint.name!r} is not normal to the plane")
+    node, to = flat.node(joint.node), flat.node(joint.to)
+    equations: list[Element] = []
+    for one in joint.constraints:
+        found = _EQUATIONS[one.kind](flat, joint, one)
+        if found is not None and not (found.kind == "planar_aligned" and any(
+                e.kind == found.kind for e in equations)):
+            equations.append(found)
+    if any(e.kind == "planar_turn_drive" for e in equations) and (
+            flat.plane.normal @ joint.axes.columns[:, 0] < 0):
+        node, to = to, node     # it turns `to` about the normal as `node` about its axis
+        equations = [Element(e.name, e.kind, e.places[::-1], e.constants, e.multipliers, e.history)
+                     for e in equations]
+    return Joint(joint.name, tuple(equations), node, to, _axes(flat, joint), joint.kind)
+
+
+def _axes(flat: Flattening, joint: Joint) -> Axes | None:
+    if joint.axes is None:
+        return None
+    first = joint.axes.columns[:, 0]
+    if joint.kind in ("spherical", "weld") or not flat.is_inside(first):
+        return Axes.of(flat.node(joint.axes.carrier))
+    e = flat.vector(first, joint.name)
+    return Axes.of(flat.node(joint.axes.carrier), (e, np.array([-e[1], e[0]])))
+
+
+# equations of joints
+
+
+def _equation(flat: Flattening, one: Element, kind: str, multipliers: int,
+              constants: dict | None = None, places: tuple | None = None) -> Element:
+    places = tuple(flat.place(p) for p in one.places) if places is None else places
+    return Element(one.name, kind, places, constants or {}, multipliers, one.history)
+
+
+def _coincident(flat: Flattening, joint: Joint, one: Element) -> Element:
+    return _equation(flat, one, "planar_coincident", 2)
+
+
+def _coincident_ground(flat: Flattening, joint: Joint, one: Element) -> Element:
+    return _equation(flat, one, "planar_coincident_ground", 2,
+                     {"c": flat.point(one.constants["c"], f"{joint.name!r}")})
+
+
+def _parallel(flat: Flattening, joint: Joint, one: Element) -> Element | None:
+    if flat.is_normal(one.constants["e"]):
+        return None
+    return _aligned(flat, joint, one, flat.is_inside(one.constants["e"]))
+
+
+def _perpendicular(flat: Flattening, joint: Joint, one: Element) -> Element | None:
+    e, n = (one.constants[name] for name in ("e", "n"))
+    if any(flat.is_normal(a) and flat.is_inside(b) for a, b in ((e, n), (n, e))):
+        return None
+    return _aligned(flat, joint, one, flat.is_inside(e) and flat.is_inside(n))
+
+
+def _aligned(flat: Flattening, joint: Joint, one: Element, symmetric: bool) -> Element:
+    if not symmetric and joint.kind not in TURNING_TOGETHER:
+        raise InputError(f"the axis of {joint.name!r} is neither in the plane nor normal to it")
+    return _equation(flat, one, "planar_aligned", 1,
+                     places=rotations(flat.node(joint.node), flat.node(joint.to)))
+
+
+def _on_line(flat: Flattening, joint: Joint, one: Element) -> Element:
+    axis = np.cross(one.constants["n1"], one.constants["n2"])
+    if flat.is_normal(axis):
+        return _equation(flat, one, "planar_coincident", 2,
+                         places=positions(*(flat.node(p.node) for p in one.places[:2])))
+    e = flat.vector(axis, f"the axis of {joint.name!r}")
+    return _equation(flat, one, "planar_on_line", 1, {"n1": np.array([-e[1], e[0]])})
+
+
+def _on_plane(flat: Flattening, joint: Joint, one: Element) -> Element | None:
+    normal = one.constants["n1"]
+    if flat.is_normal(normal):
+        return None
+    return _equation(flat, one, "planar_on_line", 1,
+                     {"n1": flat.vector(normal, f"the normal of {joint.name!r}")})
+
+
+def _distance(flat: Flattening, joint: Joint, one: Element) -> Element:
+    return _equation(flat, one, "planar_distance", 1, dict(one.constants))
+
+
+def _turn_drive(flat: Flattening, joint: Joint, one: Element) -> Element:
+    flat.axial(joint.axes.columns[:, 0], f"the axis of {joint.name!r}")
+    return _equation(flat, one, "planar_turn_drive", 1)
+
+
+def _slide_drive(flat: Flattening, joint: Joint, one: Element) -> Element:
+    e = flat.vector(one.constants["e"], f"the axis of {joint.name!r}")
+    return _equation(flat, one, "planar_slide_drive", 1,
+                     {"e": e, "start": one.constants["start"]})
+
+
+_EQUATIONS: dict[str, Callable[[Flattening, Joint, Element], Element | None]] = {
+    "coincident": _coincident, "coincident_ground": _coincident_ground, "parallel": _parallel,
+    "parallel_ground": _parallel, "perpendicular": _perpendicular, "on_line": _on_line,
+    "on_plane": _on_plane, "distance": _distance, "turn_drive": _turn_drive,
+    "slide_drive": _slide_drive}
+
+
+# rigid bodies, loads and springs
+
+
+def _rigid_body(flat: Flattening, one: Element) -> tuple[str, dict]:
+    c = one.constants
+    first = flat.vector(c["mc"], f"the centre of mass of {one.name!r}")
+    J = np.array([[c[f"J_{''.join(sorted(a + b))}"] for b in "xyz"] for a in "xyz"])
+    own = flat.plane.axes.T @ J @ flat.plane.axes
+    if np.abs(own[:2, 2]).max() > 1e-9 * np.trace(J):
+        raise InputError(f"no principal axis of inertia of {one.name!r} is normal to the plane")
+    return "planar_rigid_body", {"mass": c["mass"], "mc": first, "J_zz": own[2, 2]}
+
+
+def _unchanged(flat: Flattening, one: Element) -> tuple[str, dict]:
+    return f"planar_{one.kind}", dict(one.constants)
+
+
+def _force(flat: Flattening, one: Element) -> tuple[str, dict]:
+    return f"planar_{one.kind}", {"d": flat.vector(one.direction, repr(one.name))}
+
+
+def _torque(flat: Flattening, one: Element) -> tuple[str, dict]:
+    return "planar_torque", {"d": np.array([flat.axial(one.direction, repr(one.name))])}
+
+
+def _torsion_spring(flat: Flattening, one: Element) -> tuple[str, dict]:
+    c = one.constants
+    side = np.sign(flat.axial(np.cross(c["n"], c["m"]), f"the axis of {one.name!r}"))
+    return "planar_torsion_spring", {"k": c["k"], "k3": c["k3"], "c": c["c"],
+                                     "rest": side * c["rest"]}
+
+
+def _bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
+    of = {name: flat.plane.axes.T @ np.diag(one.constants[name]) @ flat.plane.axes
+          for name in ("k", "c", "kt", "ct")}
+    for matrix in of.values():
+        if np.abs(matrix - np.diag(np.diag(matrix))).max() > 1e-9 * np.abs(matrix).max():
+            raise InputError(f"{one.name!r} has other coefficients along axes that are neither in "
+                             "the plane nor normal to it")
+    kept: dict[str, NDArray] = {name: np.diag(matrix)[:2] if name in ("k", "c") else
+                                np.diag(matrix)[2:] for name, matrix in of.items()}
+    return "planar_bushing", kept
+
+
+_ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
+    "rigid_body": _rigid_body, "point_mass": _unchanged, "force": _force, "follower_force": _force,
+    "torque": _torque, "follower_torque": _torque, "spring": _unchanged,
+    "torsion_spring": _torsion_spring, "bushing": _bushing}

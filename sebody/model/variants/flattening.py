@@ -1,0 +1,115 @@
+"""Nodes, triplets and vectors of a spatial model in a plane, each refused that is not in it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.model.pairs import NEAR
+from sebody.model.parts import Motion, Node, Place, Triplet
+from sebody.model.plane import Plane
+
+_SAME = 1e-9            # a direction is in the plane, or normal to it, but for this part of it
+
+
+class Flattening:
+    """What of a spatial model is in a plane, and its planar counterparts.
+
+    Parameters
+    ----------
+    plane : Plane
+    size : float
+        Extent of the model [length].
+    """
+
+    def __init__(self, plane: Plane, size: float) -> None:
+        self.plane, self._near = plane, NEAR * size
+        self._nodes: dict[int, Node] = {}
+        self._triplets: dict[int, Triplet] = {}
+
+    def point(self, point: NDArray, what: str) -> NDArray:
+        """Planar coordinates of a point, (2,).
+
+        Raises
+        ------
+        InputError
+            It is off the plane.
+        """
+        own = self.plane.axes.T @ (point - self.plane.origin)
+        if abs(own[2]) > self._near:
+            raise InputError(f"{what} is {abs(own[2]):.4g} off the plane")
+        return own[:2]
+
+    def vector(self, vector: NDArray, what: str) -> NDArray:
+        """Planar components of a vector, (2,).
+
+        Raises
+        ------
+        InputError
+            It has a component along the normal.
+        """
+        own = self.plane.axes.T @ vector
+        if abs(own[2]) > _SAME * np.linalg.norm(own):
+            raise InputError(f"{what} has a component out of the plane")
+        return own[:2]
+
+    def axial(self, vector: NDArray, what: str) -> float:
+        """Component of an axial vector about the normal.
+
+        Raises
+        ------
+        InputError
+            It has a component about an axis in the plane.
+        """
+        own = self.plane.axes.T @ vector
+        if np.abs(own[:2]).max() > _SAME * np.linalg.norm(own):
+            raise InputError(f"{what} is not normal to the plane")
+        return own[2]
+
+    def is_normal(self, direction: NDArray) -> bool:
+        """Whether a direction is normal to the plane."""
+        own = self.plane.axes.T @ direction
+        return bool(np.abs(own[:2]).max() <= _SAME * np.linalg.norm(own))
+
+    def is_inside(self, direction: NDArray) -> bool:
+        """Whether a direction is in the plane."""
+        own = self.plane.axes.T @ direction
+        return bool(abs(own[2]) <= _SAME * np.linalg.norm(own))
+
+    def node(self, node: Node) -> Node:
+        """The planar node, the same for the same node."""
+        if id(node) not in self._nodes:
+            self._nodes[id(node)] = Node(
+                node.name, self.point(node.point, f"node {node.name!r}"),
+                *(None if triplet is None else self.triplet(triplet)
+                  for triplet in (node.position, node.rotation)))
+        return self._nodes[id(node)]
+
+    def place(self, place: Place) -> Place:
+        """The planar place."""
+        return Place(self.node(place.node), place.kind)
+
+    def triplet(self, triplet: Triplet) -> Triplet:
+        """The planar triplet, without motions, the same for the same triplet."""
+        if id(triplet) not in self._triplets:
+            what = f"initial velocity of {triplet.name}"
+            if triplet.rotational:
+                start, rate = np.zeros(1), np.array([self.axial(triplet.rate, what)])
+            else:
+                start = self.point(triplet.start, triplet.name)
+                rate = self.vector(triplet.rate, what)
+            made = self._triplets[id(triplet)] = Triplet(
+                triplet.name, start, rate, triplet.fixed, given=triplet.given,
+                rotational=triplet.rotational)
+            if triplet.root is not None:
+                made.root = self.triplet(triplet.root)
+                made.arms = tuple(
+                    (self.triplet(rotation), self.vector(arm, f"the rigid link to {triplet.name}"))
+                    for rotation, arm in triplet.arms)
+        return self._triplets[id(triplet)]
+
+    def motion(self, motion: Motion) -> Motion:
+        """The planar prescribed motion."""
+        what = f"the direction of {motion.name!r}"
+        direction = (np.array([self.axial(motion.direction, what)])
+                     if motion.place.kind == "rotation" else self.vector(motion.direction, what))
+        return motion._replace(direction=direction, place=self.place(motion.place))

@@ -1,0 +1,203 @@
+"""A planar model in the place of a spatial one that is symmetric about a plane."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.kernels.names import body_load_kind
+from sebody.model.bodies import superelement
+from sebody.model.frames import FRAMES
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Connection, Element, Superelement
+from sebody.model.plane import Plane
+from sebody.model.variants.copying import Variant, load_name, unknowns
+from sebody.model.variants.flat_elements import flat_element, flat_joint
+from sebody.model.variants.flattening import Flattening
+from sebody.reduction.plane import PlanarBody, planar_body
+from sebody.reduction.summary import place
+
+_SAME = 1e-9            # relative: directions and loads that differ by rounding
+_ODD = 1e-6             # of a load on modes: what is out of the plane, see `reduction.plane`
+_NORMAL = {"revolute", "planar"}    # joints whose axis is normal to the plane of motion
+
+
+def planar(model: Mechanism) -> Variant:
+    """The model in the plane in which its motion stays.
+
+    It stays there where the reflection about the plane changes nothing: nodes and forces in the
+    plane, joint axes and torques normal to it or, of sliding joints, in it, bodies whose matrices
+    do not couple motion in the plane with motion out of it. Bodies keep the internal modes that
+    move in the plane, those of one frequency turned where needed. Displacements and stresses inside
+    are kept of bodies all of whose FE nodes are in the plane. How beams were built is not: divide
+    them before.
+
+    Parameters
+    ----------
+    model : Model
+        Spatial.
+
+    Returns
+    -------
+    Variant
+        Its model's `plane` says where the planar coordinates are in space; of a planar run,
+        ``model.plane.to_space("tip.position", result["tip.position"])`` is what the spatial one
+        has.
+
+    Raises
+    ------
+    InputError
+        A planar model, what is not symmetric about the plane (the first thing that was found), or
+        no planar kernel for a body.
+    """
+    if model.planar:
+        raise InputError("the model is planar already")
+    if not model.nodes:
+        raise InputError("the model has no nodes, so it is in no plane")
+    refused = None
+    for normal in _normals(model):
+        plane = Plane.through(next(iter(model.nodes.values())).point, normal)
+        try:
+            flat_model = _Flat.of(model, Flattening(plane, model.size()))
+        except InputError as error:
+            refused = refused or InputError(
+                f"the model is not symmetric about the plane through {place(plane.origin)} normal "
+                f"to {place(plane.normal)}, so its motion leaves it: {error}")
+        else:
+            made = _built(model, flat_model)
+            before, after = unknowns(model), unknowns(made)
+            return Variant(made, f"the model is planar, normal to {place(plane.normal)}: {after} "
+                                 f"instead of {before} unknowns")
+    raise refused
+
+
+def _normals(model: Mechanism) -> Iterator[NDArray]:
+    """Candidates for the normal of the plane: axes, then normals to all that is in the plane.
+
+    Axes of drives come first and as they are: so angles count as their motions do.
+    """
+    driven = [joint.axes.columns[:, 0] for joint in model.joints if any(
+        c.kind == "turn_drive" for c in joint.constraints)]
+    axial = [joint.axes.columns[:, 0] for joint in model.joints if joint.kind in _NORMAL]
+    axial += [one.direction for one in model.loads if "torque" in one.kind]
+    inside = [node.point - next(iter(model.nodes.values())).point for node in model.nodes.values()]
+    inside += [model.gravity_field]
+    inside += [one.direction for one in model.loads if one.kind in ("force", "follower_force")]
+    for triplet in model.triplets():
+        own = [triplet.rate, *(motion.direction for motion in triplet.motions)]
+        (axial if triplet.rotational else inside).extend(own)
+    rows = [v / np.linalg.norm(v) for v in inside if np.any(v)]
+    _, values, directions = np.linalg.svd(np.vstack([*rows, np.zeros((3, 3))]))
+    around = np.eye(3) if values[1] <= _SAME * values[0] else ()     # all nodes are on a line
+    found: list[NDArray] = []
+    for unit in (*driven, *map(_upright, (*axial, directions[2], *around))):
+        if np.any(unit) and all(np.abs(np.cross(unit, one)).max() > _SAME for one in found):
+            found.append(unit)
+            yield unit
+
+
+def _upright(vector: NDArray) -> NDArray:
+    """Unit vector along a line, its largest component positive; zero as it is."""
+    largest = vector[np.argmax(np.abs(vector))]
+    return vector / np.copysign(np.linalg.norm(vector), largest) if largest else vector
+
+
+class _Flat(NamedTuple):
+    """What of a model is symmetric about a plane."""
+
+    flat: Flattening
+    model: Mechanism                    # planar, without superelements and loads
+    bodies: dict[str, PlanarBody]
+    rates: dict[str, NDArray]           # of the modes
+    loads: dict[int, list[Element]]     # of each load but those on bodies, by its id
+
+    @classmethod
+    def of(cls, model: Mechanism, flat: Flattening) -> "_Flat":
+        """All of a model.
+
+        Raises
+        ------
+        InputError
+            What is not symmetric.
+        """
+        made = type(model)(planar=True)
+        made.plane = flat.plane
+        made.nodes = {name: flat.node(node) for name, node in model.nodes.items()}
+        made.grounds = [flat.node(node) for node in model.grounds]
+        made.gravity_field = flat.vector(model.gravity_field, "gravity")
+        for triplet in model.triplets():
+            flat.triplet(triplet).motions = [flat.motion(motion) for motion in triplet.motions]
+        made.joints = [flat_joint(flat, joint) for joint in model.joints]
+        made.rigid_bodies = {name: flat_element(flat, one)
+                             for name, one in model.rigid_bodies.items()}
+        joints = dict(zip(map(id, model.joints), made.joints, strict=True))
+        made.connections = [
+            Connection(one.kind, flat.node(one.node), one.to and flat.node(one.to),
+                       one.joint and joints[id(one.joint)], one.spare)
+            for one in model.connections]
+        on_nodes = {id(load): [flat_element(flat, load)] for load in model.loads
+                    if load.mode is None and load.body is None}
+        bodies = {name: planar_body(body.body, flat.plane.axes, f"superelement {name!r}")
+                  for name, body in model.bodies.items()}
+        rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}
+        for load in model.loads:
+            if load.mode is not None:
+                on_nodes[id(load)] = _mode_forces(load, bodies[load.mode[0]])
+            elif load.body is not None and load_name(load) in bodies[load.body.name].odd_loads:
+                raise InputError(f"{load.name!r} has a part out of the plane")
+        return cls(flat, made, bodies, rates, on_nodes)
+
+
+def _rates(old: Superelement, found: PlanarBody) -> NDArray:
+    """Initial velocities of the planar modes."""
+    rates = found.modes.T @ old.mode_rates
+    bound = [triplet.rate for triplet in (*old.positions, *old.rotations)]
+    odd = np.concatenate([0.0 * v for v in bound] + [old.mode_rates - found.modes @ rates])
+    every = np.concatenate([*bound, old.mode_rates])
+    if odd @ old.body.mass @ odd > _ODD**2 * (every @ old.body.mass @ every):
+        raise InputError(f"superelement {old.name!r} has initial velocities of modes out of the "
+                         "plane")
+    return rates
+
+
+def _mode_forces(load: Element, found: PlanarBody) -> list[Element]:
+    """Forces on the planar modes that a spatial one is made of."""
+    name, mode = load.mode
+    parts = found.modes[mode]
+    if not np.isclose(parts @ parts, 1.0, atol=_ODD):
+        raise InputError(f"{load.name!r} acts on mode {mode} of superelement {name!r}, which moves "
+                         "out of the plane")
+    own = np.flatnonzero(np.abs(parts) > _SAME)
+    return [Element(load.name if len(own) == 1 else f"{load.name} ({k + 1})", "mode_force", (),
+                    {"factor": load.constants["factor"] * parts[m]}, history=load.history,
+                    mode=(name, int(m))) for k, m in enumerate(own)]
+
+
+def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
+    """The planar model, with superelements and all loads in their order."""
+    made = flat_model.model
+    for old in model.bodies.values():
+        _add_body(made, old, flat_model)
+    for load in model.loads:
+        if load.body is None:
+            made.loads += flat_model.loads[id(load)]
+        else:
+            body = made.bodies[load.body.name]
+            made.loads.append(Element(
+                load.name, body_load_kind(FRAMES[body.frame].kernel, True), body.places,
+                {"P": body.body.loads[load_name(load)]}, history=load.history, body=body))
+    made.own_names, made.default_names = set(model.own_names), model.default_names.copy()
+    return made
+
+
+def _add_body(made: Mechanism, old: Superelement, flat_model: _Flat) -> None:
+    body = flat_model.bodies[old.name].body
+    frame_node = (old.body.position_nodes[int(np.argmax(old.alpha))]
+                  if FRAMES[old.frame].on_one_node else 0)
+    stiffening = old.stiffening and body.invariants is not None and body.invariants.stiffens
+    new = superelement(made, old.name, body, [flat_model.flat.node(node) for node in old.nodes],
+                       frame=old.frame, inertia=old.inertia, frame_node=frame_node,
+                       stiffening=stiffening)
+    new.mode_rates = flat_model.rates[old.name]
