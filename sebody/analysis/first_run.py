@@ -28,8 +28,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.results import postprocessing
 
-LOOP_SECONDS = 50.0             # of one processor
-SECONDS_A_LETTER = 1e-4         # of a kernel's file
+SECONDS_A_LETTER = 7e-5         # of a kernel's file, of one processor
 WORTH_IT = 4.0                  # seconds of compiling: starting processes takes one or two
 
 _lock = Lock()
@@ -41,37 +40,39 @@ class Part(NamedTuple):
 
     function: Callable
     arguments: str                  # names in `_examples`
+    seconds: float                  # of one processor, on its own
     after: tuple[str, ...] = ()     # parts it calls, or takes most of
 
 
-# the longest chain begins first, beside what the loop is made of; the loop itself waits for that
-MATRICES = {
-    "sums": Part(matrix.sum_matrices, "system state vector"),
-    "matrix": Part(matrix.refactorize, "system state whole flag", ("sums",)),
+LOOP = {        # callees of the loop, which waits for them
+    "forces in the loop": Part(evaluate.assemble.callee, "whole whole system state vector", 0.6),
+    "output": Part(step_control.write_between.callee, "system state record whole", 1.2),
+    "correction": Part(newton.apply_correction.callee, "system state scheme flag", 1.1),
+    "evaluation": Part(loop._evaluate.callee, "system state scheme whole flag", 0.8,
+                       ("forces in the loop",)),
+    "conclusion": Part(loop._conclude.callee, "system state record scheme whole", 1.4),
+    "solution": Part(matrix.solve.callee, "system state flag", 0.5),
+    "beginning": Part(step.begin_step.callee, "system state scheme", 0.7),
+    "choice": Part(step_control.choose_step.callee, "system state", 0.1),
 }
-LOOP = {
-    "forces": Part(evaluate.assemble, "whole whole system state vector"),
-    "output": Part(step_control.write_between, "system state record whole"),
-    "correction": Part(newton.apply_correction, "system state scheme flag"),
-    "evaluation": Part(loop._evaluate, "system state scheme whole flag", ("forces",)),
-    "conclusion": Part(loop._conclude, "system state record scheme whole"),
-    "solution": Part(matrix.solve, "system state flag"),
-    "beginning": Part(step.begin_step, "system state scheme"),
-    "choice": Part(step_control.choose_step, "system state"),
-}
-PARTS = MATRICES | LOOP | {
-    "loop": Part(loop.advance, "system state record scheme whole whole flag", tuple(LOOP)),
-    "constraints": Part(postprocessing._evaluate_constraints, "system state table table",
-                        ("forces",)),
-    "powers": Part(evaluate.set_powers, "system state", ("forces",)),
-    "energies": Part(postprocessing._evaluate_energies, "system state table table", ("forces",)),
-    "reactions": Part(postprocessing._evaluate_forces, "system state table table table",
-                      ("forces",)),
-    "loads": Part(evaluate.set_loads, "system vector number"),
-    "motions": Part(evaluate.move_prescribed, "system state"),
-    "links": Part(links.place_dependent, "links vector vector vector vector"),
-    "axes": Part(evaluate.to_body_axes, "system vector vector flag"),
-    "records": Part(step.write_record, "state record"),
+PARTS = LOOP | {
+    "loop": Part(loop.advance, "system state record scheme whole whole flag", 3.6, tuple(LOOP)),
+    "sums": Part(matrix.sum_matrices, "system state vector", 1.4),
+    "matrix": Part(matrix.refactorize, "system state whole flag", 3.4, ("sums",)),
+    "forces": Part(evaluate.assemble, "whole whole system state vector", 0.3,
+                   ("forces in the loop",)),
+    "constraints": Part(postprocessing._evaluate_constraints, "system state table table", 0.6,
+                        ("forces in the loop",)),
+    "powers": Part(evaluate.set_powers, "system state", 0.3, ("forces in the loop",)),
+    "energies": Part(postprocessing._evaluate_energies, "system state table table", 0.3,
+                     ("forces in the loop",)),
+    "reactions": Part(postprocessing._evaluate_forces, "system state table table table", 0.4,
+                      ("forces in the loop",)),
+    "loads": Part(evaluate.set_loads, "system vector number", 0.3),
+    "motions": Part(evaluate.move_prescribed, "system state", 0.2),
+    "links": Part(links.place_dependent, "links vector vector vector vector", 0.3),
+    "axes": Part(evaluate.to_body_axes, "system vector vector flag", 0.2),
+    "records": Part(step.write_record, "state record", 0.1),
 }
 
 
@@ -100,7 +101,8 @@ def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
         lacking = [name for name in parts
                    if name not in _ready and not PARTS[name].function._cache.holds_any()]
         _ready.update(kernels, parts)
-        seconds = sum(map(_seconds, missing.values())) + LOOP_SECONDS * ("loop" in lacking)
+        seconds = (sum(map(_seconds, missing.values()))
+                   + sum(PARTS[name].seconds for name in lacking))
         if (missing or lacking) and seconds >= WORTH_IT:
             _compile(missing, lacking, seconds, report)
 
@@ -108,7 +110,7 @@ def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
 def _compile(kernels: dict[str, Path], parts: list[str], seconds: float,
              report: Callable[[str, float], None] | None) -> None:
     what = [f"{len(kernels)} kernel{'s' * (len(kernels) > 1)}"] if kernels else []
-    what = " and ".join([*["the time loop"] * ("loop" in parts), *what])
+    what = " and ".join([*["the time loop"] * bool(parts), *what])
     if not store.writable(Path(loop.__file__)):
         print(f"compiling {what}, about {seconds:.0f} s, at every start: there is no folder to "
               "keep the machine code in", file=sys.stderr, flush=True)
@@ -117,17 +119,27 @@ def _compile(kernels: dict[str, Path], parts: list[str], seconds: float,
     print(f"first run: compiling {what} in {workers.PROCESSES} processes, about {seconds:.0f} s",
           file=sys.stderr, flush=True)
     began = time.perf_counter()
-    slowest_first = sorted(kernels, key=lambda name: -_seconds(kernels[name]))
-    workers.call_all(
-        [*(Task(name, f"{__name__}:compile_part", (name,), PARTS[name].after) for name in parts),
-         *(Task(name, "sebody.kernels.loader:load", (name,)) for name in slowest_first)], report)
+    tasks = [*(Task(name, f"{__name__}:compile_part", (name,), PARTS[name].after)
+               for name in parts),
+             *(Task(name, "sebody.kernels.loader:load", (name,)) for name in kernels)]
+    left = {name: _seconds(path) for name, path in kernels.items()} | _chains(parts)
+    workers.call_all(sorted(tasks, key=lambda task: -left[task.name]), report)
     print(f"compiled in {time.perf_counter() - began:.0f} s; later runs find it in the cache",
           file=sys.stderr, flush=True)
 
 
+def _chains(parts: list[str]) -> dict[str, float]:
+    """Seconds from the beginning of each part to the end of what waits for it."""
+    found: dict[str, float] = {}
+    for name in reversed(PARTS):        # what waits for a part comes after it
+        found[name] = PARTS[name].seconds + max(
+            (found[other] for other in found if name in PARTS[other].after), default=0.0)
+    return {name: found[name] for name in parts}
+
+
 def compile_part(name: str) -> None:
     """Compile a part of the loop here, or find it in the cache."""
-    function, arguments, _ = PARTS[name]
+    function, arguments, _, _ = PARTS[name]
     function.compile(tuple(_examples()[name] for name in arguments.split()))
 
 

@@ -9,6 +9,9 @@ import sys
 
 import pytest
 
+from sebody.analysis import first_run
+from sebody.kernels.loader import find
+
 SPY = """
 import sys
 from numba.core import ccallback, event
@@ -104,3 +107,17 @@ def test_without_a_folder_to_write_to_nothing_is_compiled_twice(run):
 def test_small_tasks_are_not_worth_processes(run):
     out, said = run(KERNEL.replace("first_run.WORTH_IT = 0.0", ""))
     assert out == "True True" and not said
+
+
+def test_what_others_wait_for_begins_first(monkeypatch):
+    """A long kernel goes beside the parts of the loop; the loop begins before what is short."""
+    given = []
+    monkeypatch.setattr(first_run.workers, "call_all", lambda tasks, report: given.extend(tasks))
+    kernels = {name: find(name) for name in ("element_force", "superelement_f2_converged_mean_c")}
+    first_run._compile(kernels, list(first_run.PARTS), 30.0, None)
+    names = [task.name for task in given]
+    assert sorted(names) == sorted([*kernels, *first_run.PARTS])
+    for name, part in first_run.PARTS.items():
+        assert all(names.index(before) < names.index(name) for before in part.after)
+    assert names[0] == "superelement_f2_converged_mean_c"
+    assert names.index("loop") < min(map(names.index, ("records", "energies", "element_force")))

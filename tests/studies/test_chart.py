@@ -178,6 +178,7 @@ def test_the_quickest_of_several_runs_counts():
     quiet, busy = repeated([lambda: run("quiet"), lambda: run("busy")])
     assert (quiet, busy) == ((1.0, 9.0), (1.2, 5.0))
     assert calls[:6] == ["quiet", "busy"] * 3 and calls[6:] == ["busy"] * 2
+    assert repeated([lambda: 30.0]) == [(30.0, 30.0)]       # long runs are not repeated
 
 
 def test_chart_writes_table_and_picture(tmp_path, monkeypatch, capsys):

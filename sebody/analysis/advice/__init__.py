@@ -7,7 +7,8 @@ import numpy as np
 from sebody import inputs
 from sebody.analysis.advice.conclusion import conclusion
 from sebody.analysis.advice.laboratory import Laboratory
-from sebody.analysis.advice.outcome import Advice, Reason, Trial
+from sebody.analysis.advice.limits import refusal
+from sebody.analysis.advice.outcome import Advice, Reason, Trial, Unreached
 from sebody.analysis.advice.quantities import Quantities
 from sebody.analysis.advice.runs import Runs
 from sebody.analysis.advice.search import Search
@@ -51,7 +52,7 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
     ------
     InputError
         Quantities that do not exist or do not change, or a tolerance that the richest model does
-        not reach.
+        not reach: then `advice` of the exception is the best that was found.
     SimulationError
         The richest model does not run, or its error does not fall with the step.
     """
@@ -72,6 +73,7 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
             found, given = search.go(), lab.given()
         except KeyboardInterrupt:
             return conclusion(search, search.best(), interrupted=True)
-    if found.error > tolerance:
-        raise lab.unreached(found)
-    return conclusion(search, found, given)
+    advice = conclusion(search, found, given)
+    if reason := refusal(search, found):
+        raise Unreached(reason, advice)
+    return advice

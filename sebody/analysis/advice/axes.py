@@ -41,6 +41,8 @@ class Axis(NamedTuple):
 AXES = (
     Axis("planar", "model", "in a plane where it is symmetric about it, in space", ("planar",)),
     Axis("shared", "model", "joints of shared positions and rotations, of equations", ("shared",)),
+    Axis("dropped", "model", "without positions and rotations that only one body has, with them",
+         ("drop_triplet",)),
     Axis("rigid", "part", "rigid, flexible", ("rigid",), rigidity),
     Axis("division", "part", "1, 2, 4, 8 bodies of a beam", ("divide",), linearity,
          ("bodies",)),

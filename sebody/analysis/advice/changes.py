@@ -1,6 +1,6 @@
 """Choices of forms and steps, and the models they make: changes by name, for runs and as code."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import NamedTuple
 
 from sebody.analysis.advice.forms import Form, Part
@@ -8,8 +8,10 @@ from sebody.errors import InputError
 from sebody.model.model import Model
 from sebody.model.variants import (
     Variant,
+    can_be_dropped,
     can_be_shared,
     divide,
+    drop_triplet,
     keep_modes,
     planar,
     rigid,
@@ -19,7 +21,7 @@ from sebody.model.variants import (
 
 FUNCTIONS: dict[str, Callable[..., Variant]] = {
     function.__name__: function
-    for function in (divide, keep_modes, with_options, rigid, shared, planar)}
+    for function in (divide, keep_modes, with_options, rigid, drop_triplet, shared, planar)}
 
 
 class Step(NamedTuple):
@@ -39,12 +41,13 @@ class Step(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """Forms of all parts, in their order, the steps, and what is exact."""
+    """Forms of all parts, in their order, the steps, and changes of the whole model."""
 
     forms: tuple[Form, ...]
     step: Step
     planar: bool = False
     shared: bool = False
+    dropped: bool = False
 
     def poorer(self, other: "Choice") -> bool:
         """Whether it has no more of anything than another."""
@@ -118,10 +121,12 @@ class Builder:
     ----------
     model : Model
     parts : list of Part
+    kept : set of str
+        Names of nodes whose triplets are not dropped.
     """
 
-    def __init__(self, model: Model, parts: list[Part]):
-        self.model, self.parts = model, parts
+    def __init__(self, model: Model, parts: list[Part], kept: Collection[str] = ()):
+        self.model, self.parts, self.kept = model, parts, kept
         self._made: dict[tuple, Made | InputError] = {}
 
     def make(self, choice: Choice) -> Made:
@@ -155,6 +160,11 @@ class Builder:
         model, done, sentences = self.model, [], []
         for change in made:
             model = _apply(change, model, done, sentences)
+        if choice.dropped:
+            for body, node, what in can_be_dropped(model):
+                if node not in self.kept:
+                    model = _apply(Change("drop_triplet", body, {"node": node, "what": what}),
+                                   model, done, sentences)
         if choice.shared:
             for name in can_be_shared(model):
                 model = _apply(Change("shared", name, {}), model, done, sentences)

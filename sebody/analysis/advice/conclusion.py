@@ -2,6 +2,7 @@
 
 from sebody.analysis.advice.changes import Choice
 from sebody.analysis.advice.laboratory import Tried
+from sebody.analysis.advice.limits import doubts
 from sebody.analysis.advice.outcome import Advice
 from sebody.analysis.advice.reasons import neighbours, reasons
 from sebody.analysis.advice.search import Search
@@ -24,7 +25,7 @@ def conclusion(search: Search, found: Tried, given: Tried | None = None,
     made = lab.builder.make(choice)
     seconds = found.seconds if interrupted else _quickest(search, found)
     remarks = [] if given is None or interrupted else [
-        *_saved(search, seconds, given), *neighbours(search, choice)]
+        *_saved(search, seconds, given), *doubts(search), *neighbours(search, choice)]
     return Advice(
         made.model, choice.step.h, made.sentences, float(found.error), lab.tolerance,
         tuple(lab.table), tuple(search.untried),

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from math import inf
 
+import numpy as np
+
 from sebody.analysis.advice.changes import Builder, Choice, Step
 from sebody.analysis.advice.cost import Cost
 from sebody.analysis.advice.estimates import Estimates, expected
@@ -48,7 +50,7 @@ class Laboratory:
         self.model, self.quantities, self.runs = model, quantities, runs
         self.tolerance = tolerance
         self.parts: list[Part] = parts_of(model, quantities.owners)
-        self.builder = Builder(model, self.parts)
+        self.builder = Builder(model, self.parts, quantities.owners)
         self.cost = Cost(model, self.parts, runs.t_end)
         self.table: list[Trial] = []
         self.tried: list[Tried] = []
@@ -79,8 +81,11 @@ class Laboratory:
         choice = self.richest
         first = self._base(choice.step.h)
         for k in still(first.values):
-            raise InputError(f"quantity {self.quantities.histories[k]!r} does not change: give one "
-                             "that the motion changes")
+            what = f"quantity {self.quantities.histories[k]!r} does not change"
+            if not np.ptp(first.result.recorded("q"), axis=0).any():
+                raise InputError(f"{what}: the model does not move; give it loads, a drive or "
+                                 "initial velocities")
+            raise InputError(f"{what}: give one that the motion changes")
         for part in FINER[1:]:
             try:
                 self._base(self.runs.h / part)
@@ -106,7 +111,7 @@ class Laboratory:
             self.tried.append(Tried(choice._replace(step=Step(h)), errors[h], errors[h],
                                     self.bases[h].seconds))
         recorded = Recorded(self.model, first.result, self.quantities.histories,
-                            self.reference.sizes)
+                            self.reference.sizes, first.values.frequencies)
         self.estimates = Estimates(recorded, self.parts,
                                    {Step(h): error for h, error in errors.items()})
 
@@ -153,13 +158,6 @@ class Laboratory:
         """The model as it was given, with the given step: what would have been run."""
         forms = tuple(part.given for part in self.parts)
         return self.attempt(Choice(forms, Step(self.runs.h)), "given")[0]
-
-    def unreached(self, best: Tried) -> InputError:
-        """What to raise where nothing is within the tolerance."""
-        return InputError(
-            f"no model that was tried is within {self.tolerance:g}; the best has an error of "
-            f"{best.error:.2g}, with the step {best.choice.step}: give a smaller h, a larger "
-            "tolerance or a larger budget")
 
     def error(self, run: Run) -> float:
         """Error of a run with that of the reference."""

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
 from sebody.analysis.tolerance import Tolerance
+from sebody.errors import InputError
 from sebody.model.model import Model
 
 
@@ -40,6 +41,14 @@ class Trial:
     cost: float = 0.0
     kind: str = "reference"
     local: float | None = None
+
+
+class Unreached(InputError):
+    """No model within the tolerance; `advice` is the best there is, None without a reference."""
+
+    def __init__(self, message: str, advice: "Advice | None" = None):
+        super().__init__(message)
+        self.advice = advice
 
 
 class Reason(NamedTuple):

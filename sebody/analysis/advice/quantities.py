@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.analysis.linearization import modes, vibrations
+from sebody.analysis.linearization import modes
 from sebody.analysis.simulation import Simulation
 from sebody.errors import InputError, LimitWarning
 from sebody.model.model import Model
@@ -89,7 +89,7 @@ class Quantities:
     def _frequencies(self, result: Result, h: float) -> list[float]:
         run = Simulation(result.model, h)
         try:
-            omega = (vibrations(run) if not np.abs(run.state.v).max() else modes(run)).omega
+            omega = modes(run).omega
         except InputError as reason:
             raise InputError(f"the model has no frequencies at its start: {reason}") from reason
         flexible = omega[omega > RIGID * omega.max(initial=0.0)]

@@ -5,24 +5,24 @@ import numpy as np
 from sebody.analysis.advice.changes import Choice
 from sebody.analysis.advice.forms import Form, Part
 from sebody.analysis.advice.indicators.linearity import local_rotations
-from sebody.analysis.advice.indicators.stiffening import first_frequency
-from sebody.analysis.advice.indicators.vibration import frequency
+from sebody.analysis.advice.indicators.vibration import first_frequency, frequency
 from sebody.analysis.advice.laboratory import Laboratory
 from sebody.analysis.advice.outcome import Reason
 from sebody.analysis.advice.search import Search
 
 TURN = 2.0 * np.pi
+# what is chosen of the whole model, and why
+WHOLE = {"planar": ("planar", "it is symmetric about the plane"),
+         "shared": ("joints of shared positions and rotations", "they replace equations"),
+         "dropped": ("positions and rotations left out", "only one body has them")}
 
 
 def reasons(search: Search, choice: Choice) -> list[Reason]:
     """Of the model, of every part and of the step."""
     lab, found = search.lab, []
-    if choice.planar:
-        found.append(Reason("model", "planar", "it is symmetric about the plane", 0.0,
-                            search.exact.get("planar")))
-    if choice.shared:
-        found.append(Reason("model", "joints of shared positions and rotations",
-                            "they replace equations", 0.0, search.exact.get("shared")))
+    for name, (chosen, why) in WHOLE.items():
+        if getattr(choice, name):
+            found.append(Reason("model", chosen, why, 0.0, search.exact.get(name)))
     for k, (part, form) in enumerate(zip(lab.parts, choice.forms, strict=True)):
         found += _of_part(lab, k, part, form)
     return [*found, _of_step(search, choice)]
@@ -46,7 +46,7 @@ def in_words(part: Part, form: Form) -> str:
     """A form in a few words."""
     if form.rigid:
         return "rigid"
-    bodies = f"{form.bodies} bod{'y' if form.bodies == 1 else 'ies'} of " if part.beam else ""
+    bodies = f"{form.bodies} bod{'y' if form.bodies == 1 else 'ies'} with " if part.beam else ""
     each = " each" if form.bodies > 1 else ""
     stiffening = "" if form.inertia != "c" else (
         ", stiffening" if form.stiffening else ", not stiffening")
@@ -82,7 +82,7 @@ def _slowness(lab: Laboratory, part: Part, form: Form) -> str:
     else:
         return "all there are"
     moving = recorded.motion_frequency
-    return f"{what} is {omitted / moving:.2g} times the motion's" if moving > 0 else (
+    return f"{what} is {_short(omitted / moving)} times the motion's" if moving > 0 else (
         f"{what} is {omitted / TURN:.2g}")
 
 
@@ -97,9 +97,14 @@ def _of_step(search: Search, choice: Choice) -> Reason:
     vibrations = [frequency(recorded, recorded.deformation(recorded.nodes(part)).shifts)
                   for part, form in zip(lab.parts, choice.forms, strict=True) if not form.rigid]
     fastest = max(vibrations, default=0.0)
-    steps = f"{TURN / fastest / step.h:.2g} steps a period of the vibration" if fastest else ""
+    steps = f"{_short(TURN / fastest / step.h)} steps a period of the vibration" if fastest else ""
     return Reason("step", f"{step.h:g}, {_times(step.h / lab.runs.h)} given", steps,
                   confirmed=halved)
+
+
+def _short(number: float) -> str:
+    """Two digits of a number."""
+    return f"{float(f'{number:.2g}'):g}"
 
 
 def _times(ratio: float) -> str:

@@ -10,9 +10,12 @@ from sebody.analysis.advice.forms import Form
 from sebody.analysis.advice.indicators.activity import activity
 from sebody.analysis.advice.laboratory import FINER, Laboratory, Tried
 from sebody.analysis.advice.reference import ORDER_FACTOR
+from sebody.errors import InputError
+from sebody.kernels.names import ANY
 
 LONGER = (4, 2)             # steps that are tried, in given ones
-MOST_ALONE = 6              # forms of a part that are tried alone
+MOST_ALONE = 12             # forms of a part that are tried alone
+APART = 0.5                 # of the budget, that all of them may take
 MOST_TOGETHER = 24          # choices that are tried
 SHARE = 0.5                 # of the tolerance, that one part may use
 EXACT = 0.05                # of the tolerance, that a change may make that should make none
@@ -34,7 +37,7 @@ class Search:
     def __init__(self, lab: Laboratory, budget: float):
         self.lab, self.budget, self.tolerance = lab, budget, lab.tolerance
         self.untried: list[str] = []
-        self.planar = self.shared = self.variable = False
+        self.planar = self.shared = self.dropped = self.variable = False
         self.exact: dict[str, float] = {}       # errors of what should change nothing
         self._failed: list[Choice] = []
 
@@ -57,11 +60,11 @@ class Search:
     def base(self) -> Choice:
         """The richest choice, with the longest step it ran with and all exact changes."""
         return self.lab.richest._replace(step=Step(max(self.lab.bases)), planar=self.planar,
-                                         shared=self.shared)
+                                         shared=self.shared, dropped=self.dropped)
 
     def _exact(self) -> None:
-        """Try what should change nothing: a planar model, shared triplets."""
-        for name in ("shared", "planar"):
+        """Try what should change nothing: shared and dropped triplets, a planar model."""
+        for name in ("shared", "dropped", "planar"):
             changed = self.base._replace(**{name: True})
             if self.spent() or not self._applies(changed):
                 continue
@@ -70,21 +73,23 @@ class Search:
                 self.exact[name] = self.lab.apart(run, changed.step.h)
             if self.exact.get(name, inf) <= EXACT * self.tolerance:
                 setattr(self, name, True)
-            else:
-                self._failed.append(changed)
 
     def _applies(self, choice: Choice) -> bool:
-        """Whether a choice can be made, and differs from that before."""
+        """Whether a choice can be made, differs from that before, and has kernels of its own."""
+        before = self.lab.builder.make(self.base)
         try:
-            return self.lab.builder.make(choice).changes != self.lab.builder.make(
-                self.base).changes
-        except ValueError:      # InputError: the model is planar, or not symmetric
+            after = self.lab.builder.make(choice)
+        except InputError:      # the model is planar, or not symmetric
             return False
+        general = [any(f"_{ANY}_" in body.kernel for body in made.model.bodies.values())
+                   for made in (before, after)]
+        return after.changes != before.changes and general[1] <= general[0]
 
     def _variable(self) -> None:
         """Try variable steps where the motion is quiet but for short times."""
         finest = self.lab.bases[min(self.lab.bases)]
-        if self.spent() or activity(finest.result) > RARE:
+        if self.spent() or not self.lab.quantities.histories or (
+                activity(finest.result) > RARE):
             return
         step = Step(self.lab.runs.h, self.tolerance / LOCAL)
         found, run = self.lab.attempt(self.base._replace(step=step), "alone")
@@ -101,11 +106,13 @@ class Search:
         def cost(form: Form) -> float:
             return of_form(part, form, self.planar)
         forms = sorted((form for form in part.forms if form != part.richest), key=cost)
+        left = max(APART * self.budget - self.lab.spent(), 0.0) / (len(self.lab.parts) - k)
+        most = self.lab.spent() + left
         for _ in range(MOST_ALONE):
             form = next((
                 f for f in forms if cost(f) < best and not any(f.poorer(one) for one in failed)
                 and least(self.lab.estimates.of_form(k, f)) <= SHARE * self.tolerance), None)
-            if form is None or self.spent():
+            if form is None or self.lab.spent() > most:
                 return
             forms.remove(form)
             choice = base._replace(forms=tuple(
@@ -119,8 +126,10 @@ class Search:
                 failed.append(form)
 
     def steps(self) -> list[Step]:
-        """Steps that are tried."""
+        """Steps that are tried; frequencies do not depend on it."""
         h, shortest = self.lab.runs.h, min(self.lab.bases)
+        if not self.lab.quantities.histories:
+            return [Step(h)]
         count = round(self.lab.runs.t_end / h)
         found = [Step(k * h) for k in LONGER if count % k == 0]
         found += [Step(h / k) for k in sorted(FINER)]
@@ -166,14 +175,22 @@ class Search:
         judged = expected if sure else least
         forms = [[part.richest] if part.name in self.untried else list(part.forms)
                  for part in self.lab.parts]
-        found = [Choice(one, step, self.planar, self.shared)
+        found = [self.base._replace(forms=one, step=step)
                  for one in combinations(self.lab.parts, forms, self.lab.estimates, self.planar)
                  for step in self.steps()]
-        excluded = [] if sure else [*self._failed, *(
+        done = [] if sure else [*self._failed, *(
             one.choice for one in self.lab.tried if one.error > self.tolerance)]
         return next((one for one in sorted(found, key=self.lab.cost.of)
-                     if not any(one.poorer(other) for other in excluded)
+                     if not any(self._excludes(other, one) for other in done)
                      and judged(self.lab.estimates.contributions(one)) <= tolerance), None)
+
+    def _excludes(self, failed: Choice, one: Choice) -> bool:
+        """Whether a choice that was not enough says that another one is not, either.
+
+        The vibrations of the richest model ask for shorter steps than poorer ones may need.
+        """
+        whole = failed.forms == self.lab.richest.forms
+        return one == failed if whole else one.poorer(failed)
 
     def halved(self, choice: Choice) -> float | None:
         """Error of the step of a choice, from its run with half of it; None without one."""

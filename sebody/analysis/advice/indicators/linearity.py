@@ -26,10 +26,14 @@ def linearity(recorded: Recorded, part: Part, form: Form) -> float:
     """
     if form.bodies == part.richest.bodies:
         return 0.0
-    whole = recorded.deformation(recorded.nodes(part))
     damping = float(part.beam.options["damping"])
-    found = np.array(local_rotations(recorded, part, form.bodies))
+    return bent(recorded, part, form.bodies) + detuned(recorded, part, damping, DAMPED)
+
+
+def bent(recorded: Recorded, part: Part, bodies: int) -> float:
+    """Error of linear theory in a part of so many bodies."""
+    whole = recorded.deformation(recorded.nodes(part))
+    found = np.array(local_rotations(recorded, part, bodies))
     square = (found**3).sum() / max(found.sum(), 1e-300)
-    return (min(MISSED * square, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
-                                                strain_force(recorded, part))
-            + detuned(recorded, part, damping, DAMPED))
+    return min(MISSED * square, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
+                                               strain_force(recorded, part))

@@ -1,5 +1,7 @@
 """What internal modes that are left out would have done."""
 
+from math import inf
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
@@ -12,6 +14,7 @@ from sebody.analysis.advice.indicators.recorded import Recorded
 from sebody.analysis.advice.indicators.vibration import detuned
 from sebody.reduction import ReducedBody
 
+COUPLED = 0.2       # of squared frequencies, by which the first of a cantilever is off
 RESOLVED = 1.5      # largest angle of an oscillator in a recorded step: above, it answers at once
 
 
@@ -21,11 +24,12 @@ def omission(recorded: Recorded, part: Part, form: Form) -> float:
     Each mode left out is an oscillator, ``m y'' + k y = -M_yB a_B - p``, driven by the recorded
     accelerations of the boundary. Its inertia force ``M_By y''`` is missing there. The inertia that
     it would add, by its strain energy relative to that of the boundary's deformation, changes the
-    period of the vibration.
+    period of the vibration. A frequency is off by a fifth of its square over that of the first mode
+    left out, which is what a cantilever of one body without modes has.
     """
     whole = recorded.nodes(part)
     shifts, turns = (0.0 * one for one in recorded.deformation(whole)[:2])
-    added, kept, force = 0.0, 0.0, Force()
+    added, kept, force, slowest = 0.0, 0.0, Force(), inf
     for nodes, body in recorded.bodies(part, form.bodies):
         if form.modes >= body.modes:
             continue
@@ -34,6 +38,7 @@ def omission(recorded: Recorded, part: Part, form: Form) -> float:
         left = slice(n + form.modes, None)
         coupling, k, m = body.mass[:n, left], *(np.diag(A)[left] for A in (
             body.stiffness, body.mass))
+        slowest = min(slowest, float(np.sqrt((k / m).min())))
         y = _answers(-recorded.accelerations(nodes, body) @ coupling, k, m, recorded.interval)
         inertia = recorded.rate(recorded.rate(y))
         forces = inertia @ coupling.T
@@ -46,10 +51,11 @@ def omission(recorded: Recorded, part: Part, form: Form) -> float:
         u = u - u.mean(axis=0)
         kept += float(np.einsum("ni,ij,nj->n", u, body.stiffness[:n, :n], u).mean())
         added += float(((y - y.mean(axis=0))**2 @ k).mean())
+    off = [min(COUPLED * (omega / slowest)**2, 1.0) for omega in recorded.frequencies]
     if added == 0.0:
-        return 0.0
-    return (carried(recorded, part, shifts, turns, force)
-            + detuned(recorded, part, min(added / max(kept, 1e-300) / 2, 1.0)))
+        return max(off, default=0.0)
+    return max([carried(recorded, part, shifts, turns, force)
+                + detuned(recorded, part, min(added / max(kept, 1e-300) / 2, 1.0)), *off])
 
 
 def _given_way(body: ReducedBody, coupling: NDArray, y: NDArray, inertia: NDArray) -> NDArray:

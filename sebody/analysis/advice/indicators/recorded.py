@@ -35,11 +35,14 @@ class Recorded:
     quantities : list of str
     sizes : list of float
         Largest changes of the quantities.
+    frequencies : list of float
+        That are to be kept, angular ones.
     """
 
     def __init__(self, given: Model, result: Result, quantities: list[str],
-                 sizes: list[float]):
+                 sizes: list[float], frequencies: list[float]):
         self.given, self.result, self.quantities, self.sizes = given, result, quantities, sizes
+        self.frequencies = frequencies
         self.every = max(1, len(result.rows) // STATES)
         self.duration = float(result.t[-1])
         self.interval = self.every * float(result.t[1] - result.t[0])

@@ -3,8 +3,15 @@
 from sebody.analysis.advice.forms import Form, Part
 from sebody.analysis.advice.indicators.carried import carried
 from sebody.analysis.advice.indicators.recorded import Recorded
+from sebody.analysis.advice.indicators.vibration import first_frequency
 
 
 def rigidity(recorded: Recorded, part: Part, form: Form) -> float:
-    """Error if a part is rigid: all of its recorded deformation."""
-    return carried(recorded, part, *recorded.deformation(recorded.nodes(part))[:2])
+    """Error if a part is rigid: all of its recorded deformation.
+
+    Of a frequency: its square over that of the first frequency with a node held.
+    """
+    (_, body), *_ = recorded.bodies(part, 1)
+    first = first_frequency(body)
+    return max([carried(recorded, part, *recorded.deformation(recorded.nodes(part))[:2]),
+                *(min((omega / first)**2, 1.0) for omega in recorded.frequencies)])

@@ -2,13 +2,12 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 
 from sebody.analysis.advice.forms import Form, Part
 from sebody.analysis.advice.indicators.carried import Force, carried
 from sebody.analysis.advice.indicators.coordinates import compliance, flat, nodal
 from sebody.analysis.advice.indicators.recorded import Recorded
-from sebody.analysis.advice.indicators.vibration import detuned, strain_force
+from sebody.analysis.advice.indicators.vibration import detuned, first_frequency, strain_force
 from sebody.reduction import ReducedBody
 
 SPIN = {"a": 1.0, "b": 1.0, "d": 0.3, "c": 0.0}     # of the square of spin over frequency
@@ -68,17 +67,3 @@ def spin(recorded: Recorded, part: Part, form: Form) -> float:
     return (min(change, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
                                        strain_force(recorded, part))
             + detuned(recorded, part, min(change / 2, 1.0)))
-
-
-def first_frequency(body: ReducedBody) -> float:
-    """Lowest frequency with the coordinates of one node held, of all nodes."""
-    d = body.coordinates.shape[1]
-    owner = np.repeat([*body.position_nodes, *body.rotation_nodes],
-                      [d] * len(body.position_nodes)
-                      + [3 if d == 3 else 1] * len(body.rotation_nodes))
-    squares = []
-    for node in set(owner):
-        free = np.flatnonzero(owner != node)
-        K, M = (A[np.ix_(free, free)] for A in (body.stiffness, body.mass))
-        squares.append(float(eigh(K, M, eigvals_only=True)[0]))
-    return float(np.sqrt(max(min(squares), 1e-300)))

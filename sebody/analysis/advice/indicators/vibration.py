@@ -2,11 +2,13 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
 from sebody.analysis.advice.forms import Part
 from sebody.analysis.advice.indicators.carried import Force, carried
 from sebody.analysis.advice.indicators.coordinates import flat
 from sebody.analysis.advice.indicators.recorded import Recorded
+from sebody.reduction import ReducedBody
 
 MOST = 2.0      # amplitudes: in antiphase
 
@@ -37,3 +39,17 @@ def frequency(recorded: Recorded, shifts: NDArray) -> float:
     """Mean angular frequency of a vibration."""
     size = float(np.sqrt((shifts**2).mean()))
     return float(np.sqrt((recorded.rate(shifts)**2).mean())) / size if size > 0.0 else 0.0
+
+
+def first_frequency(body: ReducedBody) -> float:
+    """Lowest frequency with the coordinates of one node held, of all nodes."""
+    d = body.coordinates.shape[1]
+    owner = np.repeat([*body.position_nodes, *body.rotation_nodes],
+                      [d] * len(body.position_nodes)
+                      + [3 if d == 3 else 1] * len(body.rotation_nodes))
+    squares = []
+    for node in set(owner):
+        free = np.flatnonzero(owner != node)
+        K, M = (A[np.ix_(free, free)] for A in (body.stiffness, body.mass))
+        squares.append(float(eigh(K, M, eigvals_only=True)[0]))
+    return float(np.sqrt(max(min(squares), 1e-300)))
