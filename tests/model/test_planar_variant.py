@@ -299,6 +299,20 @@ def test_joints_loads_and_drives_of_all_kinds_act_as_in_space():
         "energy.kinetic", "energy.strain", "energy.potential", "energy.external_work"))
 
 
+def test_a_bushing_that_turns_follows_its_angle():
+    """In space its energy is that of the sine: a moment less by two thirds of the angle squared."""
+    model = beam(FLAT)
+    model.bushing("tip", stiffness=20.0, turning_stiffness=300.0, name="rubber")
+    made, sentence = planar(model)
+    assert sentence.endswith(" unknowns; moments of rubber follow angles, in space their sines")
+    found, expected = (simulate(one, H, STEPS * H, EXACT) for one in (made, model))
+    moment = made.plane.to_space("rubber.moment", found["rubber.moment"])
+    angle = np.abs(found["tip.rotation"]).max()
+    size = np.abs(moment).max()
+    assert 1e-3 < angle < 0.1
+    assert np.abs(moment - expected["rubber.moment"]).max() < angle**2 * size
+
+
 def in_plane(model: Model) -> None:
     """Nodes on a line in the plane, which says nothing about the normal."""
     for name, x in (("a", 0), ("b", 40), ("c", 40)):
