@@ -51,47 +51,32 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (300, 136, 249, 3),
               "column": (81, 172, 811, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "f1fddd2cb44d"     # hash of sebody/kernels, which this file was made for
+ROOM = "2f105d8a6508"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
-    n = 16
     field = at(coefficients, FIELD)
-    row = padded(max(n, 9*N_ROTATIONS))
-    qe = at(work, 0*row)
-    ve = at(work, 1*row)
-    ae = at(work, 2*row)
-    y = at(work, 3*row)
-    e0s = at(work, 4*row)
-    e1s = at(work, 5*row)
-    yd = at(work, 6*row)
-    acc = at(work, 7*row)
-    ydd = at(work, 8*row)
-    gamma = at(work, 9*row)
-    d = at(work, 10*row)
-    s = at(work, 11*row)
-    weight = at(work, 12*row)
-    p = at(work, 13*row)
-    pd = at(work, 14*row)
-    h = at(work, 15*row)
-    dqe = at(work, 16*row)
-    dve = at(work, 17*row)
-    dae = at(work, 18*row)
-    dy = at(work, 19*row)
-    ds = at(work, 20*row)
-    dgamma = at(work, 21*row)
-    dd = at(work, 22*row)
-    dweight = at(work, 23*row)
-    dyd = at(work, 24*row)
-    dacc = at(work, 25*row)
-    dydd = at(work, 26*row)
-    dp = at(work, 27*row)
-    dpd = at(work, 28*row)
-    dh = at(work, 29*row)
-    dg = at(work, 30*row)
     for element in range(count):
+        n = 16
+        row = padded(max(n, 9*N_ROTATIONS))
+        qe = at(work, 0*row)
+        ve = at(work, 1*row)
+        ae = at(work, 2*row)
+        y = at(work, 3*row)
+        e0s = at(work, 4*row)
+        e1s = at(work, 5*row)
+        yd = at(work, 6*row)
+        acc = at(work, 7*row)
+        ydd = at(work, 8*row)
+        gamma = at(work, 9*row)
+        d = at(work, 10*row)
+        s = at(work, 11*row)
+        weight = at(work, 12*row)
+        p = at(work, 13*row)
+        pd = at(work, 14*row)
+        h = at(work, 15*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -407,6 +392,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
+            dqe = at(work, 16*row)
+            dve = at(work, 17*row)
+            dae = at(work, 18*row)
+            dy = at(work, 19*row)
+            ds = at(work, 20*row)
+            dgamma = at(work, 21*row)
+            dd = at(work, 22*row)
+            dweight = at(work, 23*row)
+            dyd = at(work, 24*row)
+            dacc = at(work, 25*row)
+            dydd = at(work, 26*row)
+            dp = at(work, 27*row)
+            dpd = at(work, 28*row)
+            dh = at(work, 29*row)
+            dg = at(work, 30*row)
             for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0

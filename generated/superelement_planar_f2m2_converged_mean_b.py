@@ -50,45 +50,30 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (212, 61, 5, 3),
               "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "f1fddd2cb44d"     # hash of sebody/kernels, which this file was made for
+ROOM = "2f105d8a6508"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
-    n = 8
     field = at(coefficients, FIELD)
-    row = padded(max(n, 9*N_ROTATIONS))
-    qe = at(work, 0*row)
-    ve = at(work, 1*row)
-    ae = at(work, 2*row)
-    y = at(work, 3*row)
-    yd = at(work, 4*row)
-    acc = at(work, 5*row)
-    ydd = at(work, 6*row)
-    gamma = at(work, 7*row)
-    d = at(work, 8*row)
-    s = at(work, 9*row)
-    weight = at(work, 10*row)
-    p = at(work, 11*row)
-    pd = at(work, 12*row)
-    h = at(work, 13*row)
-    dqe = at(work, 14*row)
-    dve = at(work, 15*row)
-    dae = at(work, 16*row)
-    dy = at(work, 17*row)
-    ds = at(work, 18*row)
-    dgamma = at(work, 19*row)
-    dd = at(work, 20*row)
-    dweight = at(work, 21*row)
-    dyd = at(work, 22*row)
-    dacc = at(work, 23*row)
-    dydd = at(work, 24*row)
-    dp = at(work, 25*row)
-    dpd = at(work, 26*row)
-    dh = at(work, 27*row)
-    dg = at(work, 28*row)
     for element in range(count):
+        n = 8
+        row = padded(max(n, 9*N_ROTATIONS))
+        qe = at(work, 0*row)
+        ve = at(work, 1*row)
+        ae = at(work, 2*row)
+        y = at(work, 3*row)
+        yd = at(work, 4*row)
+        acc = at(work, 5*row)
+        ydd = at(work, 6*row)
+        gamma = at(work, 7*row)
+        d = at(work, 8*row)
+        s = at(work, 9*row)
+        weight = at(work, 10*row)
+        p = at(work, 11*row)
+        pd = at(work, 12*row)
+        h = at(work, 13*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -286,6 +271,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
+            dqe = at(work, 14*row)
+            dve = at(work, 15*row)
+            dae = at(work, 16*row)
+            dy = at(work, 17*row)
+            ds = at(work, 18*row)
+            dgamma = at(work, 19*row)
+            dd = at(work, 20*row)
+            dweight = at(work, 21*row)
+            dyd = at(work, 22*row)
+            dacc = at(work, 23*row)
+            dydd = at(work, 24*row)
+            dp = at(work, 25*row)
+            dpd = at(work, 26*row)
+            dh = at(work, 27*row)
+            dg = at(work, 28*row)
             for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0

@@ -17,7 +17,8 @@ GIVEN = {"R", "field", "frame", "g", "nodes", "reference", "N_POSITIONS", "N_ROT
 
 
 # arrays of option C: a row for each slaved coordinate, or component of a product with z
-TALL = {"Zq": MOST_SLAVED, "Zd": MOST_SLAVED, "Za": MOST_SLAVED, "products": 15, "more": 12}
+TALL = {"Zq": MOST_SLAVED, "Zd": MOST_SLAVED, "Za": MOST_SLAVED, "products": 15, "more": 12,
+        "unordered": 3}
 SQUARES = "Lz", "Lv", "La", "Gy"
 
 
@@ -29,6 +30,7 @@ class Resources(NamedTuple):
     pointers: tuple[str, ...] = ()      # into the arguments
     tall: tuple[str, ...] = ()          # of many rows each, see `TALL`
     squares: tuple[str, ...] = ()       # of as many rows as coordinates
+    of_matrix: frozenset[str] = frozenset()     # scratch memory that the matrix alone needs
 
 
 def resources(kernel: Superelement) -> Resources:
@@ -45,7 +47,8 @@ def resources(kernel: Superelement) -> Resources:
                      tuple(dict.fromkeys((*forces.calls, *column.calls))),
                      tuple(row for row in rows if row in GIVEN),
                      tuple(row for row in scratch if row in TALL),
-                     tuple(row for row in scratch if row in SQUARES))
+                     tuple(row for row in scratch if row in SQUARES),
+                     frozenset(scratch) - {*STATE, *forces.arrays})
 
 
 def body_load_resources(kernel: BodyLoad) -> Resources:

@@ -34,6 +34,7 @@ def body_load_text(kernel: BodyLoad, uses: Resources) -> str:
         reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows), residual_operations=in_residual,
         column_operations=counted(printer),
-        rows=indented([*reads(kernel.layout), *scratch_rows(uses)], 1),
+        rows=indented([*reads(kernel.layout), "row = padded(max(n, 9*N_ROTATIONS))",
+                       *scratch_rows(uses)], 1),
         residual=indented(residual, 2), prepared=indented(prepared, 3) + "\n" * bool(prepared),
         seeds=indented(templates.LOAD_SEEDS[planar], 4), tangent=indented(tangent, 4))

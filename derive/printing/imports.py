@@ -8,7 +8,8 @@ from pathlib import Path
 from sebody.derive.printing.expressions import WIDTH
 from sebody.kernels import layout
 
-MODULES = "layout", "abi", "dense", "frame_search", "packed_products", "pipeline", "rotations"
+MODULES = ("layout", "abi", "dense", "frame_search", "packed_products", "coordinates", "pipeline",
+           "rotations")
 
 
 @cache

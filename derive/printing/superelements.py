@@ -29,10 +29,13 @@ def superelement_text(kernel: Superelement, uses: Resources) -> str:
     return templates.SUPERELEMENT.format(
         **_head(kernel), **_constants(kernel), imports=import_lines(_names(kernel, uses)),
         filled=templates.FILLED * any(", filled)" in line for line in [*residual, *tangent]),
-        width="width" if layout.modes is None else layout.first_mode + layout.modes,
+        matrix_rows=indented([*["row = hidden(row)"] * (layout.modes is None),
+                              *scratch_rows(uses, of_matrix=True)], 3),
         reference=templates.REFERENCE * ("reference" in uses.pointers),
         work_rows=len(uses.rows) + sum(TALL[name] for name in uses.tall),
-        work_squares=len(uses.squares), rows=indented([*reads(layout), *scratch_rows(uses)], 1),
+        work_squares=len(uses.squares),
+        reads=indented(reads(layout), 1) + "\n" * (layout.nodes is None),
+        rows=indented([*sizes(layout, uses), *scratch_rows(uses)], 2),
         residual_operations=in_residual, column_operations=counted(printer),
         residual=indented(residual, 2), sums=_sums(kernel), prepared=_prepared(prepared),
         energy=indented(energy, 3), seeds=indented(templates.SEEDS[planar], 4),
@@ -71,6 +74,7 @@ def _names(kernel: Superelement, uses: Resources) -> set[str]:
     names |= set(templates.DAMPING_NAMES) if kernel.layout.damped else set()
     names |= {"AT_PORT", "POWERS"} if kernel.options[1].traits.rates else set()
     names |= set(templates.GENERAL_NAMES) if kernel.layout.nodes is None else set()
+    names |= {"hidden"} if kernel.layout.modes is None else set()
     names |= {"packed_room"} if any(part.packed for part in kernel.declared) else set()
     return names | ({"Part"} if kernel.declared else set())
 
@@ -110,12 +114,27 @@ def _prepared(lines: list[str]) -> str:
     return indented(lines, 3) + "\n" * bool(lines)
 
 
-def scratch_rows(uses: Resources) -> list[str]:
+def sizes(layout: Layout, uses: Resources) -> list[str]:
+    """The number of unknowns and the length of a row of scratch memory, in the loop over elements.
+
+    The compiler does not know that they are the same for all elements, or in a matrix as in forces:
+    otherwise it computes a hundred places in scratch memory before every loop.
+    """
+    n = "hidden(width)" if layout.modes is None else str(layout.first_mode + layout.modes)
+    return [f"n = {n}", f"row = padded(max(n{_margin(uses)}, 9*N_ROTATIONS))"]
+
+
+def scratch_rows(uses: Resources, of_matrix: bool = False) -> list[str]:
     """Scratch memory: a row of local coordinates each, or of rotations of the nodes."""
-    margin = f" + {MARGIN}" if uses.squares else ""
-    lines, first = [f"row = padded(max(n{margin}, 9*N_ROTATIONS))"], 0
+    places, first, margin = {}, 0, _margin(uses)
     for name in (*uses.rows, *uses.tall):
-        lines.append(f"{name} = at(work, {first}*row)")
+        places[name] = f"{first}*row"
         first += TALL.get(name, 1)
-    return lines + [f"{name} = at(work, ({first} + {k}*(n{margin}))*row)"
-                    for k, name in enumerate(uses.squares)]
+    for k, name in enumerate(uses.squares):
+        places[name] = f"({first} + {k}*(n{margin}))*row"
+    return [f"{name} = at(work, {place})" for name, place in places.items()
+            if (name in uses.of_matrix) == of_matrix]
+
+
+def _margin(uses: Resources) -> str:
+    return f" + {MARGIN}" if uses.squares else ""

@@ -44,10 +44,9 @@ ROOM = "{room}"     # hash of sebody/kernels, which this file was made for
 
 @kernel_function
 {signature}
-    n = {width}
     field = at(coefficients, FIELD)
+{reads}    for element in range(count):
 {rows}
-    for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
 {reference}        nodes = at(index, first + HEADER)
@@ -65,6 +64,7 @@ ROOM = "{room}"     # hash of sebody/kernels, which this file was made for
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
+{matrix_rows}
 {prepared}            for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0

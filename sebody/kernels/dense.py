@@ -1,11 +1,25 @@
 """Small dense products the kernels and the loop call."""
 
-from llvmlite import ir
 from numba import types
-from numba.core import cgutils
 from numba.extending import intrinsic
 
 from sebody.kernels.abi import at, padded
+from sebody.kernels.instructions import (
+    FLOATS,
+    WORD,
+    add_product,
+    added_up,
+    broadcast,
+    called,
+    load_broadcast,
+    load_vector,
+    no_sum,
+    short_loop,
+    store_vector,
+    sums_of_lanes,
+    totals,
+    whole_vectors,
+)
 from sebody.kernels.layout import LANES
 from sebody.kernels.pipeline import compiled
 
@@ -18,31 +32,30 @@ def columns_times(typingctx, A, x, out, rows, columns):
     """``out = A x`` of a matrix in padded columns; `out` is written to its padding.
 
     Written in vector operations, because LLVM does not vectorize the loop if sums stay in
-    registers: without them this product takes a third of a kernel's time.
+    registers: without them this product takes a third of a kernel's time. Written wherever it is
+    used, since sizes may be constants there.
     """
-    floats = types.CPointer(types.float64)
-
     def codegen(context, builder, sig, args):
-        _multiply(builder, *args, _whole_vectors(builder, args[3]), False)
+        _multiply(builder, *args, whole_vectors(builder, args[3]), False)
         return context.get_dummy_value()
 
-    return types.void(floats, floats, floats, types.int64, types.int64), codegen
+    return types.void(FLOATS, FLOATS, FLOATS, types.int64, types.int64), codegen
 
 
-@compiled
-def block_times(A, x, out, rows, columns, height):
+@intrinsic
+def block_times(typingctx, A, x, out, rows, columns, height):
     """``out = A x`` of the first `rows` of some columns that are `height` numbers apart.
 
     Eight vectors of rows at a time, so that a factor is read once for all of them: tall matrices
     take half the time of `columns_times`.
     """
-    _block(A, x, out, rows, columns, height)
+    return called(_block, 3, 3)
 
 
-@compiled
-def add_block_times(A, x, out, rows, columns, height):
+@intrinsic
+def add_block_times(typingctx, A, x, out, rows, columns, height):
     """``out += A x`` of the first `rows` of some columns that are `height` numbers apart."""
-    _add_block(A, x, out, rows, columns, height)
+    return called(_add_block, 3, 3)
 
 
 @compiled
@@ -61,119 +74,128 @@ def arrow_times(A, x, out, n, filled):
             out[k] += A[k * height + k] * x[k]
 
 
-@compiled
-def rows_times(A, x, out, rows, columns, height):
+@intrinsic
+def rows_times(typingctx, A, x, out, rows, columns, height):
     """``out_k = a_k . x`` with columns a_k that are `height` numbers apart.
 
     Vectors are read to their padding, where those of A are zero and `x` is finite.
     """
-    _dots(A, x, out, rows, columns, height)
+    return called(_dots, 3, 3)
 
 
-@compiled
-def add_rows_times(A, x, out, rows, columns, height):
+@intrinsic
+def add_rows_times(typingctx, A, x, out, rows, columns, height):
     """``out_k += a_k . x``; see `rows_times`."""
-    _add_dots(A, x, out, rows, columns, height)
+    return called(_add_dots, 3, 3)
+
+
+@intrinsic
+def _add_columns_times(typingctx, A, x, out, rows, columns, height):
+    return called(_add_columns, 3, 3)
 
 
 def _dot(builder, A, x, out, rows, columns, height, add):
     """Vector operations for products of columns with a vector, some columns at a time."""
-    word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
-    last = _whole_vectors(builder, rows)
-    done = word(0)
-    for count in (4, 1):
-        totals = [cgutils.alloca_once(builder, vector) for _ in range(count)]
-        end = builder.sub(columns, builder.srem(builder.sub(columns, done), word(count)))
-        with cgutils.for_range_slice(builder, done, end, word(count)) as (column, _):
-            for total in totals:
-                builder.store(ir.Constant(vector, [0.0] * LANES), total)
-            with cgutils.for_range_slice(builder, word(0), last, word(LANES)) as (row, _):
-                factor = load_vector(builder, x, row, vector)
-                for k, total in enumerate(totals):
-                    place = builder.mul(builder.add(column, word(k)), height)
-                    entries = load_vector(builder, A, builder.add(place, row), vector)
-                    product = builder.fmul(entries, factor, flags=("contract",))
-                    builder.store(builder.fadd(builder.load(total), product,
-                                               flags=("contract",)), total)
-            for k, total in enumerate(totals):
-                result = _added_up(builder, builder.load(total))
-                place = builder.gep(out, [builder.add(column, word(k))])
+    last, done = whole_vectors(builder, rows), WORD(0)
+    for count in (LANES, 1):
+        sums = totals(builder, count)
+        end = builder.sub(columns, builder.srem(builder.sub(columns, done), WORD(count)))
+        with short_loop(builder, done, end, count) as column:
+            for total in sums:
+                builder.store(no_sum(), total)
+            firsts = [builder.mul(builder.add(column, WORD(k)), height) for k in range(count)]
+            with short_loop(builder, WORD(0), last, LANES) as row:
+                factor = load_vector(builder, x, row)
+                for first, total in zip(firsts, sums, strict=True):
+                    add_product(builder, total, load_vector(builder, A, builder.add(first, row)),
+                                factor)
+            found = [builder.load(total) for total in sums]
+            if count == LANES:
+                result = sums_of_lanes(builder, found)
+                if add:
+                    result = builder.fadd(load_vector(builder, out, column), result)
+                store_vector(builder, result, out, column)
+            else:
+                place = builder.gep(out, [column])
+                result = added_up(builder, found[0])
                 builder.store(builder.fadd(builder.load(place), result) if add else result, place)
         done = end
 
 
-def _added_up(builder, numbers):
-    """Sum of the lanes of a vector."""
-    parts = [builder.extract_element(numbers, ir.IntType(32)(lane)) for lane in range(LANES)]
-    while len(parts) > 1:
-        parts = [builder.fadd(a, b) for a, b in zip(parts[::2], parts[1::2], strict=True)]
-    return parts[0]
+def _dots(builder, A, x, out, rows, columns, height):
+    _dot(builder, A, x, out, rows, columns, height, False)
 
 
-def _multiply_wide(builder, A, x, out, rows, columns, height, add):
+def _add_dots(builder, A, x, out, rows, columns, height):
+    _dot(builder, A, x, out, rows, columns, height, True)
+
+
+def _wide(builder, A, x, out, rows, columns, height, add):
     """Vector operations for ``out = A x``, or ``out += A x``, some vectors of rows at a time."""
-    word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
-    last = _whole_vectors(builder, rows)
-    done = word(0)
-    for count in (8, 4, 2, 1):
-        totals = [cgutils.alloca_once(builder, vector) for _ in range(count)]
-        rest = builder.srem(builder.sub(last, done), word(count * LANES))
+    last, done = whole_vectors(builder, rows), WORD(0)
+    for count in (8, 4, 3, 2, 1):
+        sums = totals(builder, count)
+        rest = builder.srem(builder.sub(last, done), WORD(count * LANES))
         end = builder.sub(last, rest)
-        with cgutils.for_range_slice(builder, done, end, word(count * LANES)) as (row, _):
-            places = [builder.add(row, word(k * LANES)) for k in range(count)]
-            for place, total in zip(places, totals, strict=True):
-                builder.store(load_vector(builder, out, place, vector) if add else
-                              ir.Constant(vector, [0.0] * LANES), total)
-            with cgutils.for_range_slice(builder, word(0), columns, word(1)) as (column, _):
-                factor = broadcast(builder, builder.load(builder.gep(x, [column])), vector)
+        with short_loop(builder, done, end, count * LANES) as row:
+            places = [builder.add(row, WORD(k * LANES)) for k in range(count)]
+            for place, total in zip(places, sums, strict=True):
+                builder.store(load_vector(builder, out, place) if add else no_sum(), total)
+            with short_loop(builder, WORD(0), columns) as column:
+                factor = load_broadcast(builder, x, column)
                 first = builder.mul(column, height)
-                for place, total in zip(places, totals, strict=True):
-                    entries = load_vector(builder, A, builder.add(first, place), vector)
-                    product = builder.fmul(entries, factor, flags=("contract",))
-                    builder.store(builder.fadd(builder.load(total), product,
-                                               flags=("contract",)), total)
-            for place, total in zip(places, totals, strict=True):
+                for place, total in zip(places, sums, strict=True):
+                    add_product(builder, total, load_vector(builder, A, builder.add(first, place)),
+                                factor)
+            for place, total in zip(places, sums, strict=True):
                 store_vector(builder, builder.load(total), out, place)
         done = end
 
 
+def _block(builder, A, x, out, rows, columns, height):
+    _wide(builder, A, x, out, rows, columns, height, False)
+
+
+def _add_block(builder, A, x, out, rows, columns, height):
+    _wide(builder, A, x, out, rows, columns, height, True)
+
+
+def _add_columns(builder, A, x, out, rows, columns, height):
+    _multiply(builder, A, x, out, rows, columns, height, True)
+
+
 def _multiply(builder, A, x, out, rows, columns, height, add):
     """Vector operations for ``out = A x``, or ``out += A x``."""
-    word = ir.IntType(64)
-    first, last = word(0), _whole_vectors(builder, rows)
+    first, last = WORD(0), whole_vectors(builder, rows)
     for vectors in _VECTORS:
-        whole = builder.and_(last, word(-LANES * vectors))
-        with cgutils.for_range_slice(builder, first, whole, word(LANES * vectors)) as (row, _):
+        whole = builder.and_(last, WORD(-LANES * vectors))
+        with short_loop(builder, first, whole, LANES * vectors) as row:
             _multiply_rows(builder, A, x, out, row, vectors, columns, height, add)
         first = whole
 
 
 def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
     """The same for a few vectors of rows, whose sums stay in registers."""
-    word = ir.IntType(64)
-    vector = ir.VectorType(ir.DoubleType(), LANES)
-    places = [builder.add(row, word(LANES * k)) for k in range(vectors)]
-    sums = [[cgutils.alloca_once(builder, vector) for _ in places] for _ in range(_UNROLLED)]
-    paired = builder.sub(columns, builder.srem(columns, word(_UNROLLED)))
+    places = [builder.add(row, WORD(LANES * k)) for k in range(vectors)]
+    sums = [totals(builder, vectors) for _ in range(_UNROLLED)]
+    paired = builder.sub(columns, builder.srem(columns, WORD(_UNROLLED)))
 
-    def add_column(totals, column):
-        factor = broadcast(builder, builder.load(builder.gep(x, [column])), vector)
+    def add_column(kept, column):
+        factor = load_broadcast(builder, x, column)
         start = builder.gep(A, [builder.mul(column, height)])
-        for total, place in zip(totals, places, strict=True):
-            product = builder.fmul(load_vector(builder, start, place, vector), factor,
-                                   flags=("contract",))
-            builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
+        for total, place in zip(kept, places, strict=True):
+            add_product(builder, total, load_vector(builder, start, place), factor)
 
-    for totals in sums:
-        for total in totals:
-            builder.store(ir.Constant(vector, [0.0] * LANES), total)
+    for kept in sums:
+        for total in kept:
+            builder.store(no_sum(), total)
     if add:
         for total, place in zip(sums[0], places, strict=True):
-            builder.store(load_vector(builder, out, place, vector), total)
-    with cgutils.for_range_slice(builder, word(0), paired, word(_UNROLLED)) as (column, _):
-        for k, totals in enumerate(sums):
-            add_column(totals, builder.add(column, word(k)))
-    with cgutils.for_range_slice(builder, paired, columns, word(1)) as (column, _):
+            builder.store(load_vector(builder, out, place), total)
+    with short_loop(builder, WORD(0), paired, _UNROLLED) as column:
+        for k, kept in enumerate(sums):
+            add_column(kept, builder.add(column, WORD(k)))
+    with short_loop(builder, paired, columns) as column:
         add_column(sums[0], column)
     for place, parts in zip(places, zip(*sums, strict=True), strict=True):
         result = builder.load(parts[0])
@@ -182,93 +204,42 @@ def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
         store_vector(builder, result, out, place)
 
 
-def _whole_vectors(builder, rows):
-    """Rows rounded up to whole vectors."""
-    word = ir.IntType(64)
-    return builder.and_(builder.add(rows, word(LANES - 1)), word(-LANES))
-
-
 @intrinsic
 def subtract_product(typingctx, C, A, B):
     """``C -= A B`` of square blocks of `LANES` rows, stored by columns."""
-    floats = types.CPointer(types.float64)
-    return types.void(floats, floats, floats), _subtract_product
+    return types.void(FLOATS, FLOATS, FLOATS), _subtract_product
 
 
 def _subtract_product(context, builder, sig, args):
     C, A, B = args
-    word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
-    columns = [load_vector(builder, A, word(LANES * k), vector) for k in range(LANES)]
+    columns = [load_vector(builder, A, WORD(LANES * k)) for k in range(LANES)]
     for j in range(LANES):
-        total = load_vector(builder, C, word(LANES * j), vector)
+        total = load_vector(builder, C, WORD(LANES * j))
         for k, column in enumerate(columns):
-            number = builder.load(builder.gep(B, [word(LANES * j + k)]))
-            product = builder.fmul(column, broadcast(builder, number, vector),
+            number = builder.load(builder.gep(B, [WORD(LANES * j + k)]))
+            product = builder.fmul(column, broadcast(builder, number),
                                    flags=("contract",))
             total = builder.fsub(total, product, flags=("contract",))
-        store_vector(builder, total, C, word(LANES * j))
+        store_vector(builder, total, C, WORD(LANES * j))
     return context.get_dummy_value()
 
 
 @intrinsic
 def subtract_block_times(typingctx, y, A, x):
     """``y -= A x`` of a square block of `LANES` rows, stored by columns."""
-    floats = types.CPointer(types.float64)
-    return types.void(floats, floats, floats), _subtract_block_times
+    return types.void(FLOATS, FLOATS, FLOATS), _subtract_block_times
 
 
 def _subtract_block_times(context, builder, sig, args):
     y, A, x = args
-    word, vector = ir.IntType(64), ir.VectorType(ir.DoubleType(), LANES)
-    total = load_vector(builder, y, word(0), vector)
+    total = load_vector(builder, y, WORD(0))
     for k in range(LANES):
-        number = builder.load(builder.gep(x, [word(k)]))
-        product = builder.fmul(load_vector(builder, A, word(LANES * k), vector),
-                               broadcast(builder, number, vector), flags=("contract",))
+        number = builder.load(builder.gep(x, [WORD(k)]))
+        product = builder.fmul(load_vector(builder, A, WORD(LANES * k)),
+                               broadcast(builder, number), flags=("contract",))
         total = builder.fsub(total, product, flags=("contract",))
-    store_vector(builder, total, y, word(0))
+    store_vector(builder, total, y, WORD(0))
     return context.get_dummy_value()
-
-
-def load_vector(builder, pointer, first, vector):
-    """Instructions that read `LANES` numbers of a pointer from the place `first` on."""
-    place = builder.bitcast(builder.gep(pointer, [first]), vector.as_pointer())
-    value = builder.load(place)
-    value.align = 8
-    return value
-
-
-def store_vector(builder, value, pointer, first):
-    """Instructions that write a vector to a pointer from the place `first` on."""
-    place = builder.bitcast(builder.gep(pointer, [first]), value.type.as_pointer())
-    builder.store(value, place).align = 8
-
-
-def broadcast(builder, number, vector):
-    """Instructions that set every number of a vector to one value."""
-    undefined = ir.Constant(vector, ir.Undefined)
-    lane = builder.insert_element(undefined, number, ir.IntType(32)(0))
-    lanes = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-    return builder.shuffle_vector(lane, undefined, lanes)
-
-
-def _product(write, add):
-    """The operation with a block that `write` writes in vector operations."""
-    @intrinsic
-    def product(typingctx, A, x, out, rows, columns, height):
-        floats = types.CPointer(types.float64)
-
-        def codegen(context, builder, sig, args):
-            write(builder, *args, add)
-            return context.get_dummy_value()
-
-        return types.void(floats, floats, floats, *[types.int64] * 3), codegen
-    return product
-
-
-_block, _add_block = (_product(_multiply_wide, add) for add in (False, True))
-_dots, _add_dots = (_product(_dot, add) for add in (False, True))
-_add_columns_times = _product(_multiply, True)
 
 
 @compiled

@@ -116,8 +116,10 @@ class Row(NamedTuple):
         row: list[int] = []
         for part in self.parts:
             value = values[part.name]
-            self._check_shape(part, (len(value),) if isinstance(value, list) else (), counts)
-            row += value if isinstance(value, list) else [value]
+            listed = isinstance(value, list)
+            if listed or part.shape:        # most are single numbers, of thousands of elements
+                self._check_shape(part, (len(value),) if listed else (), counts)
+            row += value if listed else (value,)
         return row
 
     def unpack(self, counts: Counts, row: NDArray) -> dict[str, NDArray]:
@@ -297,7 +299,8 @@ def bound_counts(positions: int, rotations: int, planar: bool) -> dict[str, int]
 
 def packed_size(count: int, rows: int, columns: int) -> int:
     """Length of the row of some packed matrices, see `sebody.kernels.packed`."""
-    return count * whole_vectors(rows) * (columns + 2) + 4
+    height, width = whole_vectors(rows), whole_vectors(columns)
+    return count * height * (width + width // 4) + 2 * width + 1
 
 
 def carried_counts(planar: bool, unknowns: int, damped: bool = False) -> dict[str, int]:

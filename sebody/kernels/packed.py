@@ -1,10 +1,10 @@
 """Matrices without most of their zeros, as rows of numbers that compiled code multiplies with.
 
 Constants of option C are mostly zeros in bodies such as beams. A stack of matrices of equal shapes
-is cut into strips: `LANES` rows of one matrix, and a run of columns outside of which these rows are
-zero. Up to eight strips with the same columns share each number of a vector that they are
-multiplied with. A row has the size that matrices without zeros would take; it begins with whole
-numbers, in the bits of floats:
+is cut into strips: `LANES` rows of one matrix, and four columns or eight, from a multiple of four
+or eight on. Strips of zeros are left out; strips of the same columns are a group, which reads its
+numbers of the vector once. A row has the size that matrices without zeros would take; it begins
+with whole numbers, in the bits of floats:
 
 ========  ==========================================================================================
 1         number of groups of strips
@@ -12,7 +12,7 @@ numbers, in the bits of floats:
 3 each    head of a strip: place of its product in the stack of all products, matrix, first row
 ========  ==========================================================================================
 
-Entries of a group follow column by column, strip by strip.
+Entries of a group follow strip by strip, column by column.
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,37 +22,30 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.kernels.layout import LANES, packed_size, whole_vectors
 
-GROUPS = 8, 4, 2, 1     # strips that share their columns
+WIDE, NARROW = WIDTHS = 8, 4    # columns of a strip
 GROUP, HEAD = 5, 3      # whole numbers that tell of a group, and of a strip
-GAP = 3                 # columns of zeros inside a run: one more group costs as much
 
 Strip = tuple[int, int]     # matrix, first row
-Run = tuple[int, int]       # first column, end
 
 
 def pack(matrices: ArrayLike, shape: tuple[int, int, int]) -> NDArray:
     """The row of some matrices, ``(count, rows, columns)``."""
     count, rows, columns = shape
-    stack = np.zeros((count, whole_vectors(rows), columns))
-    stack[:, :rows] = np.asarray(matrices, dtype=float).reshape(shape)
-    by_run = _by_run(stack)
-    size = packed_size(*shape)
-    if 1 + sum(_group_size(run, group) for run, group in _groups(by_run)) > size:
-        by_run = {(0, columns): [strip for strip, _ in _strips(stack)]}
-    groups = list(_groups(by_run))
-    row = np.zeros(size)
+    stack = np.zeros((count, whole_vectors(rows), whole_vectors(columns)))
+    stack[:, :rows, :columns] = np.asarray(matrices, dtype=float).reshape(shape)
+    groups = [group for group in _groups(stack) if group[2]]
+    row = np.zeros(packed_size(*shape))
     head = 1 + GROUP * len(groups)
-    end = head + HEAD * sum(len(group) for _, group in groups)
+    end = head + HEAD * sum(len(strips) for *_, strips in groups)
     whole = row.view(np.int64)
     whole[0] = len(groups)
-    for g, ((first, last), group) in enumerate(groups):
-        whole[1 + GROUP * g:1 + GROUP * (g + 1)] = first, last - first, len(group), head, end
-        for k, i in group:
+    for g, (first, width, strips) in enumerate(groups):
+        whole[1 + GROUP * g:1 + GROUP * (g + 1)] = first, width, len(strips), head, end
+        for k, i in strips:
             whole[head:head + HEAD] = k * stack.shape[1] + i, k, i
-            head += HEAD
-        entries = np.stack([stack[k, i:i + LANES, first:last] for k, i in group])
-        row[end:end + entries.size] = entries.transpose(2, 0, 1).ravel()
-        end += entries.size
+            entries = stack[k, i:i + LANES, first:first + width].T
+            row[end:end + entries.size] = entries.ravel()
+            head, end = head + HEAD, end + entries.size
     return row
 
 
@@ -60,46 +53,29 @@ def unpack(row: NDArray, shape: tuple[int, int, int]) -> NDArray:
     """The matrices of a row, ``(count, rows, columns)``."""
     count, rows, columns = shape
     row = np.ascontiguousarray(row)
-    stack, whole = np.zeros((count, whole_vectors(rows), columns)), row.view(np.int64)
+    stack = np.zeros((count, whole_vectors(rows), whole_vectors(columns)))
+    whole = row.view(np.int64)
     for g in range(whole[0]):
         first, width, strips, head, at = whole[1 + GROUP * g:1 + GROUP * (g + 1)]
-        entries = row[at:at + LANES * strips * width].reshape(width, strips, LANES)
-        for s, strip in enumerate(entries.transpose(1, 2, 0)):
+        entries = row[at:at + LANES * strips * width].reshape(strips, width, LANES)
+        for s, strip in enumerate(entries):
             k, i = whole[head + HEAD * s + 1:head + HEAD * (s + 1)]
-            stack[k, i:i + LANES, first:first + width] += strip
-    return stack[:, :rows]
+            stack[k, i:i + LANES, first:first + width] += strip.T
+    return stack[:, :rows, :columns]
 
 
-def _strips(stack: NDArray) -> Iterator[tuple[Strip, NDArray]]:
-    """Strips of the matrices, and the columns where each has entries."""
+def _groups(stack: NDArray) -> Iterator[tuple[int, int, Sequence[Strip]]]:
+    """First column, number of columns and strips: wide ones where both halves have entries."""
     count, rows, columns = stack.shape
-    filled = (stack.reshape(count, rows // LANES, LANES, columns) != 0.0).any(axis=2)
-    for k, matrix in enumerate(filled):
-        for block, columns in enumerate(matrix):
-            yield (k, LANES * block), columns.nonzero()[0]
+    filled = (stack.reshape(count, rows // LANES, LANES, columns // NARROW, NARROW)
+              != 0.0).any(axis=(2, 4))
+    for first in range(0, columns, WIDE):
+        halves = filled[:, :, first // NARROW:(first + WIDE) // NARROW]
+        both = halves.all(axis=2) & (halves.shape[2] == WIDE // NARROW)
+        yield first, WIDE, _strips(both)
+        for half in range(halves.shape[2]):
+            yield first + half * NARROW, NARROW, _strips(halves[:, :, half] & ~both)
 
 
-def _by_run(stack: NDArray) -> dict[Run, list[Strip]]:
-    """Strips by their runs of columns."""
-    found: dict[Run, list[Strip]] = {}
-    for strip, columns in _strips(stack):
-        if len(columns):
-            cuts = (np.diff(columns) > GAP).nonzero()[0]
-            for first, last in zip(columns[np.r_[0, cuts + 1]], columns[np.r_[cuts, -1]],
-                                   strict=True):
-                found.setdefault((int(first), int(last) + 1), []).append(strip)
-    return found
-
-
-def _groups(by_run: dict[Run, list[Strip]]) -> Iterator[tuple[Run, Sequence[Strip]]]:
-    """As many strips with the same columns at a time as there is code for."""
-    for run, strips in sorted(by_run.items()):
-        done = 0
-        for count in GROUPS:
-            while len(strips) - done >= count:
-                yield run, strips[done:done + count]
-                done += count
-
-
-def _group_size(run: Run, strips: Sequence[Strip]) -> int:
-    return GROUP + len(strips) * (HEAD + LANES * (run[1] - run[0]))
+def _strips(chosen: NDArray) -> list[Strip]:
+    return [(int(k), LANES * int(block)) for k, block in np.argwhere(chosen)]

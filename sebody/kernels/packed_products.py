@@ -1,23 +1,31 @@
 """Products with the packed matrices of `sebody.kernels.packed`, and their sums."""
 
-from llvmlite import ir
-from numba import types
-from numba.core import cgutils
+from contextlib import contextmanager
+
 from numba.extending import intrinsic
 
-from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import broadcast, clear, columns_times, load_vector, store_vector
+from sebody.kernels.abi import padded
+from sebody.kernels.dense import columns_times
+from sebody.kernels.instructions import (
+    WORD,
+    call,
+    called,
+    load_broadcast,
+    load_vector,
+    no_sum,
+    short_loop,
+    store_vector,
+)
 from sebody.kernels.layout import LANES
-from sebody.kernels.packed import GROUP, GROUPS, HEAD
+from sebody.kernels.packed import GROUP, HEAD, WIDTHS
 from sebody.kernels.pipeline import compiled
-
-_FLOATS, _VECTOR = types.CPointer(types.float64), ir.VectorType(ir.DoubleType(), LANES)
 
 
 @compiled
 def packed_room(count, rows, columns):
     """Numbers that a row of packed matrices takes, see `sebody.kernels.layout.packed_size`."""
-    return count * padded(rows) * (columns + 2) + 4
+    width = padded(columns)
+    return count * padded(rows) * (width + width // 4) + 2 * width + 1
 
 
 @compiled
@@ -42,92 +50,111 @@ def from_free(z, back, order, moved, y, bound, bound_free, free):
         y[bound + k] = moved[bound_free + k]
 
 
-@compiled
-def packed_times(matrices, x, out, count):
-    """``out = A_k x`` of all matrices, one product after the other, `count` numbers in all."""
-    clear(out, count)
-    add_packed_times(matrices, x, out)
+@intrinsic
+def packed_times(typingctx, matrices, x, out, count):
+    """``out = A_k x`` of all matrices, one product after the other, `count` numbers in all.
+
+    Of `x` whole vectors are read, whose numbers beyond the columns only have to be finite.
+    """
+    return called(_packed, 3, 1)
 
 
-@compiled
-def add_packed_times(matrices, x, out):
+@intrinsic
+def add_packed_times(typingctx, matrices, x, out):
     """``out += A_k x`` of all matrices, one product after the other."""
-    for g in range(_whole(matrices, 0)):
-        group = at(matrices, 1 + GROUP * g)
-        _strips_times(at(matrices, _whole(group, 4)), at(x, _whole(group, 0)), _whole(group, 1),
-                      at(matrices, _whole(group, 3)), out, _whole(group, 2))
-
-
-@compiled
-def add_packed(matrices, factors, out, height):
-    """``out += sum_k factors_k A_k``, in columns that are `height` numbers apart."""
-    for g in range(_whole(matrices, 0)):
-        group = at(matrices, 1 + GROUP * g)
-        first, columns, strips = _whole(group, 0), _whole(group, 1), _whole(group, 2)
-        entries = at(matrices, _whole(group, 4))
-        for strip in range(strips):
-            head = at(matrices, _whole(group, 3) + HEAD * strip)
-            _add_strip(at(entries, LANES * strip), LANES * strips, columns,
-                       factors[_whole(head, 1)], at(out, first * height + _whole(head, 2)), height)
+    return called(_add_packed, 3, 0)
 
 
 @intrinsic
-def _whole(typingctx, row, k):
-    """A whole number among the bits of floats."""
-    def codegen(context, builder, sig, args):
-        words = builder.bitcast(args[0], ir.IntType(64).as_pointer())
-        return builder.load(builder.gep(words, [args[1]]))
+def add_packed(typingctx, matrices, factors, out, height):
+    """``out += sum_k factors_k A_k``, in columns that are `height` numbers apart.
 
-    return types.int64(_FLOATS, types.int64), codegen
-
-
-@intrinsic
-def _strips_times(typingctx, entries, x, columns, heads, out, strips):
-    """Add the products of some strips that share their columns."""
-    def codegen(context, builder, sig, args):
-        *given, strips = args
-        for count in GROUPS:
-            with builder.if_then(builder.icmp_signed("==", strips, strips.type(count))):
-                _add_products(builder, *given, count)
-        return context.get_dummy_value()
-
-    return types.void(_FLOATS, _FLOATS, types.int64, _FLOATS, _FLOATS, types.int64), codegen
+    Zeros are added to columns of `out` up to a multiple of `LANES`.
+    """
+    return called(_sum_packed, 3, 1)
 
 
-def _add_products(builder, entries, x, columns, heads, out, count):
-    """The same of a number of strips, whose sums stay in registers."""
-    word = ir.IntType(64)
-    words = builder.bitcast(heads, word.as_pointer())
-    totals = [cgutils.alloca_once(builder, _VECTOR) for _ in range(count)]
-    places = [builder.load(builder.gep(words, [word(HEAD * k)])) for k in range(count)]
-    for total, place in zip(totals, places, strict=True):
-        builder.store(load_vector(builder, out, place, _VECTOR), total)
-    with cgutils.for_range_slice(builder, word(0), columns, word(1)) as (column, _):
-        factor = broadcast(builder, builder.load(builder.gep(x, [column])), _VECTOR)
-        own = builder.gep(entries, [builder.mul(column, word(LANES * count))])
-        for k, total in enumerate(totals):
-            product = builder.fmul(load_vector(builder, own, word(LANES * k), _VECTOR), factor,
-                                   flags=("contract",))
-            builder.store(builder.fadd(builder.load(total), product, flags=("contract",)), total)
-    for total, place in zip(totals, places, strict=True):
-        store_vector(builder, builder.load(total), out, place)
+def _packed(builder, matrices, x, out, count):
+    """Clear what the products are added to: whole vectors."""
+    with short_loop(builder, WORD(0), count, LANES) as place:
+        store_vector(builder, no_sum(), out, place)
+    call(builder, _add_packed, (matrices, x, out))
 
 
-@intrinsic
-def _add_strip(typingctx, entries, stride, columns, factor, out, height):
-    """Add a strip times a factor."""
-    def codegen(context, builder, sig, args):
-        entries, stride, columns, factor, out, height = args
-        word = ir.IntType(64)
-        scale = broadcast(builder, factor, _VECTOR)
-        with cgutils.for_range_slice(builder, word(0), columns, word(1)) as (column, _):
-            to = builder.mul(column, height)
-            product = builder.fmul(
-                load_vector(builder, entries, builder.mul(column, stride), _VECTOR), scale,
-                flags=("contract",))
-            store_vector(builder, builder.fadd(load_vector(builder, out, to, _VECTOR), product,
-                                               flags=("contract",)), out, to)
-        return context.get_dummy_value()
+def _add_packed(builder, matrices, x, out):
+    """Group by group; the numbers of `x` stay in registers while its strips follow."""
+    words = builder.bitcast(matrices, WORD.as_pointer())
+    with short_loop(builder, WORD(0), builder.load(words)) as group:
+        first, columns, strips, heads, at = _group(builder, words, group)
+        with _by_width(builder, columns) as widths:
+            for width in widths:
+                factors = [load_broadcast(builder, x, builder.add(first, WORD(k)))
+                           for k in range(width)]
+                with short_loop(builder, WORD(0), strips) as strip:
+                    place = _whole(builder, words, _head(builder, heads, strip, 0))
+                    own = _entries(builder, matrices, at, strip, width)
+                    total = load_vector(builder, out, place)
+                    for k, factor in enumerate(factors):
+                        total = _added(builder, total,
+                                       load_vector(builder, own, WORD(LANES * k)), factor)
+                    store_vector(builder, total, out, place)
 
-    return types.void(_FLOATS, types.int64, types.int64, types.float64, _FLOATS,
-                      types.int64), codegen
+
+@contextmanager
+def _by_width(builder, columns):
+    """Goes through the widths of strips; instructions stand where a group has this width."""
+    end = builder.append_basic_block("end")
+    by_width = builder.switch(columns, end)
+
+    def each():
+        for width in WIDTHS:
+            block = builder.append_basic_block(f"width {width}")
+            by_width.add_case(WORD(width), block)
+            builder.position_at_end(block)
+            yield width
+            builder.branch(end)
+    yield each()
+    builder.position_at_end(end)
+
+
+def _group(builder, words, group):
+    """What a group says of itself."""
+    place = builder.add(builder.mul(group, WORD(GROUP)), WORD(1))
+    return [_whole(builder, words, builder.add(place, WORD(k))) for k in range(GROUP)]
+
+
+def _whole(builder, words, place):
+    return builder.load(builder.gep(words, [place]))
+
+
+def _head(builder, heads, strip, k):
+    """Place of a whole number in the head of a strip."""
+    return builder.add(heads, builder.add(builder.mul(strip, WORD(HEAD)), WORD(k)))
+
+
+def _entries(builder, matrices, at, strip, width):
+    """Pointer to the entries of a strip."""
+    return builder.gep(matrices, [builder.add(at, builder.mul(strip, WORD(LANES * width)))])
+
+
+def _added(builder, total, a, b):
+    return builder.fadd(total, builder.fmul(a, b, flags=("contract",)), flags=("contract",))
+
+
+def _sum_packed(builder, matrices, factors, out, height):
+    """Strip by strip."""
+    words = builder.bitcast(matrices, WORD.as_pointer())
+    with short_loop(builder, WORD(0), builder.load(words)) as group:
+        first, columns, strips, heads, at = _group(builder, words, group)
+        with _by_width(builder, columns) as widths:
+            for width in widths:
+                with short_loop(builder, WORD(0), strips) as strip:
+                    matrix, row = (_whole(builder, words, _head(builder, heads, strip, k))
+                                   for k in (1, 2))
+                    scale = load_broadcast(builder, factors, matrix)
+                    own = _entries(builder, matrices, at, strip, width)
+                    for k in range(width):
+                        place = builder.add(builder.mul(builder.add(first, WORD(k)), height), row)
+                        total = _added(builder, load_vector(builder, out, place),
+                                       load_vector(builder, own, WORD(LANES * k)), scale)
+                        store_vector(builder, total, out, place)

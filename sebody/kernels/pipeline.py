@@ -39,15 +39,20 @@ _SHORT = (("llvm.loop.vectorize.enable", ir.Constant(ir.IntType(1), 0)),
           ("llvm.loop.unroll.runtime.disable",))      # with a number of rounds known at run time
 
 
+def mark_short(module: ir.Module, jump: ir.Instruction) -> None:
+    """Tell LLVM that the loop which a jump closes is short."""
+    loop = module.add_metadata([f"loop {len(module.metadata)}", *_SHORT])
+    loop.operands = loop, *loop.operands[1:]    # LLVM knows loops by nodes of themselves
+    jump.set_metadata("llvm.loop", loop)
+
+
 class _ShortLoops(Lowering):
     """Tells LLVM of every loop that it is short."""
 
     def lower_inst(self, inst):
         super().lower_inst(inst)
         if isinstance(inst, Jump) and self.blkmap[inst.target].is_terminated:     # a jump back
-            loop = self.module.add_metadata([f"loop {len(self.module.metadata)}", *_SHORT])
-            loop.operands = loop, *loop.operands[1:]    # LLVM knows loops by nodes of themselves
-            self.builder.block.terminator.set_metadata("llvm.loop", loop)
+            mark_short(self.module, self.builder.block.terminator)
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)

@@ -26,7 +26,8 @@ from sebody.reduction.plane_recovery import planar_recovery
 # Couplings below this, relative to what they couple, are rounding: matrices from files have some
 # eight digits. They would change motions in the plane by their squares.
 _ROUNDING = 1e-6
-_SECOND = 1e-4          # the same in second order: load modes of little strain energy carry more
+_SECOND = 1e-3          # the same in second order: load modes of little strain energy carry more
+_FLOOR = 1e-3           # of the stiffest coordinate of a kind, or the heaviest: root of a diagonal
 _NONE = 1e-10           # squared couplings, relative to the largest possible: none at all
 _REPEATED = 1e-6        # relative distance of squared frequencies that count as equal
 AXES, TURNS = np.array([1, 1, -1]), np.array([-1, -1, 1])   # signs of vectors and of axial vectors
@@ -100,7 +101,7 @@ def planar_body(body: ReducedBody, axes: ArrayLike, what: str = "the body") -> P
     even = [k for k, name in enumerate(loads) if name not in odd]
     slaved, flat = np.zeros((0, 0)), None
     if invariants is not None:
-        flat, slaved = _planar_invariants(invariants, turned, turn, signs, what)
+        flat, slaved = _planar_invariants(invariants, turned, turn, signs, names, what)
 
     def restricted(matrix: NDArray | None) -> NDArray | None:
         return None if matrix is None else kept.T @ matrix @ kept
@@ -115,7 +116,7 @@ def planar_body(body: ReducedBody, axes: ArrayLike, what: str = "the body") -> P
 
 def _check_matrix(what: str, matrix: NDArray, signs: NDArray, names: list[str]) -> None:
     """Refuse entries between even and odd coordinates."""
-    size = np.sqrt(np.maximum(np.diag(matrix), (1e-7 * unit_scale(matrix, names))**2))
+    size = _sizes(matrix, names)
     odd = np.where(np.outer(signs, signs) < 0, np.abs(matrix) / np.outer(size, size), 0.0)
     i, j = sorted(np.unravel_index(np.argmax(odd), odd.shape), key=lambda k: -signs[k])
     if odd[i, j] > _ROUNDING:
@@ -125,6 +126,12 @@ def _check_matrix(what: str, matrix: NDArray, signs: NDArray, names: list[str]) 
                          "symmetric about the plane" + modes * (
                              ", or has a part of the modes of one frequency: keep all or none of "
                              "them"))
+
+
+def _sizes(matrix: NDArray, names: list[str]) -> NDArray:
+    """Roots of the diagonal, with a floor for coordinates that are much softer, or lighter."""
+    names = [*names, *(f"mode slaved {k}" for k in range(len(matrix) - len(names)))]
+    return np.sqrt(np.maximum(np.diag(matrix), (_FLOOR * unit_scale(matrix, names))**2))
 
 
 def _odd_load(load: NDArray, signs: NDArray, stiffness: NDArray) -> bool:
@@ -186,7 +193,7 @@ def _modes(body: ReducedBody, invariants: InertiaInvariants | None, boundary: ND
 
 
 def _planar_invariants(i: InertiaInvariants, body: ReducedBody, turn: NDArray, signs: NDArray,
-                       what: str) -> tuple[InertiaInvariants, NDArray]:
+                       names: list[str], what: str) -> tuple[InertiaInvariants, NDArray]:
     """Constants of the even motions, with the load modes and resultants that act on them.
 
     Then the old load modes of unit new ones.
@@ -206,7 +213,7 @@ def _planar_invariants(i: InertiaInvariants, body: ReducedBody, turn: NDArray, s
         i, S1=i.S1 @ whole, g=i.g @ whole, h=i.h @ whole, K=whole.T @ i.K @ whole,
         J2=whole.T @ i.J2 @ whole, Mbar=whole.T @ i.Mbar @ whole,
         Q=np.einsum("ab,bij->aij", back, i.Q), lam=lam, E=E, Ghat=Ghat)
-    _check_constants(full, signs, slaved.signs, resultants.signs, what)
+    _check_constants(full, signs, slaved.signs, resultants.signs, names, what)
     found, eta = _even(full, signs, slaved.signs, resultants.signs)
     return found, slaved.turn[:, eta]
 
@@ -230,11 +237,10 @@ def _resultants(i: InertiaInvariants, stiffness: NDArray, signs: NDArray) -> _Ba
 
 
 def _check_constants(i: InertiaInvariants, signs: NDArray, slaved: NDArray, resultants: NDArray,
-                     what: str) -> None:
+                     names: list[str], what: str) -> None:
     """Refuse constants that couple even with odd motions."""
     z = np.concatenate([signs, slaved])
-    mass = np.diag(i.Mbar)
-    size = np.sqrt(np.where(mass > 0, mass, 1.0))
+    size = _sizes(i.Mbar, names)
     size[len(signs):] *= _SECOND / _ROUNDING
     inertia = np.sqrt(np.trace(i.J0))
     for name, array, parities, sizes in (

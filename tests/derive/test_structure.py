@@ -116,7 +116,7 @@ def test_a_frame_declares_its_constants_and_scratch_rows(monkeypatch):
     assert set(rows) - set(usual) == {"traces"}
     text = compile_kernel(Variant("planar-f2", "toy", "b"))
     assert "        extras = at(masses, 1)\n" in text
-    assert re.search(r"^    traces = at\(work, \d+\*row\)$", text, re.M)
+    assert re.search(r"^        traces = at\(work, \d+\*row\)$", text, re.M)
     assert f"WORK_ROWS = {len(rows)}\n" in text
 
 
@@ -134,5 +134,5 @@ def test_no_scratch_row_is_idle(layout):
     path = ROOT / "generated" / f"superelement_{layout.replace('-', '_')}_{frame}_b.py"
     tree = ast.parse(path.read_text())
     used = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
-    rows = re.findall(r"^    (\w+) = at\(work", path.read_text(), re.M)
+    rows = re.findall(r"^ +(\w+) = at\(work", path.read_text(), re.M)
     assert rows and all(used.count(row) > 1 for row in rows)

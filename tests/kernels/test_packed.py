@@ -73,7 +73,8 @@ def test_products_and_sums(shape, filled):
     count, rows, columns = shape
     matrices, height = stack(shape, filled, 1), whole_vectors(rows)
     row, random = pack(matrices, shape), np.random.default_rng(2)
-    x, factors = random.normal(size=columns), random.normal(size=count)
+    x, factors = np.ones(whole_vectors(columns)), random.normal(size=count)
+    x[:columns] = random.normal(size=columns)
     size = count * height
     before = np.r_[random.normal(size=size), 7.0]
     for add in (False, True):
@@ -81,13 +82,13 @@ def test_products_and_sums(shape, filled):
         times(row, x, out, size, add)
         found = (out[:size] - add * before[:size]).reshape(count, height)
         # sums of up to 61 products of numbers of size one
-        assert np.abs(found[:, :rows] - matrices @ x).max(initial=0.0) < 1e-13
+        assert np.abs(found[:, :rows] - matrices @ x[:columns]).max(initial=0.0) < 1e-13
         assert out[size] == 7.0
     deep = height + 8
-    sums = np.zeros((columns, deep))
+    sums = np.zeros((whole_vectors(columns), deep))
     summed(row, factors, sums.ravel(), deep)
     expected = np.einsum("k,kij->ij", factors, matrices)
-    assert np.abs(sums[:, :rows].T - expected).max() < 1e-13
+    assert np.abs(sums[:columns, :rows].T - expected).max() < 1e-13
     assert not sums[:, height:].any()
 
 

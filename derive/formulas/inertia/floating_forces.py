@@ -9,24 +9,26 @@ from sebody.derive.formulas.inertia import slaved
 from sebody.derive.formulas.inertia.floating_quantities import FloatingQuantities
 from sebody.derive.formulas.inertia.rates import MOVING, STRAINED, energies_stage, form_value
 from sebody.derive.symbolic.steps import Call, Stage, Step
+from sebody.kernels.layout import whole_vectors
 
 ROWS = ("y", "z"), ("eta", "zd"), ("etad", "zdd")     # local coordinates and those of the products
 
 
 def forces(f: FloatingQuantities) -> tuple[Step, ...]:
     """Local forces: integrals, then factors of the columns, then their products."""
-    weighted = [f.quantities.j, f.quantities.u, f.quantities.w]     # the first products
+    row = f.quantities
     return (
-        *(free(*rows) for rows in ROWS), *slaved.slaving(), *_contractions(f),
+        all_free(), *slaved.slaving(), *_contractions(f),
         f.integrals, f.moving,
         Stage("factors of the force on a coordinate", "element",
               sets=(*f.factors("by_moment_columns", f.groups["moment_columns"]),
-                    *f.factors("by_products", weighted))),
+                    *f.factors("by_products", [row.j, row.u, row.v, row.w]))),
         Call("force on the coordinates: first moments, couplings, inertia at rest",
-             "columns_times", ("moment_columns", "by_moment_columns", "local", "N", str(f.lines)),
+             "block_times",
+             ("moment_columns", "by_moment_columns", "local", "N", str(f.lines), "hN"),
              ("moment_columns", "by_moment_columns", "local")),
         Call("of the deformed body", "add_block_times",
-             ("products", "by_products", "local", "N", str(f.pairs + 2 * f.turns), "hN"),
+             ("products", "by_products", "local", "N", str(f.pairs + 3 * f.turns), "hN"),
              ("products", "by_products", "local")),
         added("inertia force of deformation, Mbar zddot", "Mz", "zdd"),
         added("damping force, Cbar ydot", "Cz", "zd"),
@@ -40,21 +42,23 @@ def forces(f: FloatingQuantities) -> tuple[Step, ...]:
 def _contractions(f: FloatingQuantities) -> tuple[Call, ...]:
     """Products of the constants with z and its rates, and of those with them again."""
     pairs, turns, lines = f.pairs, f.turns, f.lines
-    sums = [Call(f"first moments and couplings of {row}", "columns_times",
-                 ("moment_rows", row, out, str(lines), "N"), ("moment_rows", row, out))
-            for row, out in (("z", "line0"), ("zd", "line1"), ("zdd", "line2"))]
 
-    def dots(row, out, first, columns):
-        vectors = f"at(products, {first}*hN)" if first else "products"
-        return Call(f"quadratic parts, by {row}", "rows_times",
-                    (vectors, row, out, "N", str(columns), "hN"), ("products", row, out))
+    def dots(title, vectors, row, out, first, columns):
+        """Columns from one on, some more than asked: vectors of `LANES` are added up together."""
+        at = f"at({vectors}, {first}*hN)" if first else vectors
+        return Call(f"{title}, by {row}", "rows_times",
+                    (at, row, out, "N", str(whole_vectors(columns)), "hN"), (vectors, row, out))
+    moments = "first moments, couplings, inertia at rest"
     return (
-        *sums,
+        dots(moments, "moment_columns", "z", "line0", 0, lines),
+        dots(moments, "moment_columns", "zd", "line1", 0, lines),
+        dots(moments, "moment_columns", "zdd", "line2", 0, f.D + turns),
         stacked("J2_kl z and K_k^T z", "of_place", "z", "products", 0, pairs + turns),
-        stacked("(K_k^T - K_k) zdot and K_k^T zdot", "of_rate", "zd", "products", pairs + turns,
+        stacked("K_k^T zdot and (K_k^T - K_k) zdot", "of_rate", "zd", "products", pairs + turns,
                 2 * turns),
-        dots("z", "product0", 0, pairs), dots("zd", "product1", 0, pairs + turns),
-        dots("zd", "product3", pairs + 2 * turns, turns), dots("zdd", "product2", pairs, turns))
+        dots("quadratic parts", "products", "z", "product0", 0, pairs),
+        dots("quadratic parts", "products", "zd", "product1", 0, pairs + 2 * turns),
+        dots("quadratic parts", "products", "zdd", "product2", pairs, turns))
 
 
 def energy(f: FloatingQuantities) -> tuple[Step, ...]:
@@ -87,6 +91,14 @@ def stacked(title: str, matrices: str, row: str, out: str, first: int, count: in
 def added(title: str, matrix: str, row: str) -> Call:
     """A product that is added to the local forces."""
     return Call(title, "add_packed_times", (matrix, row, "local"), (matrix, row, "local"), 1)
+
+
+def all_free() -> Call:
+    """The coordinates that determine the others, their rates and second rates."""
+    given, to = zip(*ROWS, strict=True)
+    return Call("coordinates that determine the others, and their rates", "all_to_free",
+                (*given, "axes", "order", "unordered", *to, "bound", "bound_free", "free", "hN"),
+                (*given, "axes", "order", "unordered", *to))
 
 
 def free(row: str, to: str) -> Call:

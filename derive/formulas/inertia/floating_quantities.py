@@ -61,7 +61,7 @@ class FloatingQuantities:
         jz = part("jz", "inertia", "product0")
         jzd = part("jzd", "inertia", "product1")
         uzd = part("uzd", "axial", "product1", self.pairs)
-        vzd = part("vzd", "axial", "product3")
+        vzd = part("vzd", "axial", "product1", self.pairs + self.turns)
         uzdd = part("uzdd", "axial", "product2")
         values = field.Sums(
             at_rest[0] + linear[0][0], linear[1][0], linear[2][0], at_rest[1] + linear[0][2] + jz,
@@ -76,7 +76,7 @@ class FloatingQuantities:
     def make_row(self) -> tuple[field.Row, dict[str, list[Quantity]]]:
         """Quantities that belong to a coordinate: columns of constants and of products."""
         kinds = {"S1": "vector", "h": "inertia", "j": "inertia", "jd": "inertia"}
-        arrays = {"moment_columns": "S1 g h", "products": "j u w v", "more": "jd wa ua"}
+        arrays = {"moment_columns": "S1 g h", "products": "j u v w", "more": "jd ua wa"}
         size = {"vector": self.D, "axial": self.turns, "inertia": self.pairs}
         found, groups = {}, {}
         for array, names in arrays.items():

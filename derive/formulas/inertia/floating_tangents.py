@@ -26,10 +26,10 @@ def prepared(f: FloatingQuantities) -> tuple[Step, ...]:
     return (
         slaved.stacked("zdd", "Za"), *second_derivatives(q),
         stacked("J2_kl zdot", "of_place", "zd", "more", 0, pairs + turns),
-        stacked("(K_k^T - K_k) zddot and K_k^T zddot", "of_rate", "zdd", "more", pairs, 2 * turns),
+        stacked("K_k^T zddot and (K_k^T - K_k) zddot", "of_rate", "zdd", "more", pairs, 2 * turns),
         Stage("factors of the local tangents", "element",
               sets=(*f.factors("by_place", [row.j, row.u], GEOMETRY),
-                    *f.factors("by_rate", [row.w, row.v]), (one, sp.ones(1, 1)))),
+                    *f.factors("by_rate", [row.v, row.w]), (one, sp.ones(1, 1)))),
         Stage("forces on eta as factors", "slaved", sets=((followed, GEOMETRY * on_eta.symbols),)),
         *(Call("local tangents", "clear", (out, "N*deep"), (out,))
           for out in (PLACE, RATE, SECOND)),
@@ -38,7 +38,7 @@ def prepared(f: FloatingQuantities) -> tuple[Step, ...]:
           for title, matrices, factors, out in (
               ("by z: J2_kl and K_k^T", "of_place", "by_place", PLACE),
               ("forces on eta", "followers", "by_followers", PLACE),
-              ("by zdot: K_k^T - K_k", "of_rate", "by_rate", RATE),
+              ("by zdot: K_k^T and K_k^T - K_k", "of_rate", "by_rate", RATE),
               ("structural damping", "Cz", "ones", RATE),
               ("by zddot", "Mz", "ones", SECOND))),
         *f.stress.stiffness, *_borders(f))

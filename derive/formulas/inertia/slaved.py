@@ -23,37 +23,27 @@ def slaving() -> tuple[Call, ...]:
     _prove()
     return (
         stacked("z", "Zq"), stacked("zd", "Zd"),
-        _dots("eta_b = y . Q_b y / 2", "Zq", "z", "z"),
-        Call("half of it", "scale", ("at(z, free)", "0.5", "slaved"), ("z",)),
-        _dots("their rates, Q_b y . ydot", "Zq", "zd", "zd"),
-        _dots("their accelerations, Q_b y . yddot", "Zq", "zdd", "zdd"),
-        _dots("and ydot . Q_b ydot", "Zd", "zd", "zdd", "add_"))
+        Call("eta_b = y . Q_b y / 2, their rates and second rates", "follow",
+             ("Zq", "Zd", "z", "zd", "zdd", *_BY_Y), ("Zq", "Zd", "z", "zd", "zdd")))
 
 
 def varied() -> tuple[Call, ...]:
     """Differentials of the values; of y first."""
-    return (_dots("differential: eta_b", "Zq", "dz", "dz"),)
+    return (Call("differential: eta_b", "rows_times", ("Zq", "dz", "at(dz, free)", *_BY_Y),
+                 ("Zq", "dz")),)
 
 
 def rates_varied() -> tuple[Call, ...]:
     """Differentials of the rates."""
-    return (_dots("differential: rates of eta", "Zq", "dzd", "dzd"),
-            _dots("of Q_b y", "Zd", "dz", "dzd", "add_"),
-            _dots("differential: accelerations of eta", "Zq", "dzdd", "dzdd"),
-            _dots("of ydot, twice", "Zd", "dzd", "dzdd", "add_"),
-            _dots("again", "Zd", "dzd", "dzdd", "add_"),
-            _dots("of Q_b y", "Za", "dz", "dzdd", "add_"))
+    rows = "Zq", "Zd", "Za", "dz", "dzd", "dzdd"
+    return (Call("differential: rates of eta, accelerations of eta", "follow_changes",
+                 (*rows, *_BY_Y), rows),)
 
 
 def pulled_back(force: str) -> Call:
     """Forces on eta, added to those on y in the same row."""
     return Call("forces on eta, pulled back", "add_block_times",
                 ("Zq", f"at({force}, free)", force, "free", "slaved", "hn"), ("Zq", force))
-
-
-def _dots(title: str, vectors: str, vector: str, out: str, add: str = "") -> Call:
-    return Call(title, f"{add}rows_times", (vectors, vector, f"at({out}, free)", *_BY_Y),
-                (vectors, vector, out))
 
 
 def _prove() -> None:

@@ -1,0 +1,117 @@
+"""Coordinates that determine the others, and those that follow them, with their rates.
+
+All of a kind at once: each entry of a matrix is read once for values, rates and second rates.
+"""
+
+from llvmlite import ir
+from numba.extending import intrinsic
+
+from sebody.kernels.instructions import (
+    WORD,
+    add_product,
+    called,
+    load_broadcast,
+    load_vector,
+    no_sum,
+    short_loop,
+    store_vector,
+    sums_of_lanes,
+    totals,
+    whole_vectors,
+)
+from sebody.kernels.layout import LANES
+
+
+@intrinsic
+def all_to_free(typingctx, y, yd, ydd, axes, order, moved, z, zd, zdd, bound, bound_free, free,
+                end):
+    """`to_free` of coordinates, of their rates and of their second rates."""
+    return called(_all_to_free, 9, 4)
+
+
+@intrinsic
+def follow(typingctx, Zq, Zd, z, zd, zdd, free, slaved, height):
+    """Slaved coordinates behind z, and their rates: ``z . Q z / 2``, once and twice derived.
+
+    `Zq` and `Zd` are the products ``Q_b z`` and ``Q_b zd``, `height` numbers apart.
+    """
+    return called(_follow, 5, 3)
+
+
+@intrinsic
+def follow_changes(typingctx, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
+    """Changes of the rates of slaved coordinates by those of z, zd and zdd; see `follow`."""
+    return called(_follow_changes, 6, 3)
+
+
+def _all_to_free(builder, *args):
+    rows, (axes, order, moved), to = args[:3], args[3:6], args[6:9]
+    bound, bound_free, free, end = args[9:]
+    height = whole_vectors(builder, bound_free)
+    length = builder.add(height, builder.sub(free, bound_free))
+    own = [builder.gep(moved, [builder.mul(length, WORD(k))]) for k in range(3)]
+    with short_loop(builder, WORD(0), height, LANES) as row:
+        sums = totals(builder, 3)
+        for total in sums:
+            builder.store(no_sum(), total)
+        with short_loop(builder, WORD(0), bound) as column:
+            entries = load_vector(builder, axes, builder.add(builder.mul(column, height), row))
+            for given, total in zip(rows, sums, strict=True):
+                add_product(builder, total, entries, load_broadcast(builder, given, column))
+        for total, place in zip(sums, own, strict=True):
+            store_vector(builder, builder.load(total), place, row)
+    with short_loop(builder, WORD(0), builder.sub(free, bound_free)) as mode:
+        for given, place in zip(rows, own, strict=True):
+            _copy(builder, given, builder.add(bound, mode), place, builder.add(bound_free, mode))
+    with short_loop(builder, WORD(0), free) as k:
+        at = builder.fptosi(builder.load(builder.gep(order, [k])), WORD)
+        for place, out in zip(own, to, strict=True):
+            _copy(builder, place, at, out, k)
+    with short_loop(builder, free, end) as k:
+        for out in to:
+            builder.store(ir.Constant(ir.DoubleType(), 0.0), builder.gep(out, [k]))
+
+
+def _copy(builder, given, at, out, to):
+    builder.store(builder.load(builder.gep(given, [at])), builder.gep(out, [to]))
+
+
+def _follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
+    half = ir.Constant(ir.DoubleType(), 0.5)
+    with short_loop(builder, WORD(0), slaved) as b:
+        Zq_b, Zd_b = _of_one((Zq, Zd), builder, b, height)
+        value, rate, second = _dots(builder, height, (
+            ((Zq_b, z),), ((Zq_b, zd),), ((Zq_b, zdd), (Zd_b, zd))))
+        place = builder.add(free, b)
+        for out, number in ((z, builder.fmul(value, half)), (zd, rate), (zdd, second)):
+            builder.store(number, builder.gep(out, [place]))
+
+
+def _follow_changes(builder, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
+    with short_loop(builder, WORD(0), slaved) as b:
+        Zq_b, Zd_b, Za_b = _of_one((Zq, Zd, Za), builder, b, height)
+        rate, second = _dots(builder, height, (
+            ((Zq_b, dzd), (Zd_b, dz)),
+            ((Zq_b, dzdd), (Zd_b, dzd), (Zd_b, dzd), (Za_b, dz))))
+        place = builder.add(free, b)
+        for out, number in ((dzd, rate), (dzdd, second)):
+            builder.store(number, builder.gep(out, [place]))
+
+
+def _of_one(rows, builder, b, height):
+    """The row of one slaved coordinate in each of some products."""
+    return [builder.gep(row, [builder.mul(b, height)]) for row in rows]
+
+
+def _dots(builder, count, pairs):
+    """Sums of dot products, each of some pairs of vectors of `count` numbers."""
+    sums = totals(builder, LANES)
+    for total in sums:
+        builder.store(no_sum(), total)
+    with short_loop(builder, WORD(0), count, LANES) as row:
+        for total, both in zip(sums, pairs, strict=False):
+            for a, b in both:
+                add_product(builder, total, load_vector(builder, a, row),
+                            load_vector(builder, b, row))
+    result = sums_of_lanes(builder, [builder.load(total) for total in sums])
+    return [builder.extract_element(result, ir.IntType(32)(k)) for k in range(len(pairs))]
