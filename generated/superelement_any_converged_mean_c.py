@@ -83,7 +83,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "2f105d8a6508"     # hash of sebody/kernels, which this file was made for
+ROOM = "bc86a2b199d9"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -89,29 +89,34 @@ def planar_body(body: ReducedBody, axes: ArrayLike, what: str = "the body") -> P
         origin[2] = turned.coordinates[:, 2].mean()
         invariants = invariants.about(origin)
     modes = _modes(turned, invariants, boundary)
-    turn = block_diag(np.eye(held), modes.turn)
-    signs = np.concatenate([boundary, modes.signs]).astype(int)
+    every = _Basis(block_diag(np.eye(held), modes.turn), np.concatenate([boundary, modes.signs]))
     for name in ("stiffness", "mass", "damping"):
         matrix = getattr(turned, name)
         if matrix is not None:
-            _check_matrix(f"{what}: its {name} couples", turn.T @ matrix @ turn, signs, names)
-    kept = turn[:, signs > 0]
-    loads = {name: turn.T @ load for name, load in turned.loads.items()}
-    odd = tuple(name for name, load in loads.items() if _odd_load(load, signs, turned.stiffness))
-    even = [k for k, name in enumerate(loads) if name not in odd]
-    slaved, flat = np.zeros((0, 0)), None
+            _check_matrix(f"{what}: its {name} couples", every.turn.T @ matrix @ every.turn,
+                          every.signs, names)
+    slaved, constants = np.zeros((0, 0)), None
     if invariants is not None:
-        flat, slaved = _planar_invariants(invariants, turned, turn, signs, names, what)
-
-    def restricted(matrix: NDArray | None) -> NDArray | None:
-        return None if matrix is None else kept.T @ matrix @ kept
-    made = ReducedBody(
-        restricted(turned.stiffness), restricted(turned.mass), turned.coordinates[:, :2],
-        turned.keeps, int((modes.signs > 0).sum()), restricted(turned.damping),
-        flat, planar_recovery(turned, kept, slaved, even),
-        notes=(*turned.notes, "motion in a plane of symmetry"),
-        loads={name: load[signs > 0] for name, load in loads.items() if name not in odd})
+        constants, slaved = _planar_invariants(invariants, turned, every, names, what)
+    odd = tuple(name for name, load in turned.loads.items()
+                if _odd_load(every.turn.T @ load, every.signs, turned.stiffness))
+    made = _even_body(turned, every.turn[:, every.signs > 0], odd, constants, slaved)
     return PlanarBody(made, modes.turn[:, modes.signs > 0], odd)
+
+
+def _even_body(body: ReducedBody, kept: NDArray, odd: tuple[str, ...],
+               constants: InertiaInvariants | None, slaved: NDArray) -> ReducedBody:
+    """The body on the even coordinates, of which `kept` makes the old ones."""
+    held, even = len(body.mass) - body.modes, [n for n in body.loads if n not in odd]
+    stiffness, mass, damping = (
+        None if matrix is None else kept.T @ matrix @ kept
+        for matrix in (body.stiffness, body.mass, body.damping))
+    return ReducedBody(
+        stiffness, mass, body.coordinates[:, :2], body.keeps,
+        int((~kept[:held].any(axis=0)).sum()), damping, constants,
+        planar_recovery(body, kept, slaved, [list(body.loads).index(name) for name in even]),
+        notes=(*body.notes, "motion in a plane of symmetry"),
+        loads={name: kept.T @ body.loads[name] for name in even})
 
 
 def _check_matrix(what: str, matrix: NDArray, signs: NDArray, names: list[str]) -> None:
@@ -192,13 +197,13 @@ def _modes(body: ReducedBody, invariants: InertiaInvariants | None, boundary: ND
     return _Basis(block_diag(*turns), np.concatenate(found))
 
 
-def _planar_invariants(i: InertiaInvariants, body: ReducedBody, turn: NDArray, signs: NDArray,
+def _planar_invariants(i: InertiaInvariants, body: ReducedBody, every: _Basis,
                        names: list[str], what: str) -> tuple[InertiaInvariants, NDArray]:
     """Constants of the even motions, with the load modes and resultants that act on them.
 
     Then the old load modes of unit new ones.
     """
-    n = len(turn)
+    turn, signs, n = every.turn, every.signs, len(every.turn)
     whole = block_diag(turn, np.eye(i.slaved))
     mass = whole.T @ i.Mbar @ whole
     i = i.rotated(np.eye(3), turn.T)

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, generalized_alpha, harmonic, simulate
 from sebody.fem import Section, straight_beam
 from sebody.fem import frame as beams
-from sebody.model.variants import copied, keep_modes, planar
+from sebody.model.variants import copied, divide, keep_modes, planar
 from sebody.reduction import craig_bampton
 from sebody.results import Result
 from sebody.scenes import hinged_beam, planar_hinged_beam
@@ -143,6 +143,34 @@ def test_modes_of_one_frequency_are_turned_until_they_are_in_the_plane():
     assert abs(frequencies[1] / frequencies[0] - 1) < 1e-6      # a pair, in any direction
     kept = planar(model).model.bodies["beam"].body
     assert np.allclose(np.sqrt(np.diag(kept.stiffness)[-2:]), frequencies[[0, 2]], rtol=1e-6)
+
+
+@pytest.mark.parametrize("up", [Y, Z, None])
+@pytest.mark.parametrize("tapered", [False, True])
+def test_beams_are_divided_in_the_plane_as_in_space(up, tapered):
+    """A section that bends easily about one axis, in any position that is symmetric."""
+    section = SQUARE if up is None else FLAT
+
+    def thinner(place):
+        return replace(section, inertia_z=(1 - 0.5 * place) * section.inertia_z)
+    model = Model()
+    ends = [model.node(name, at(*xy, 0)) for name, xy in (("a", (0, 0)), ("b", (90, 50)))]
+    if tapered and up is None:
+        up = Y
+    model.beam("rod", ends, thinner if tapered else section, 8, 2, modes=2, up=up, damping=0.01)
+    model.fix("a", "position")
+    model.torque("a", 2e3 * Z, wind)
+    first, second = divide(planar(model).model, "rod", 4), planar(divide(model, "rod", 4).model)
+    assert first.change == "rod has 4 superelements of 2 finite elements instead of 2 " + (
+        "superelements of 4 finite elements")
+    assert list(first.model.bodies) == list(second.model.bodies)
+    for name, body in first.model.bodies.items():
+        expected = second.model.bodies[name].body
+        assert body.body.modes == expected.modes
+        for matrix in ("stiffness", "mass"):
+            # signs of modes are free: they are compared by size
+            own, other = (np.abs(getattr(one, matrix)) for one in (body.body, expected))
+            assert np.abs(own - other).max() < 1e-9 * other.max(), name
 
 
 def test_half_a_pair_of_modes_is_in_no_plane():
