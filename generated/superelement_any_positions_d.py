@@ -75,7 +75,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "2f105d8a6508"     # hash of sebody/kernels, which this file was made for
+ROOM = "eef3defcc731"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
