@@ -1,6 +1,6 @@
 """What a user runs: simulations, equilibria, small motion about a state, restarts."""
 
-from sebody.analysis.advice import Advice, advise
+from sebody.analysis.advice import Advice, Unreached, advise
 from sebody.analysis.campbell import Campbell, campbell
 from sebody.analysis.ensembles import (
     Ensemble,
@@ -35,6 +35,7 @@ __all__ = [
     "Modes",
     "Outcome",
     "Output",
+    "Unreached",
     "Vibrations",
     "advise",
     "at_time",

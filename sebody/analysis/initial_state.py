@@ -53,7 +53,7 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     solver = Solver(masses, system, numbering)
     changed = follow_drives(model, system, numbering, state, masses,
                             _rates(system, state, multipliers))
-    changed |= _fit_velocities(model, system, numbering, state, masses, multipliers)
+    changed |= _fit_velocities(model, system, numbering, state, masses, solver, multipliers)
     _accelerate(system, numbering, state, solver)
     state.aux[:numbering.free] = state.a[:numbering.free]
     state.frames_old[:] = state.frames
@@ -111,7 +111,8 @@ def _check(values: NDArray, size: float, what: str, multipliers: NDArray, number
 
 
 def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, state: State,
-                    masses: csc_matrix, multipliers: NDArray) -> dict[str, float]:
+                    masses: csc_matrix, solver: Solver,
+                    multipliers: NDArray) -> dict[str, float]:
     """Fit velocities by the smallest change in the norm of kinetic energy; given ones are kept.
 
     Returns the triplets whose velocity changed, and by how much.
@@ -125,14 +126,12 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
     given = [t for t in triplets if t.given]
     held = np.array([i for triplet in given for i in coordinates(numbering, triplet)], dtype=int)
-    added = np.full(len(held), HEAVY * abs(masses.diagonal()).max())
-    column = np.repeat(np.arange(numbering.free), np.diff(masses.indptr))
-    places = np.concatenate([masses.indices, held]), np.concatenate([column, held])
-    weighted = csc_matrix((np.concatenate([masses.data, added]), places), shape=masses.shape)
     demand = np.zeros(numbering.free)
     demand[multipliers] = -rates
     answer = np.zeros(numbering.total)
-    answer[:numbering.free] = least(weighted, system, demand)
+    solve = (least(_with_mass(masses, held), system) if held.size else
+             least(masses, system, solver.system))
+    answer[:numbering.free] = solve(demand)
     answer[multipliers] = 0.0
     to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
@@ -148,6 +147,16 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
            "no velocities fit this joint and the given ones; give others")
     changes = {t.name: float(np.abs(answer[coordinates(numbering, t)]).max()) for t in triplets}
     return {name: change for name, change in changes.items() if change > SMALL * size}
+
+
+def _with_mass(masses: csc_matrix, held: NDArray) -> csc_matrix:
+    """Masses with so much more at some coordinates that these keep their velocities."""
+    across = masses.shape[0]
+    diagonal = np.flatnonzero(       # all of it is stored, see `assembled`
+        masses.indices == np.repeat(np.arange(across), np.diff(masses.indptr)))
+    found = masses.copy()
+    found.data[diagonal[held]] += HEAVY * np.abs(masses.data[diagonal]).max()
+    return found
 
 
 def _rates(system: System, state: State, multipliers: NDArray) -> NDArray:

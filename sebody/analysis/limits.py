@@ -31,7 +31,7 @@ class Watch:
     def __init__(self) -> None:
         self.messages: list[str] = []
         self._said: set[str] = set()
-        self._groups: list[Group] | None = None
+        self._groups: tuple[list[Group], list[Placed]] | None = None
 
     def say(self, key: str, message: str) -> None:
         """Warn, unless the same was said before."""
@@ -68,12 +68,17 @@ class Watch:
         most = min(max(FEWEST, STATES // max(len(model.bodies), 1)), MOST)
         rows = rows[::-(-len(rows) // most)]
         parts = RECORD.slices(record_counts(numbering))
-        for group in self._groups:
+        rotated, placed = self._groups
+        found = [(group, _spins_of_positions(model.planar, group, rows, parts))
+                 for group in placed]
+        for group in rotated:
             local, spins = _motion(model.planar, group, rows, parts)
+            found.append((group, spins))
             for k in np.flatnonzero(local > LINEAR):
                 name = group.bodies[k].name
                 self.say(f"turn {name}", f"local rotation {local[k]:.2g} rad of body {name!r} "
                          f"exceeds the linear range, {LINEAR} rad: divide it")
+        for group, spins in found:
             speeds = np.linalg.norm(spins, axis=2)
             for k in np.flatnonzero(speeds.max(axis=0) > group.least):
                 row = int(np.argmax(speeds[:, k]))
@@ -111,8 +116,18 @@ class Group(NamedTuple):
     least: NDArray          # (b,) spins below which nothing is compared
 
 
-def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
-    found: dict[int, list] = {}
+class Placed(NamedTuple):
+    """Bodies whose frames follow their positions, the same number of them, p."""
+
+    bodies: list[Superelement]
+    frames: NDArray         # (b,) numbers of their frames
+    places: NDArray         # (b, p) first coordinates of the positions
+    least: NDArray          # (b,) spins below which nothing is compared
+
+
+def _grouped(model: Mechanism, numbering: Numbering) -> tuple[list[Group], list[Placed]]:
+    rotated: dict[int, list] = {}
+    placed: dict[int, list] = {}
     limits: dict[tuple, float] = {}
     for k, body in enumerate(model.bodies.values()):
         parts = [(numbering.triplets[id(t)], numbering.rotations.get(id(t), 0), weight)
@@ -121,11 +136,17 @@ def _grouped(model: Mechanism, numbering: Numbering) -> list[Group]:
         key = id(body.body), body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in limits:
             limits[key] = np.inf if body.stiffening else FAST * cautious_limit(body)
+        least = limits[key]
+        if body.frame == "positions":
+            places = [numbering.triplets[id(t)] for t in body.positions]
+            placed.setdefault(len(places), []).append((body, k, places, least))
+            least = np.inf
         if parts:
-            found.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True),
-                                                     limits[key]))
-    return [Group(list(bodies), *map(np.array, columns))
-            for bodies, *columns in (zip(*rows, strict=True) for rows in found.values())]
+            rotated.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True), least))
+    return ([Group(list(bodies), *map(np.array, columns))
+             for bodies, *columns in (zip(*rows, strict=True) for rows in rotated.values())],
+            [Placed(list(bodies), *map(np.array, columns))
+             for bodies, *columns in (zip(*rows, strict=True) for rows in placed.values())])
 
 
 def spin_limit(body: Superelement, axis: ArrayLike | None) -> float:
@@ -199,3 +220,22 @@ def _motion(planar: bool, group: Group, rows: NDArray, parts: dict) -> tuple[NDA
     rates = v[:, group.places[..., None] + np.arange(3)].reshape(n, *shape, 3, 1)
     spins = (group.weights[..., None] * (relative @ rates)[..., 0]).sum(axis=2)
     return local.max(axis=(0, 2)), spins
+
+
+def _spins_of_positions(planar: bool, group: Placed, rows: NDArray, parts: dict) -> NDArray:
+    """Spins of frames of best fit in their own axes, (n, b, 3 or 1).
+
+    Of a body that moves as the nodes do, by the moment of their velocities about their mean.
+    """
+    n, d = len(rows), 2 if planar else 3
+    at = group.places[..., None] + np.arange(d)
+    frames = rows[:, parts["frames"]].reshape(n, -1, 3, 3)[:, group.frames, :d, :d]
+    arms, rates = ((x - x.mean(axis=2, keepdims=True)) @ frames
+                   for x in (rows[:, parts[name]][:, at] for name in ("q", "v")))
+    if planar:
+        moments = arms[..., 0] * rates[..., 1] - arms[..., 1] * rates[..., 0]
+        return (moments.sum(axis=2) / (arms**2).sum(axis=(2, 3)))[..., None]
+    moments = np.cross(arms, rates).sum(axis=2)
+    squares = np.swapaxes(arms, 2, 3) @ arms
+    inertia = np.trace(squares, axis1=2, axis2=3)[..., None, None] * np.eye(3) - squares
+    return (np.linalg.pinv(inertia) @ moments[..., None])[..., 0]

@@ -1,5 +1,7 @@
 """Solution for accelerations and multipliers where constraints are redundant or mass is missing."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
@@ -19,12 +21,20 @@ PROBES = 8              # iterations after which the motion with the least inert
 HALF = 0.5              # of such a motion, `Relaxed.unmoved` leaves all; of others little
 
 
-def least(matrix: csc_matrix, system: System, demand: NDArray) -> NDArray:
-    """Solution, that of least norm where the matrix is singular."""
-    direct = Scaled(matrix)
+def least(matrix: csc_matrix, system: System,
+          direct: Scaled | None = None) -> Callable[[NDArray], NDArray]:
+    """What solves for given right sides: with least norm where the matrix is singular.
+
+    Parameters
+    ----------
+    direct : Scaled, optional
+        Factors of the matrix, if there are any yet.
+    """
+    direct = direct or Scaled(matrix)
     if direct.regular:
-        return direct.solve(demand)
-    return Relaxed(matrix, part_sizes(matrix, system), system).least(demand)[0]
+        return direct.solve
+    relaxed = Relaxed(matrix, part_sizes(matrix, system), system)
+    return lambda demand: relaxed.least(demand)[0]
 
 
 def part_sizes(matrix: csc_matrix, system: System) -> NDArray:

@@ -8,10 +8,11 @@ light nodes pull heavy bodies, is reduced by as much again in every further pass
 """
 
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix, diags
+from scipy.sparse import csc_matrix
 
 from sebody.analysis.redundancy import least
 from sebody.assembly.numbering import Numbering, coordinates
@@ -20,11 +21,15 @@ from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement, Triplet
+from sebody.reduction import ReducedBody
 
 STIFF = 1e8
 PASSES = 3              # of a long slender beam the first leaves 1e-4, the third 1e-12
 SMALL = 1e-8            # change of a velocity, relative, that is none
 HEAVY = 1e12            # added mass, relative, that keeps velocities the user gave
+
+# energies of deformation of bodies that are still in use: the next run needs them again
+_energies: WeakKeyDictionary[ReducedBody, NDArray] = WeakKeyDictionary()
 
 
 def follow_drives(model: Mechanism, system: System, numbering: Numbering, state: State,
@@ -51,12 +56,13 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
     for triplet in triplets:
         if triplet.given:
             held[coordinates(numbering, triplet)] = HEAVY * abs(masses.diagonal()).max()
-    matrix = csc_matrix(sum((p.places.T @ p.energy @ p.places for p in parts),
-                            masses + diags(held)))
+    solve = least(_with_energies(masses, held, parts), system)
     before = state.v.copy()
     for _ in range(PASSES):
-        pull = sum(p.places.T @ (p.energy @ state.v[p.own]) for p in parts)
-        answer = least(matrix, system, demand - pull)
+        wanted = demand.copy()
+        for part in parts:
+            wanted[part.unknowns] -= part.places.T @ (part.energy @ state.v[part.own])
+        answer = solve(wanted)
         answer[multipliers] = demand[multipliers] = 0.0
         state.v[:numbering.free] += answer
         place_dependent(system.links, state.q, state.v, state.a, state.R)
@@ -77,34 +83,54 @@ class _Deformation(NamedTuple):
     """The kinetic energy of deformation of a body, as a function of its velocities."""
 
     energy: NDArray     # ``STIFF D``, D = M - M r (r^T M r)^-1 r^T M with the rigid modes r
-    places: csc_matrix  # its velocities by those of the unknowns
-    own: NDArray        # its coordinates
+    own: NDArray        # coordinates of the body
+    unknowns: NDArray   # those its velocities depend on
+    places: NDArray     # its velocities by those of the unknowns
 
     @classmethod
     def of(cls, body: Superelement, numbering: Numbering) -> "_Deformation":
         """That of a superelement."""
         reduced = body.body
-        r = reduced.rigid_modes_about(reduced.centre_of_mass)
-        momentum = reduced.mass @ r
-        energy = reduced.mass - momentum @ np.linalg.pinv(r.T @ momentum) @ momentum.T
+        if reduced not in _energies:
+            _energies[reduced] = STIFF * _deformation(reduced)
         first = numbering.modes[body.name]
         own = [c for t in (*body.positions, *body.rotations) for c in coordinates(numbering, t)]
         own += range(first, first + reduced.modes)
-        return cls(STIFF * energy, _by_unknowns(body, numbering), np.array(own))
+        return cls(_energies[reduced], np.array(own), *_by_unknowns(body, numbering))
 
 
-def _by_unknowns(body: Superelement, numbering: Numbering) -> csc_matrix:
-    """Velocities of a body's coordinates by those of the unknowns, at the start: axes are global.
+def _deformation(reduced: ReducedBody) -> NDArray:
+    r = reduced.rigid_modes_about(reduced.centre_of_mass)
+    momentum = reduced.mass @ r
+    return reduced.mass - momentum @ np.linalg.pinv(r.T @ momentum) @ momentum.T
+
+
+def _with_energies(masses: csc_matrix, held: NDArray, parts: list[_Deformation]) -> csc_matrix:
+    """Masses with those of held coordinates and the energies of deformation."""
+    across = len(held)
+    rows = [masses.indices, np.arange(across)]
+    columns = [np.repeat(np.arange(across), np.diff(masses.indptr)), np.arange(across)]
+    values = [masses.data, held]
+    for part in parts:
+        rows.append(np.repeat(part.unknowns, len(part.unknowns)))
+        columns.append(np.tile(part.unknowns, len(part.unknowns)))
+        values.append((part.places.T @ part.energy @ part.places).ravel())
+    return csc_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
+                      shape=masses.shape)
+
+
+def _by_unknowns(body: Superelement, numbering: Numbering) -> tuple[NDArray, NDArray]:
+    """Unknowns, and the velocities of a body's coordinates by theirs; axes are global at the start.
 
     Fixed and prescribed coordinates have none; the end of a rigid link follows root and arms.
     """
-    rows, columns, values = [], [], []
+    column: dict[int, int] = {}     # unknown -> its column
+    blocks = []                     # first row, columns, velocities
 
     def add(row: int, triplet: Triplet, block: NDArray) -> None:
-        for i, j in np.ndindex(block.shape if triplet.solved else (0, 0)):
-            rows.append(row + i)
-            columns.append(numbering.triplets[id(triplet)] + j)
-            values.append(block[i, j])
+        if triplet.solved:
+            own = [column.setdefault(c, len(column)) for c in coordinates(numbering, triplet)]
+            blocks.append((row, own, block))
 
     row = 0
     for triplet in (*body.positions, *body.rotations):
@@ -118,7 +144,9 @@ def _by_unknowns(body: Superelement, numbering: Numbering) -> csc_matrix:
                     np.cross(np.eye(3), arm).T)
         row += size
     modes, first = body.body.modes, numbering.modes[body.name]
-    rows += range(row, row + modes)
-    columns += range(first, first + modes)
-    return csc_matrix((values + [1.0] * modes, (rows, columns)),
-                      shape=(row + modes, numbering.free))
+    for k in range(modes):
+        blocks.append((row + k, [column.setdefault(first + k, len(column))], np.ones((1, 1))))
+    places = np.zeros((row + modes, len(column)))
+    for row, own, block in blocks:
+        places[row:row + len(block), own] += block
+    return np.array(list(column), dtype=int), places

@@ -39,8 +39,8 @@ def factors(matrix: csc_matrix, **options: object) -> SuperLU:
 class _Dense:
     """Factors of a small matrix."""
 
-    def __init__(self, matrix: csc_matrix):
-        self._factors, self._exchanges, zero = dgetrf(matrix.toarray(order="F"), overwrite_a=True)
+    def __init__(self, matrix: NDArray):
+        self._factors, self._exchanges, zero = dgetrf(matrix, overwrite_a=True)
         if zero:
             raise RuntimeError("a pivot is exactly zero")
         self.pivots = np.abs(self._factors.diagonal())
@@ -71,20 +71,31 @@ class Scaled:
     """
 
     def __init__(self, matrix: csc_matrix):
-        matrix = csc_matrix(matrix, copy=not matrix.has_canonical_format)
-        matrix.sum_duplicates()
-        entries, row, across = matrix.data, matrix.indices, matrix.shape[1]
+        if not matrix.has_canonical_format:
+            matrix = matrix.copy()
+            matrix.sum_duplicates()
+        row, across = matrix.indices, matrix.shape[1]
         column = np.repeat(np.arange(across), np.diff(matrix.indptr))
         largest = np.zeros(across)
-        np.maximum.at(largest, column, np.abs(entries))
+        np.maximum.at(largest, column, np.abs(matrix.data))
         self.scale = 1.0 / np.sqrt(np.maximum(largest, 1e-300))
         # on the entries: for a few bodies SciPy's products take ten times as long as their numbers
-        matrix.data = entries * self.scale[row] * self.scale[column]
-        self.matrix = matrix
+        self._entries, self._pattern = matrix.data * self.scale[row] * self.scale[column], matrix
         try:
-            self.factors = (_Dense if across <= SMALL else _Sparse)(self.matrix)
+            if across <= SMALL:
+                dense = np.zeros((across, across), order="F")
+                dense[row, column] = self._entries
+                self.factors = _Dense(dense)
+            else:
+                self.factors = _Sparse(self.matrix)
         except RuntimeError:        # a pivot is exactly zero
             self.factors = None
+
+    @cached_property
+    def matrix(self) -> csc_matrix:
+        """The scaled matrix."""
+        own = self._pattern
+        return csc_matrix((self._entries, own.indices, own.indptr), shape=own.shape)
 
     @cached_property
     def regular(self) -> bool:

@@ -24,11 +24,15 @@ COUPLED = 1e-6          # less than this part of what they can be leaves coordin
 
 def body_axes(invariants: InertiaInvariants, counts: Counts) -> NDArray:
     """The axes, columns, (D, D): of some candidates those with the most zeros in the mass."""
-    def filled(turn):
-        by = of_coordinates(turn.T, counts)
-        n = len(by)
-        return np.count_nonzero(_cleared(by @ invariants.Mbar[:n, :n] @ by.T, COUPLED))
-    return min(_candidates(invariants), key=filled)
+    candidates = list(_candidates(invariants))
+    by = np.stack([of_coordinates(turn.T, counts) for turn in candidates])
+    n = by.shape[1]
+    mass = np.abs(by @ invariants.Mbar[:n, :n] @ by.transpose(0, 2, 1))
+    size = np.sqrt(mass.diagonal(axis1=1, axis2=2))
+    limits = size[:, :, None] * size[:, None, :]
+    largest = (mass / np.where(limits > 0, limits, 1.0)).max(axis=(1, 2))
+    filled = (mass > COUPLED * largest[:, None, None] * limits).sum(axis=(1, 2))
+    return candidates[int(filled.argmin())]
 
 
 def _candidates(i: InertiaInvariants) -> Iterator[NDArray]:
@@ -43,23 +47,32 @@ def _candidates(i: InertiaInvariants) -> Iterator[NDArray]:
     principal = np.linalg.eigh(i.J0 - i.mass * (centre @ centre * np.eye(3)
                                                 - np.outer(centre, centre)))[1]
     yield principal * np.linalg.det(principal)
+    others = _directions(np.vstack([i.S1.T, i.g.T]))
     for along in principal.T:
-        for other in _directions(np.vstack([i.S1.T, i.g.T])):
+        for other in others:
             across = other - along * (along @ other)
             size = np.linalg.norm(across)
             if size > 0.5:
-                yield np.column_stack([along, across / size, np.cross(along, across / size)])
+                across /= size
+                yield np.column_stack([along, across, _cross(along, across)])
 
 
-def _directions(vectors: NDArray) -> Iterator[NDArray]:
+def _cross(a: NDArray, b: NDArray) -> list[float]:
+    """The vector product: NumPy's own takes ten times as long for single vectors."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return [y * w - z * v, z * u - x * w, x * v - y * u]
+
+
+def _directions(vectors: NDArray) -> list[NDArray]:
     """Different directions among some vectors."""
     sizes = np.linalg.norm(vectors, axis=1)
-    found: list[NDArray] = []
-    for vector, size in zip(vectors, sizes, strict=True):
-        if size > 1e-6 * sizes.max() and all(
-                abs(vector @ other) < (1 - 1e-6) * size for other in found):
-            found.append(vector / size)
-            yield found[-1]
+    kept = sizes > 1e-6 * sizes.max()
+    units = vectors[kept] / sizes[kept, None]
+    cosines, found = np.abs(units @ units.T), []
+    for k in range(len(units)):
+        if not (cosines[k, found] >= 1 - 1e-6).any():
+            found.append(k)
+    return [units[k] for k in found]
 
 
 def of_coordinates(rotation: NDArray, counts: Counts) -> NDArray:

@@ -8,8 +8,11 @@ its bodies.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
+
+REMEMBERED = 32         # orders
 
 
 class Coupling(NamedTuple):
@@ -36,8 +39,21 @@ def elimination_order(bodies: Sequence[Mapping[int, int]],
     list of int
         A postorder of the elimination tree: bodies that are coupled are close to each other.
     """
+    number: dict[int, int] = {}         # keys differ from model to model, their numbers do not
+    for body in bodies:
+        for key in body:
+            number.setdefault(key, len(number))
+    return list(_order(
+        tuple([tuple([(number[key], size) for key, size in body.items()]) for body in bodies]),
+        tuple([(tuple([number[key] for key in one.keys]), one.multipliers,
+                tuple([number[key] for key in one.awaited])) for one in couplings])))
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _order(bodies: tuple, couplings: tuple) -> tuple[int, ...]:
+    """The same of hashable bodies and couplings: many runs are of the same few models."""
     graph = _Graph(len(bodies))
-    _fill(graph, bodies, couplings)
+    _fill(graph, [dict(body) for body in bodies], [Coupling(*one) for one in couplings])
     current = [graph.degree(item) for item in graph.choices]
     queue = [(degree, item) for item, degree in enumerate(current)]
     heapify(queue)
@@ -48,7 +64,7 @@ def elimination_order(bodies: Sequence[Mapping[int, int]],
                 if other < len(current):
                     current[other] = graph.degree(other)
                     heappush(queue, (current[other], other))
-    return graph.postorder()
+    return tuple(graph.postorder())
 
 
 class _Graph:

@@ -29,7 +29,7 @@ def link_arrays(model: Mechanism, numbering: Numbering, batches: list[Batch],
     ends, unused = _ends(model, numbering, rotated), numbering.total
     elements, maps, blocks, rows, columns = [], [], [], [], []
     start = 0
-    for batch in batches:
+    for batch in batches if ends.number else ():
         for unknowns, full in zip(batch.unknowns, batch.full, strict=True):
             if any(u in ends.number for u in unknowns):
                 wide, own_map, own_blocks = _expanded(unknowns, ends, len(maps))

@@ -40,16 +40,23 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print all runs of the search and the advice; draw them."""
+    """Print all runs of the search and the advice; draw them.
+
+    Raises
+    ------
+    InputError
+        Also where no model is good enough: then the best is printed before.
+    """
+    from sebody.analysis.advice import Unreached
+
     check_picture(options.output)
     scene = build_scene(options.scene, options.changes)
-    advice = _advised(options, scene)
-    print(f"{'predicted':>9} {'error':>9} {'step':>9} {'seconds':>9}  change")
-    for trial in advice.table:
-        print(f"{trial.predicted:9.2g} {trial.error:9.2g} {trial.step:9.3g} {trial.seconds:9.2g}  "
-              f"{trial.change}")
-    *lines, last = advice.summary().splitlines()
-    print("\n".join(lines))
+    try:
+        advice = _advised(options, scene)
+    except Unreached as reason:
+        _print(reason.advice)
+        raise
+    last = _print(advice)
     if options.code:
         print("\n" + advice.code(_given(options)) + "\n")
     if options.output:
@@ -57,6 +64,17 @@ def run(options: argparse.Namespace) -> int:
         print(f"picture: {options.output}")
     print(last)
     return interrupts.exit_code()
+
+
+def _print(advice: "Advice") -> str:
+    """Print runs and advice but for the last line, which is returned."""
+    print(f"{'predicted':>9} {'error':>9} {'step':>9} {'seconds':>9}  change")
+    for trial in advice.table:
+        print(f"{trial.predicted:9.2g} {trial.error:9.2g} {trial.step:9.3g} {trial.seconds:9.2g}  "
+              f"{trial.change}")
+    *lines, last = advice.summary().splitlines()
+    print("\n".join(lines))
+    return last
 
 
 def _advised(options: argparse.Namespace, scene: "Scene") -> "Advice":

@@ -142,13 +142,13 @@ def _beam_model(
     members = pairs.reshape(-1, elements, 2)
     lines = np.zeros((len(members), 3))
     lines[:, : nodes.shape[1]] = nodes[members[:, -1, 1]] - nodes[members[:, 0, 0]]
-    axes = np.array([_section_axes(line, up) for line in lines])
+    axes = np.array([section_axes(line, up) for line in lines])
     lengths = np.linalg.norm(lines, axis=1) / elements
     return beam_model(nodes, pairs, np.repeat(lengths, elements),
                       np.repeat(axes, elements, axis=0), sections * len(members))
 
 
-def _section_axes(axis: NDArray, up: ArrayLike | None) -> NDArray:
+def section_axes(axis: NDArray, up: ArrayLike | None) -> NDArray:
     """Rows: member axis x, section axes y and z, in global axes."""
     length = np.linalg.norm(axis)
     if length == 0:

@@ -116,8 +116,10 @@ class Row(NamedTuple):
         row: list[int] = []
         for part in self.parts:
             value = values[part.name]
-            self._check_shape(part, (len(value),) if isinstance(value, list) else (), counts)
-            row += value if isinstance(value, list) else [value]
+            listed = isinstance(value, list)
+            if listed or part.shape:        # most are single numbers, of thousands of elements
+                self._check_shape(part, (len(value),) if listed else (), counts)
+            row += value if listed else (value,)
         return row
 
     def unpack(self, counts: Counts, row: NDArray) -> dict[str, NDArray]:

@@ -61,7 +61,7 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
         The node does not keep this triplet, no position would be left, or nothing resists the
         released motion.
     """
-    gone = _coordinates(body, node, kind)
+    gone = coordinates_of(body, node, kind)
     n, held = len(body.mass), len(body.mass) - body.modes
     bound = np.setdiff1d(np.arange(held), gone)
     inner = np.concatenate([gone, np.arange(held, n)])
@@ -94,8 +94,14 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
     return Released(truncated(made, kept), basis[:, :len(bound) + kept], bound)
 
 
-def _coordinates(body: ReducedBody, node: int, kind: str) -> NDArray:
-    """Reduced coordinates of a triplet."""
+def coordinates_of(body: ReducedBody, node: int, kind: str) -> NDArray:
+    """Places of the reduced coordinates of a triplet that may be released.
+
+    Raises
+    ------
+    InputError
+        The node does not keep it, or it is the only position.
+    """
     d, r = (2, 1) if body.planar else (3, 3)
     nodes, size, first = ((body.position_nodes, d, 0) if kind == "position" else
                           (body.rotation_nodes, r, d * len(body.position_nodes)))

@@ -26,7 +26,8 @@ from sebody.reduction.plane_recovery import planar_recovery
 # Couplings below this, relative to what they couple, are rounding: matrices from files have some
 # eight digits. They would change motions in the plane by their squares.
 _ROUNDING = 1e-6
-_SECOND = 1e-4          # the same in second order: load modes of little strain energy carry more
+_SECOND = 1e-3          # the same in second order: load modes of little strain energy carry more
+_FLOOR = 1e-3           # of the stiffest coordinate of a kind, or the heaviest: root of a diagonal
 _NONE = 1e-10           # squared couplings, relative to the largest possible: none at all
 _REPEATED = 1e-6        # relative distance of squared frequencies that count as equal
 AXES, TURNS = np.array([1, 1, -1]), np.array([-1, -1, 1])   # signs of vectors and of axial vectors
@@ -88,34 +89,39 @@ def planar_body(body: ReducedBody, axes: ArrayLike, what: str = "the body") -> P
         origin[2] = turned.coordinates[:, 2].mean()
         invariants = invariants.about(origin)
     modes = _modes(turned, invariants, boundary)
-    turn = block_diag(np.eye(held), modes.turn)
-    signs = np.concatenate([boundary, modes.signs]).astype(int)
+    every = _Basis(block_diag(np.eye(held), modes.turn), np.concatenate([boundary, modes.signs]))
     for name in ("stiffness", "mass", "damping"):
         matrix = getattr(turned, name)
         if matrix is not None:
-            _check_matrix(f"{what}: its {name} couples", turn.T @ matrix @ turn, signs, names)
-    kept = turn[:, signs > 0]
-    loads = {name: turn.T @ load for name, load in turned.loads.items()}
-    odd = tuple(name for name, load in loads.items() if _odd_load(load, signs, turned.stiffness))
-    even = [k for k, name in enumerate(loads) if name not in odd]
-    slaved, flat = np.zeros((0, 0)), None
+            _check_matrix(f"{what}: its {name} couples", every.turn.T @ matrix @ every.turn,
+                          every.signs, names)
+    slaved, constants = np.zeros((0, 0)), None
     if invariants is not None:
-        flat, slaved = _planar_invariants(invariants, turned, turn, signs, what)
-
-    def restricted(matrix: NDArray | None) -> NDArray | None:
-        return None if matrix is None else kept.T @ matrix @ kept
-    made = ReducedBody(
-        restricted(turned.stiffness), restricted(turned.mass), turned.coordinates[:, :2],
-        turned.keeps, int((modes.signs > 0).sum()), restricted(turned.damping),
-        flat, planar_recovery(turned, kept, slaved, even),
-        notes=(*turned.notes, "motion in a plane of symmetry"),
-        loads={name: load[signs > 0] for name, load in loads.items() if name not in odd})
+        constants, slaved = _planar_invariants(invariants, turned, every, names, what)
+    odd = tuple(name for name, load in turned.loads.items()
+                if _odd_load(every.turn.T @ load, every.signs, turned.stiffness))
+    made = _even_body(turned, every.turn[:, every.signs > 0], odd, constants, slaved)
     return PlanarBody(made, modes.turn[:, modes.signs > 0], odd)
+
+
+def _even_body(body: ReducedBody, kept: NDArray, odd: tuple[str, ...],
+               constants: InertiaInvariants | None, slaved: NDArray) -> ReducedBody:
+    """The body on the even coordinates, of which `kept` makes the old ones."""
+    held, even = len(body.mass) - body.modes, [n for n in body.loads if n not in odd]
+    stiffness, mass, damping = (
+        None if matrix is None else kept.T @ matrix @ kept
+        for matrix in (body.stiffness, body.mass, body.damping))
+    return ReducedBody(
+        stiffness, mass, body.coordinates[:, :2], body.keeps,
+        int((~kept[:held].any(axis=0)).sum()), damping, constants,
+        planar_recovery(body, kept, slaved, [list(body.loads).index(name) for name in even]),
+        notes=(*body.notes, "motion in a plane of symmetry"),
+        loads={name: kept.T @ body.loads[name] for name in even})
 
 
 def _check_matrix(what: str, matrix: NDArray, signs: NDArray, names: list[str]) -> None:
     """Refuse entries between even and odd coordinates."""
-    size = np.sqrt(np.maximum(np.diag(matrix), (1e-7 * unit_scale(matrix, names))**2))
+    size = _sizes(matrix, names)
     odd = np.where(np.outer(signs, signs) < 0, np.abs(matrix) / np.outer(size, size), 0.0)
     i, j = sorted(np.unravel_index(np.argmax(odd), odd.shape), key=lambda k: -signs[k])
     if odd[i, j] > _ROUNDING:
@@ -125,6 +131,12 @@ def _check_matrix(what: str, matrix: NDArray, signs: NDArray, names: list[str]) 
                          "symmetric about the plane" + modes * (
                              ", or has a part of the modes of one frequency: keep all or none of "
                              "them"))
+
+
+def _sizes(matrix: NDArray, names: list[str]) -> NDArray:
+    """Roots of the diagonal, with a floor for coordinates that are much softer, or lighter."""
+    names = [*names, *(f"mode slaved {k}" for k in range(len(matrix) - len(names)))]
+    return np.sqrt(np.maximum(np.diag(matrix), (_FLOOR * unit_scale(matrix, names))**2))
 
 
 def _odd_load(load: NDArray, signs: NDArray, stiffness: NDArray) -> bool:
@@ -185,13 +197,13 @@ def _modes(body: ReducedBody, invariants: InertiaInvariants | None, boundary: ND
     return _Basis(block_diag(*turns), np.concatenate(found))
 
 
-def _planar_invariants(i: InertiaInvariants, body: ReducedBody, turn: NDArray, signs: NDArray,
-                       what: str) -> tuple[InertiaInvariants, NDArray]:
+def _planar_invariants(i: InertiaInvariants, body: ReducedBody, every: _Basis,
+                       names: list[str], what: str) -> tuple[InertiaInvariants, NDArray]:
     """Constants of the even motions, with the load modes and resultants that act on them.
 
     Then the old load modes of unit new ones.
     """
-    n = len(turn)
+    turn, signs, n = every.turn, every.signs, len(every.turn)
     whole = block_diag(turn, np.eye(i.slaved))
     mass = whole.T @ i.Mbar @ whole
     i = i.rotated(np.eye(3), turn.T)
@@ -206,7 +218,7 @@ def _planar_invariants(i: InertiaInvariants, body: ReducedBody, turn: NDArray, s
         i, S1=i.S1 @ whole, g=i.g @ whole, h=i.h @ whole, K=whole.T @ i.K @ whole,
         J2=whole.T @ i.J2 @ whole, Mbar=whole.T @ i.Mbar @ whole,
         Q=np.einsum("ab,bij->aij", back, i.Q), lam=lam, E=E, Ghat=Ghat)
-    _check_constants(full, signs, slaved.signs, resultants.signs, what)
+    _check_constants(full, signs, slaved.signs, resultants.signs, names, what)
     found, eta = _even(full, signs, slaved.signs, resultants.signs)
     return found, slaved.turn[:, eta]
 
@@ -230,11 +242,10 @@ def _resultants(i: InertiaInvariants, stiffness: NDArray, signs: NDArray) -> _Ba
 
 
 def _check_constants(i: InertiaInvariants, signs: NDArray, slaved: NDArray, resultants: NDArray,
-                     what: str) -> None:
+                     names: list[str], what: str) -> None:
     """Refuse constants that couple even with odd motions."""
     z = np.concatenate([signs, slaved])
-    mass = np.diag(i.Mbar)
-    size = np.sqrt(np.where(mass > 0, mass, 1.0))
+    size = _sizes(i.Mbar, names)
     size[len(signs):] *= _SECOND / _ROUNDING
     inertia = np.sqrt(np.trace(i.J0))
     for name, array, parities, sizes in (

@@ -72,7 +72,11 @@ def test_a_search_ends_with_its_budget():
     ({"quantities": "top.position"}, "'top.position' is unknown: did you mean 'tip.position'"),
     ({"tolerance": 1e-9}, "the whole model has an error of about .* from the step: give a smaller"),
     ({"t_end": 0.405}, "t_end is 0.405, 40.5 steps of 0.01: give a whole number of steps"),
-    ({"model": crane(still=True)}, "quantity 'tip.position' does not change"),
+    ({"model": crane(still=True)}, "quantity 'tip.position' does not change: the model does not "
+     "move; give it loads, a drive or initial velocities"),
+    ({"quantities": "base.position"}, "'base.position' does not change: give one that the motion"),
+    ({"quantities": "frequency 99"}, "'frequency 99' does not exist: the model has 14 freq"),
+    ({"quantities": []}, "quantities: none is given"),
 ])
 def test_what_cannot_be_advised_is_said(given, message):
     whole = {"model": crane(), "h": H, "t_end": T_END, "quantities": "tip.position"} | given

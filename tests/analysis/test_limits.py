@@ -7,11 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from stiffened_models import TURN as TURNED
+from stiffened_models import block
 
 from sebody import Model, Simulation
 from sebody.analysis import equilibrium, modes
 from sebody.analysis.limits import spin_limit
-from sebody.analysis.softening import cautious_limit, first_frequency
+from sebody.analysis.softening import cautious_limit, first_frequency, reach
+from sebody.analysis.thresholds import FAST
 from sebody.fem import Section, StiffnessSection, planar_beam, straight_beam
 from sebody.reduction import ReducedBody, craig_bampton
 
@@ -197,3 +200,42 @@ def test_a_blade_with_soft_torsion_is_warned_of_before_it_diverges():
     for messages in turning((0, 0, 1), 0.08, torsion=1e-3):
         assert len(messages) == 1
         assert "more than a quarter of 0.283, where it diverges" in messages[0]
+
+
+@pytest.mark.parametrize("option", [{"inertia": "b"}, {"inertia": "d"},
+                                    {"inertia": "c", "stiffening": False}])
+def test_a_body_without_a_kept_rotation_is_warned_of(option):
+    """Its spin is found from its corners, which fly, too; the part that stresses it counts."""
+    body, axis = block(option).bodies["block"], TURNED[:, 2]
+    limit, felt = spin_limit(body, axis), reach(body, axis)
+
+    def messages(speed):
+        return said(lambda: Simulation(block(option, (30.0, 4.0, -5.0), speed * axis),
+                                       1e-6).run_to(1e-5))
+    fast = FAST * min(limit, first_frequency(body)) / felt
+    assert messages(0.98 * fast) == []
+    text, = messages(1.02 * fast)
+    assert text.startswith(f"body 'block' spins at {1.02 * fast:.3g} rad/s, more than a quarter of")
+    speed = 1.02 * limit / felt
+    text, = messages(speed)
+    assert text.startswith(f"spin {speed:.3g} rad/s is above the limit {limit:.3g} of body 'block'")
+    assert text.endswith("let it stiffen with stiffening=True" if option["inertia"] == "c" else
+                         "take inertia='c'")
+
+
+def test_a_planar_beam_known_by_its_ends_is_warned_of():
+    """Of pinned ends, in an oblique place; it flies, too."""
+    body = craig_bampton(planar_beam((1.0, 2.0), (1.0 + 0.6 * LENGTH, 2.0 - 0.8 * LENGTH), SLENDER,
+                                     8), [(0, "translation"), (8, "translation")], 2)
+    model = Model(planar=True)
+    ends = [model.node(f"n{k}", x, "translation") for k, x in enumerate(body.coordinates)]
+    beam = model.superelement("beam", body, ends, frame="positions", inertia="b")
+    speed = -1.01 * FAST * min(spin_limit(beam, None), first_frequency(beam))
+    model.rigid_velocity((3.0, -1.0), speed)
+    text, = said(lambda: Simulation(model, 1e-4).run_to(1e-3))
+    assert text.startswith(f"body 'beam' spins at {-speed:.3g} rad/s, more than a quarter of")
+
+
+def test_a_stiffened_body_without_a_kept_rotation_has_no_limit_to_be_warned_of():
+    model = block({}, spin=1e3 * TURNED[:, 2])
+    assert said(lambda: Simulation(model, 1e-6).run_to(1e-5)) == []

@@ -14,8 +14,8 @@ table. Three rules save runs; no indicator of advise is used.
 As `advise` does, the search wants a choice to be within the tolerance with half its step, too;
 what is so by luck is counted apart.
 
-Planar models and shared triplets change nothing but the time: they are taken where they can be
-made, agree with the richest model and take less time.
+Planar models, shared and dropped triplets are to change nothing but the time: they are taken
+where they can be made, agree with the richest model and take less time.
 """
 
 import heapq
@@ -29,22 +29,30 @@ from sebody.analysis.advice.changes import Builder, Choice, Step
 from sebody.analysis.advice.forms import Form, Part, parts_of
 from sebody.analysis.advice.laboratory import FINER, SHORTER
 from sebody.analysis.advice.quantities import Quantities, Values, changes_of, difference
-from sebody.analysis.advice.runs import Runs
 from sebody.analysis.advice.search import LONGER
+from sebody.analysis.simulation import Simulation
+from sebody.analysis.tolerance import Tolerance
 from sebody.errors import InputError, SimulationError
 from sebody.model.model import Model
+from sebody.studies.chart.timing import poor_variants, processor_seconds
 
 SLACK = 1.5
 SPOILS = 2.0
 FINEST = 8              # steps of the reference in one given step; twice as many, extrapolated
 TIMES = 3               # runs of which the quickest counts, for predictions
 LOCAL = [10.0**-k for k in range(1, 7)]     # local tolerances of variable steps
-EXACT = 1e-5            # error that a planar model or shared triplets may make
+EXACT = 5e-5            # error that what should change nothing may make
+
+
+def begun(model: Model, step: Step, grid: float) -> Simulation:
+    """A run that is recorded on a grid, or in its own steps if they are longer."""
+    return Simulation(model, step.h, output_every=max(round(grid / step.h), 1),
+                      tolerance=None if step.local is None else Tolerance(step.local))
 
 
 @dataclass(frozen=True)
 class Found:
-    """A choice that ran: its error against the reference and its time [s]."""
+    """A choice that ran: its error against the reference and its processor time [s]."""
 
     choice: Choice
     error: float
@@ -73,13 +81,13 @@ class BruteForce:
         wanted = Quantities(self.names)
         self._frequencies = Quantities([n for n in self.names if n not in wanted.histories]
                                        ) if wanted.numbers else None
-        self._runs = Runs(Quantities(wanted.histories), self.h, self.t_end)
+        self._histories = Quantities(wanted.histories)
         self._of_forms: dict[tuple[Form, ...], list[float]] = {}
         self.parts: list[Part] = parts_of(self.model, wanted.owners)
-        self.builder = Builder(self.model, self.parts)
+        self.builder = Builder(self.model, self.parts, wanted.owners)
         self.steps = self._steps()
         self.fine = Step(self.h / max(FINER))
-        self.exact = {"planar": False, "shared": False}
+        self.exact = {"shared": False, "dropped": False, "planar": False}
         self.reference, self.own_error = self._reference()
         self.sizes = changes_of(self.reference.histories)
 
@@ -106,11 +114,15 @@ class BruteForce:
     def _values(self, choice: Choice) -> tuple[Values, float, float]:
         """Quantities of a run, the step of their grid, and its time."""
         model = self.builder.make(choice).model
-        run = self._runs.run(model, choice.step)
+        with poor_variants():
+            run = begun(model, choice.step, self.h)
+            seconds = processor_seconds(run, self.t_end)
+            result = run.result()
         if self._frequencies and choice.forms not in self._of_forms:
-            self._of_forms[choice.forms] = self._frequencies.of(run.result, self.h).frequencies
-        frequencies = self._of_forms.get(choice.forms, [])
-        return Values(run.values.histories, frequencies), run.h, run.seconds
+            self._of_forms[choice.forms] = self._frequencies.of(result, self.h).frequencies
+        histories = self._histories.of(result, self.h).histories
+        return (Values(histories, self._of_forms.get(choice.forms, [])),
+                max(choice.step.h, self.h), seconds)
 
     def run(self, choice: Choice) -> Found:
         """Error and time of a choice; both infinite of what does not run."""
@@ -126,11 +138,12 @@ class BruteForce:
 
     def error_of(self, model: Model, step: Step) -> float:
         """Error of any model, by the same reference."""
-        run = self._runs.run(model, step)
-        frequencies = self._frequencies.of(run.result, self.h).frequencies if (
-            self._frequencies) else []
-        return difference(Values(run.values.histories, frequencies), self.reference, self.sizes,
-                          (1, round(run.h / self.h)))
+        with poor_variants():
+            result = begun(model, step, self.h).run_to(self.t_end).result()
+        frequencies = (self._frequencies.of(result, self.h).frequencies if self._frequencies
+                       else [])
+        return difference(Values(self._histories.of(result, self.h).histories, frequencies),
+                          self.reference, self.sizes, (1, max(round(step.h / self.h), 1)))
 
     def explore(self) -> None:
         """What the rules need: errors of forms alone, times of forms beside the poorest model."""
@@ -172,7 +185,7 @@ class BruteForce:
         return found
 
     def _look_at_exact(self, base: Choice, whole: Values) -> None:
-        """Planar and shared, where they can be made, agree and pay."""
+        """What should change nothing, where it can be made, agrees and pays."""
         for name in self.exact:
             changed = {**self.exact, name: True}
             richest = self.richest._replace(step=base.step, **changed)

@@ -45,6 +45,20 @@ def test_steps_are_timed_beside_their_errors():
     assert 0.0 < error < 1e-3 and 0.0 < same < 1e-3
 
 
+def test_resultants_that_are_left_out_are_weighed(monkeypatch, capsys):
+    bench = imported("bench_resultants")
+    cases = bench.cases
+    monkeypatch.setattr(bench, "BODIES", {"star": (bench.star, (4,), {})})
+    monkeypatch.setattr(bench, "cases", lambda body, seed: cases(body, seed, spins=1, loads=0))
+    monkeypatch.setattr(bench, "SAMPLES", 1)
+    bench.main(["--json", "--times", "2"])
+    row = json.loads(capsys.readouterr().out)["star"]
+    assert (row["kept"], row["resultants"]) == (12, 24)
+    # four modes are few, but the same with all resultants
+    assert 0.0 < row["frequency, largest"] < 0.02 < row["without any, largest"]
+    assert min(row[f"cost of {one}"] for one in ("all", "kept", "none")) > 0.0
+
+
 def test_set_ups_are_timed_by_scene(capsys):
     bench = imported("bench_setup")
     bench.main(["--json"], times=1)

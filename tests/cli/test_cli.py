@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sebody import errors
+from sebody import errors, simulate
 from sebody.analysis import first_run, progress
 from sebody.cli import inputs, run, warm
 from sebody.cli.entry import main
-from sebody.scenes import hinged_beam
+from sebody.scenes import hinged_beam, planar_hinged_beam
 from sebody.studies import check
 from sebody.studies.catalogue import scenes
 from sebody.studies.check.states import CheckRow
@@ -47,6 +47,26 @@ def test_advise_prints_what_is_enough(capsys):
     assert " ".join(lines[1].split()[4:9]) == "beam has 8 superelements of"     # the richest
     error = float(lines[-1].removeprefix("confirmed error ").removesuffix(" <= 0.02"))
     assert 0 < error <= 0.02
+
+
+def test_advise_draws_the_search_and_prints_the_model(tmp_path, capsys):
+    picture = tmp_path / "search.png"
+    assert main(["advise", "planar-hinged-beam", "--t-end", "1", "--quantity", "tip.position",
+                 "--tolerance", "0.02", "--set", "modes=2", "--code", "--output",
+                 str(picture)]) == 0
+    assert picture.stat().st_size > 10_000
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1].startswith("confirmed error ")
+    assert lines[-2] == f"picture: {picture}"
+    begin = lines.index("from sebody.scenes.planar_hinged_beam import build")
+    code = lines[begin:lines.index("", lines.index("model = build(modes=2).model"))]
+    found = {}
+    exec("\n".join(code), found)
+    result, whole = found["result"], simulate(planar_hinged_beam.build(modes=2).model, 0.0025, 1.0)
+    every = round((result.t[1] - result.t[0]) / 0.0025)
+    off = result["tip.position"] - whole["tip.position"][::every]
+    travel = whole["tip.position"] - whole["tip.position"][0]
+    assert 0 < np.abs(off).max() <= 0.02 * np.abs(travel).max()
 
 
 def test_run_with_other_parameters(capsys):

@@ -10,8 +10,10 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, generalized_alpha, harmonic, simulate
 from sebody.fem import Section, straight_beam
 from sebody.fem import frame as beams
-from sebody.model.variants import keep_modes, planar
+from sebody.model.variants import copied, divide, keep_modes, planar
 from sebody.reduction import craig_bampton
+from sebody.results import Result
+from sebody.scenes import hinged_beam, planar_hinged_beam
 
 H, STEPS = 0.002, 40
 TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
@@ -55,16 +57,16 @@ def assert_same(model: Model, made: Model, quantities, h: float = H) -> None:
 
 
 @cache
-def damped_beam(section: Section, up: tuple[float, ...]):
-    """From tip to base."""
-    return reduced(at(100, 40, 0), at(0, 0, 0), 4, section, up, damping=0.01)
+def beam_from_tip(section: Section, up: tuple[float, ...], damping: float):
+    return reduced(at(100, 40, 0), at(0, 0, 0), 4, section, up, damping)
 
 
 def beam(section: Section = SQUARE, up=Y, **options) -> Model:
     """A beam that a torque turns about a hinge."""
     model = Model()
     base, tip = model.node("base", at(0, 0, 0)), model.node("tip", at(100, 40, 0))
-    body = damped_beam(section, tuple(up))
+    # damped bodies of option b have kernels of their own
+    body = beam_from_tip(section, tuple(up), 0.0 if "b" in options.values() else 0.01)
     model.superelement("beam", body, [base, tip], **options)
     model.revolute(base, Z, name="hinge")
     model.torque(base, -2e3 * Z, wind, name="motor")
@@ -92,6 +94,48 @@ def test_a_beam_moves_in_its_plane_as_in_space(section, options):
     assert_same(model, made, QUANTITIES)
 
 
+def test_the_hinged_beam_is_the_planar_one():
+    made, sentence = planar(hinged_beam.build().model)
+    assert sentence == "the model is planar, normal to (0, 0, 1): 6 instead of 15 unknowns"
+    found, expected = (simulate(model, 0.01, 1.0, EXACT)
+                       for model in (made, planar_hinged_beam.build().model))
+    for name in ("tip.position", "base.angular_velocity", "energy.strain",
+                 "beam.node10.section_forces"):
+        size = np.abs(expected[name]).max()
+        assert np.abs(found[name] - expected[name]).max() <= CLOSE * size, name
+
+
+def test_a_beam_on_a_ball_stays_in_the_plane_of_its_torque():
+    model = beam(FLAT)
+    free = Model()
+    nodes = [free.node(name, node.point) for name, node in model.nodes.items()]
+    free.superelement("beam", model.bodies["beam"].body, nodes)
+    free.fix("base", "position")
+    free.torque("base", -2e3 * Z, wind, name="motor")
+    made, sentence = planar(free)
+    assert sentence.endswith(": 6 instead of 13 unknowns")
+    assert_same(free, made, ("tip.position", "base.rotation", "energy.kinetic"))
+
+
+def test_the_plane_is_kept_in_files_and_by_copies(tmp_path):
+    made = planar(beam()).model
+    plane = copied(made).plane
+    assert np.array_equal(plane.axes, made.plane.axes)
+    result = simulate(made, H, 2 * H, EXACT)
+    again = Result.load(result.save(tmp_path / "run.npz"))
+    for name in ("origin", "axes"):
+        assert np.array_equal(getattr(again.model.plane, name), getattr(made.plane, name))
+
+
+def test_a_frame_without_planar_kernels_is_said():
+    model = Model()
+    nodes = [model.node(name, at(x, 0, 0)) for name, x in (("a", 0), ("b", 50))]
+    model.superelement("beam", reduced(nodes[1].point, nodes[0].point, 2), nodes, frame="mean")
+    model.revolute("a", Z)
+    with pytest.raises(InputError, match="^there is no kernel for layout 'planar-f2', frame"):
+        planar(model)
+
+
 def test_modes_of_one_frequency_are_turned_until_they_are_in_the_plane():
     model = beam()
     body = model.bodies["beam"].body
@@ -99,6 +143,34 @@ def test_modes_of_one_frequency_are_turned_until_they_are_in_the_plane():
     assert abs(frequencies[1] / frequencies[0] - 1) < 1e-6      # a pair, in any direction
     kept = planar(model).model.bodies["beam"].body
     assert np.allclose(np.sqrt(np.diag(kept.stiffness)[-2:]), frequencies[[0, 2]], rtol=1e-6)
+
+
+@pytest.mark.parametrize("up", [Y, Z, None])
+@pytest.mark.parametrize("tapered", [False, True])
+def test_beams_are_divided_in_the_plane_as_in_space(up, tapered):
+    """A section that bends easily about one axis, in any position that is symmetric."""
+    section = SQUARE if up is None else FLAT
+
+    def thinner(place):
+        return replace(section, inertia_z=(1 - 0.5 * place) * section.inertia_z)
+    model = Model()
+    ends = [model.node(name, at(*xy, 0)) for name, xy in (("a", (0, 0)), ("b", (90, 50)))]
+    if tapered and up is None:
+        up = Y
+    model.beam("rod", ends, thinner if tapered else section, 8, 2, modes=2, up=up, damping=0.01)
+    model.fix("a", "position")
+    model.torque("a", 2e3 * Z, wind)
+    first, second = divide(planar(model).model, "rod", 4), planar(divide(model, "rod", 4).model)
+    assert first.change == "rod has 4 superelements of 2 finite elements instead of 2 " + (
+        "superelements of 4 finite elements")
+    assert list(first.model.bodies) == list(second.model.bodies)
+    for name, body in first.model.bodies.items():
+        expected = second.model.bodies[name].body
+        assert body.body.modes == expected.modes
+        for matrix in ("stiffness", "mass"):
+            # signs of modes are free: they are compared by size
+            own, other = (np.abs(getattr(one, matrix)) for one in (body.body, expected))
+            assert np.abs(own - other).max() < 1e-9 * other.max(), name
 
 
 def test_half_a_pair_of_modes_is_in_no_plane():
@@ -116,7 +188,7 @@ POINTS = [(0, 0, 0), (50, 0, 0), (60, 30, 0), (10, 40, 0)]
 @pytest.mark.parametrize(("keeps", "frame", "inertia"), [
     (("full", "translation", "rotation", "translation"), "converged_mean", None),
     (("full", "translation", "rotation", "translation"), "converged_mean", "d"),
-    (("translation",) * 4, "positions", "b")])
+    (("translation",) * 4, "positions", None)])
 def test_frames_of_beams_with_any_boundary(keeps, frame, inertia):
     """A closed frame in the plane, of whose modes some move in it and others out of it."""
     points = [at(*place) for place in POINTS]

@@ -133,8 +133,8 @@ PLACES = {  # costs and errors of the points
 
 
 @pytest.mark.parametrize("places, label", [
-    *((places, LONG) for places in PLACES), ("a column", "b"), ("far apart", "W" * 300),
-    ("a front", "1 body, 4 modes, h/4")])
+    ("one", LONG), ("all the same", LONG), ("far apart", "W" * 300), ("a column", LONG),
+    ("a row", "1 body, 4 modes, h/4"), ("a front", LONG), ("nothing that runs", "b")])
 def test_no_text_leaves_the_picture(tmp_path, figures, places, label):
     points = [replace(POINT, label=label, family=f"{label} {k}" if label == LONG else "modes",
                       cost=cost, error=error, slowest=3.0 * cost)

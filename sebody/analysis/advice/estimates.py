@@ -20,9 +20,10 @@ from sebody.analysis.advice.indicators.recorded import Recorded
 UNSURE = 30.0       # factor by which an indicator must exclude what is not tried
 SURE = 3.0          # the same once a run has shown its scale
 ORDER = 2           # of the time integration
-SEEN = 1.2          # the same of a step that one choice was run with; none of two
+SEEN = 1.2          # the same of a step that one choice was run with, and of what was an error
 SHARED = 10.0       # the same where it was a part of an error among others
-MAIN, KNOWN = 0.95, 0.1     # shares of an error from which the scale of a contribution is known
+KNOWN = 0.1         # share of an error from which the scale of a contribution is known
+ALONE = 0.5         # of it, that no other one exceeds where it made the error alone
 HALVINGS = 80       # of the range of a factor, in logarithms
 CAUTION = 0.03      # least share of an error that what was not measured is said to make
 
@@ -33,6 +34,7 @@ class Contribution(NamedTuple):
     kind: Hashable
     error: float
     doubt: float
+    raw: float = 0.0        # what the indicator says
 
 
 class Estimates:
@@ -52,6 +54,7 @@ class Estimates:
         self._raw: dict[tuple[int, Form], dict[str, float]] = {}
         self._factors: dict[Hashable, float] = {}
         self._combined: dict[tuple[Form, ...], float] = {}
+        self._main: set[tuple[Hashable, float]] = set()     # contributions that made an error
         self._doubts: dict[Hashable, float] = {}
         self._measured: dict[tuple[int, Form], float] = {}
         self._seen: dict[Step, list[float]] = {}      # contributions of steps that were run
@@ -97,8 +100,8 @@ class Estimates:
         self._steps[step] = error
 
     def _corrected(self, kind: Hashable, error: float) -> Contribution:
-        return Contribution(kind, self._factors.get(kind, 1.0) * error,
-                            self._doubts.get(kind, UNSURE))
+        doubt = SEEN if (kind, error) in self._main else self._doubts.get(kind, UNSURE)
+        return Contribution(kind, self._factors.get(kind, 1.0) * error, doubt, error)
 
     def contributions(self, choice: Choice) -> list[Contribution]:
         """All contributions to the error of a choice."""
@@ -138,12 +141,15 @@ class Estimates:
         measured = expected([one for one in found if one not in open_ones])
         wanted, largest = _rest(error, measured), max(one.error for one in open_ones)
         shares = [one.error / largest for one in open_ones]
+        alone = sorted(shares)[-2:][0] < ALONE or len(shares) == 1
         power = _power([one.error for one in open_ones], shares, wanted)
         for one, share in zip(open_ones, shares, strict=True):
             scaled = one.error * power**share
             self._factors[one.kind] = self._factors.get(one.kind, 1.0) * power**share
             if scaled > KNOWN * wanted:
-                doubt = SURE if scaled > MAIN * wanted else SHARED
+                doubt = SURE if alone and share == 1.0 else SHARED
+                if doubt == SURE:
+                    self._main.add((one.kind, one.raw))
                 self._doubts[one.kind] = min(self._doubts.get(one.kind, UNSURE), doubt)
 
 

@@ -44,9 +44,9 @@ class Trial:
 
 
 class Unreached(InputError):
-    """No model within the tolerance; `advice` is the best there is, None without a reference."""
+    """No model within the tolerance; `advice` is the best there is."""
 
-    def __init__(self, message: str, advice: "Advice | None" = None):
+    def __init__(self, message: str, advice: "Advice"):
         super().__init__(message)
         self.advice = advice
 

@@ -14,7 +14,8 @@ from sebody.errors import InputError
 from sebody.kernels.names import ANY
 
 LONGER = (4, 2)             # steps that are tried, in given ones
-MOST_ALONE = 6              # forms of a part that are tried alone
+MOST_ALONE = 12             # forms of a part that are tried alone
+APART = 0.5                 # of the budget, that all of them may take
 MOST_TOGETHER = 24          # choices that are tried
 SHARE = 0.5                 # of the tolerance, that one part may use
 EXACT = 0.05                # of the tolerance, that a change may make that should make none
@@ -105,11 +106,13 @@ class Search:
         def cost(form: Form) -> float:
             return of_form(part, form, self.planar)
         forms = sorted((form for form in part.forms if form != part.richest), key=cost)
+        left = max(APART * self.budget - self.lab.spent(), 0.0) / (len(self.lab.parts) - k)
+        most = self.lab.spent() + left
         for _ in range(MOST_ALONE):
             form = next((
                 f for f in forms if cost(f) < best and not any(f.poorer(one) for one in failed)
                 and least(self.lab.estimates.of_form(k, f)) <= SHARE * self.tolerance), None)
-            if form is None or self.spent():
+            if form is None or self.lab.spent() > most:
                 return
             forms.remove(form)
             choice = base._replace(forms=tuple(
@@ -175,11 +178,19 @@ class Search:
         found = [self.base._replace(forms=one, step=step)
                  for one in combinations(self.lab.parts, forms, self.lab.estimates, self.planar)
                  for step in self.steps()]
-        excluded = [] if sure else [*self._failed, *(
+        done = [] if sure else [*self._failed, *(
             one.choice for one in self.lab.tried if one.error > self.tolerance)]
         return next((one for one in sorted(found, key=self.lab.cost.of)
-                     if not any(one.poorer(other) for other in excluded)
+                     if not any(self._excludes(other, one) for other in done)
                      and judged(self.lab.estimates.contributions(one)) <= tolerance), None)
+
+    def _excludes(self, failed: Choice, one: Choice) -> bool:
+        """Whether a choice that was not enough says that another one is not, either.
+
+        The vibrations of the richest model ask for shorter steps than poorer ones may need.
+        """
+        whole = failed.forms == self.lab.richest.forms
+        return one == failed if whole else one.poorer(failed)
 
     def halved(self, choice: Choice) -> float | None:
         """Error of the step of a choice, from its run with half of it; None without one."""

@@ -9,9 +9,9 @@ from sebody.errors import InputError
 from sebody.model.inputs import known, triplet
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node, Superelement, Triplet
-from sebody.model.variants.copying import Variant, copied, exchange, loads_on, placed, unknowns
+from sebody.model.variants.copying import Variant, copied, exchange, fewer, loads_on, placed
 from sebody.reduction import ReducedBody
-from sebody.reduction.condensation import Released, released
+from sebody.reduction.condensation import Released, coordinates_of, released
 
 _KINDS = ("position", "rotation")
 _SAME = 1e-12           # relative: velocities that are rounding
@@ -60,24 +60,31 @@ def drop_triplet(model: Mechanism, name: str, node: Node | str, what: str = "rot
     new.mode_rates = rates
     if all(getattr(made.nodes[node.name], kind) is None for kind in _KINDS):
         del made.nodes[node.name]
-    saved = unknowns(model) - unknowns(made)
     before, after = (_first_frequency(one) for one in (old.body, found.body))
-    return Variant(made, f"{name} keeps no {what} at {node.name}: {saved} unknowns fewer; its "
-                         f"first frequency while free is {after:.6g} instead of {before:.6g}")
+    ending = ("; stresses that it carried stiffen the body no longer"
+              if what == "position" and _stiffens(body, node.name) else "")
+    return Variant(made, f"{name} keeps no {what} at {node.name}: {fewer(model, made)}; its "
+                         f"first frequency while free is {after:.6g} instead of {before:.6g}"
+                         f"{ending}")
 
 
 def can_be_dropped(model: Mechanism) -> list[tuple[str, str, str]]:
-    """Superelement, node and kind of every triplet that `drop_triplet` finds unused."""
+    """Superelement, node and kind of triplets that `drop_triplet` can drop, one after the other.
+
+    Of those of which one must stay, such as the last rotation of a body, the first are listed;
+    rotations come first. Positions whose stresses stiffen their body stay.
+    """
     found = []
-    for body in model.bodies.values():
-        for what, nodes in zip(_KINDS, (body.body.position_nodes, body.body.rotation_nodes),
-                               strict=True):
-            for node in (body.nodes[k] for k in nodes):
-                try:
-                    _check_unused(model, body, node, what, getattr(node, what))
-                except InputError:
+    for what in reversed(_KINDS):
+        for body, node in [(one.name, node.name) for one in model.bodies.values()
+                           for node in one.nodes]:
+            try:
+                if what == "position" and _stiffens(model.bodies[body], node):
                     continue
-                found.append((body.name, node.name, what))
+                model = drop_triplet(model, body, node, what).model
+            except InputError:
+                continue
+            found.append((body, node, what))
     return found
 
 
@@ -118,6 +125,13 @@ def _rates(old: Superelement, found: Released) -> NDArray:
     modes = found.basis[:, held:].T @ old.body.mass @ left
     momentum = np.sqrt(rates @ old.body.mass @ rates)       # of modes of unit mass
     return np.where(np.abs(modes) > _SAME * momentum, modes, 0.0)
+
+
+def _stiffens(body: Superelement, node: str) -> bool:
+    """Whether motions of a position make resultants, stresses that stiffen the body."""
+    place = [one.name for one in body.nodes].index(node)
+    return body.stiffening and bool(
+        body.invariants.E[coordinates_of(body.body, place, "position")].any())
 
 
 def _first_frequency(body: ReducedBody) -> float:

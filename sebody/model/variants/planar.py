@@ -14,6 +14,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
 from sebody.model.variants.copying import Variant, load_name, unknowns
+from sebody.model.variants.flat_beams import flat_beams
 from sebody.model.variants.flat_elements import flat_element, flat_joint
 from sebody.model.variants.flattening import Flattening
 from sebody.reduction.plane import PlanarBody, planar_body
@@ -31,8 +32,7 @@ def planar(model: Mechanism) -> Variant:
     plane, joint axes and torques normal to it or, of sliding joints, in it, bodies whose matrices
     do not couple motion in the plane with motion out of it. Bodies keep the internal modes that
     move in the plane, those of one frequency turned where needed. Displacements and stresses inside
-    are kept of bodies all of whose FE nodes are in the plane. How beams were built is not: divide
-    them before.
+    are kept of bodies all of whose FE nodes are in the plane, and beams may be divided anew.
 
     Parameters
     ----------
@@ -189,6 +189,7 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
                 load.name, body_load_kind(FRAMES[body.frame].kernel, True), body.places,
                 {"P": body.body.loads[load_name(load)]}, history=load.history, body=body))
     made.own_names, made.default_names = set(model.own_names), model.default_names.copy()
+    made.beams = flat_beams(model, made, flat_model.flat)
     return made
 
 

@@ -7,7 +7,7 @@ from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Joint, Node, Triplet
 from sebody.model.sharing import can_share, share
-from sebody.model.variants.copying import Variant, copied, unknowns
+from sebody.model.variants.copying import Variant, copied, fewer
 
 _TOGETHER = ("weld", "prismatic")       # joints whose nodes turn together
 _NAMES = {"position": "positions", "rotation": "rotations"}
@@ -40,14 +40,14 @@ def shared(model: Mechanism, name: str | None = None) -> Variant:
             raise InputError(f"joint {name!r} is unknown: the model has "
                              f"{', '.join(joint.name for joint in model.joints) or 'none'}")
     possible = can_be_shared(model)
-    if not possible or name not in (None, *possible):
+    if not (possible if name is None else any(
+            _kinds(model, joint) for joint in model.joints if joint.name == name)):
         what = "the model has no joint with" if name is None else f"joint {name!r} has no"
         others = f"; of this model {', '.join(possible)} has some" if possible else ""
         raise InputError(f"{what} equations that shared positions or rotations can replace{others}")
     made = copied(model)
     said = [_without_equations(made, joint) for joint in made.joints if name in (None, joint.name)]
-    saved = unknowns(model) - unknowns(made)
-    return Variant(made, f"{'; '.join(filter(None, said))}: {saved} unknowns fewer")
+    return Variant(made, f"{'; '.join(filter(None, said))}: {fewer(model, made)}")
 
 
 def _without_equations(model: Mechanism, joint: Joint) -> str:
@@ -64,8 +64,9 @@ def _without_equations(model: Mechanism, joint: Joint) -> str:
 
 
 def can_be_shared(model: Mechanism) -> list[str]:
-    """Names of the joints that `shared` can rid of equations."""
-    return [joint.name for joint in model.joints if _kinds(model, joint)]
+    """Names of the joints that `shared` can rid of equations, one after the other."""
+    made = copied(model)
+    return [joint.name for joint in made.joints if _without_equations(made, joint)]
 
 
 def _is_free(model: Mechanism, node: Node) -> bool:

@@ -25,6 +25,8 @@ class Measurement:
         Median time of a whole run; of an ensemble, of all its runs.
     thread_efficiency : float or None
         Of an ensemble, see `sebody.studies.bench.ensemble`.
+    processor_seconds : float or None
+        Of the peer's beams: what the processor worked, in the run with the least.
     """
 
     scene: str
@@ -37,6 +39,7 @@ class Measurement:
     wall_seconds: float
     flops_per_step: float | None = None
     thread_efficiency: float | None = None
+    processor_seconds: float | None = None
 
     def as_dict(self) -> dict:
         """For JSON."""

@@ -92,7 +92,8 @@ def _beam(scene: str, variant: str, model: Callable, h: float) -> Measurement:
     name = "spherical_beam" if scene == "spherical-beam" else "hinged_beam"
     seconds = statistics.median(run.seconds for run in runs)
     return Measurement(scene, variant, runs[0].unknowns, h, 1e6 * seconds / runs[0].steps,
-                       runs[0].iterations, tip_error(name, path[:, 0], path[:, 1:]), seconds)
+                       runs[0].iterations, tip_error(name, path[:, 0], path[:, 1:]), seconds,
+                       processor_seconds=min(run.processor_seconds for run in runs))
 
 
 def _timed(scene: str, variant: str, model: Callable, h: float) -> Measurement:

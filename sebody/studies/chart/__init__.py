@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from sebody.analysis.first_run import prepare
-from sebody.analysis.simulation import simulate
+from sebody.analysis.simulation import Simulation
 from sebody.errors import SimulationError
 from sebody.files import check_target, replacing
 from sebody.studies.bench import peer
@@ -18,8 +18,9 @@ from sebody.studies.chart.cases import COARSEST, SCENES, Variant, builder, varia
 from sebody.studies.chart.draw import draw
 from sebody.studies.chart.points import Point, Study, front
 from sebody.studies.chart.references import Reference, reference
-from sebody.studies.chart.timing import repeated
+from sebody.studies.chart.timing import poor_variants, processor_seconds, repeated
 
+T_END = 30.0                    # of the peer's runs
 LEVELS = (1e-2, 1e-3, 3e-4)     # of error, at which front and peer are compared
 
 
@@ -28,7 +29,8 @@ def measure(scene: str) -> Study:
     chosen = variants(scene)
     prepare(builder(scene)(**v.parameters).model for v in chosen)
     exact = reference(scene)
-    points = _points(scene, chosen, exact)
+    with poor_variants():
+        points = _points(scene, chosen, exact)
     if peer.available():
         points += _peer(scene, exact)
     return Study(points, SCENES[scene], exact.error)
@@ -39,14 +41,14 @@ def _points(scene: str, chosen: list[Variant], exact: Reference) -> list[Point]:
     found, runs = [], []
     for variant in chosen:
         built = builder(scene)(**variant.parameters)
-        run = partial(simulate, built.model, built.h / variant.finer, built.t_end, variant.scheme,
-                      output_every=round(COARSEST * variant.finer))
+        begin = partial(Simulation, built.model, built.h / variant.finer, variant.scheme,
+                        round(COARSEST * variant.finer))
         try:
-            result = run()
+            result = begin().run_to(built.t_end).result()
         except SimulationError:
             continue
         found.append((variant, result, built))
-        runs.append(lambda run=run: run().seconds)
+        runs.append(lambda begin=begin, t_end=built.t_end: processor_seconds(begin(), t_end))
     return [Point(variant.family, variant.label, _error(result[SCENES[scene]], exact),
                   times.quickest / built.t_end, result.numbering.free, built.h / variant.finer,
                   result.iterations_per_step, times.slowest / built.t_end)
@@ -59,12 +61,12 @@ def _error(values, exact: Reference) -> float:
 
 
 def _peer(scene: str, exact: Reference) -> list[Point]:
-    """Points of the bench; its own references are of higher order."""
+    """Points of the bench, over 30 s; its own references are of higher order."""
     if scene not in ("hinged-beam", "planar-hinged-beam", "spherical-beam"):
         return []
     names = (scene, "planar-hinged-beam") if scene == "hinged-beam" else (scene,)
     return [Point(peer.NAME, m.variant.removeprefix(peer.NAME).strip() + f", h {m.h:g}",
-                  max(m.tip_error, exact.error), m.us_per_step * 1e-6 / m.h, m.unknowns, m.h,
+                  max(m.tip_error, exact.error), m.processor_seconds / T_END, m.unknowns, m.h,
                   m.iterations_per_step or 0.0)
             for name in names for m in peer.measure(name) if m.tip_error is not None]
 

@@ -5,7 +5,6 @@ many bodies tell what the division leaves. Variants are uniform: all parts of th
 bodies and modes, as far as each can.
 """
 
-import warnings
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
@@ -21,12 +20,12 @@ from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
 from sebody.engine.state import Scheme
-from sebody.errors import InputError, LimitWarning, SimulationError
+from sebody.errors import InputError, SimulationError
 from sebody.model.model import Model
 from sebody.results.result import Result
 from sebody.studies.chart.cases import STEPS, schemes
 from sebody.studies.chart.points import Point, Study
-from sebody.studies.chart.timing import repeated
+from sebody.studies.chart.timing import poor_variants, processor_seconds, repeated
 
 if TYPE_CHECKING:
     from sebody.scenes.scene import Scene
@@ -63,7 +62,11 @@ def measure_any(scene: "Scene", quantity: str | None = None) -> Study:
     SimulationError
         The richest model does not run.
     """
-    chart = _Chart(scene, quantity)
+    with poor_variants():
+        return _measured(_Chart(scene, quantity))
+
+
+def _measured(chart: "_Chart") -> Study:
     exact = chart.reference()
     kept, runs = [], []
     for plan in chart.plans():
@@ -74,8 +77,8 @@ def measure_any(scene: "Scene", quantity: str | None = None) -> Study:
         except (InputError, SimulationError):
             continue
         kept.append((plan, error, result))
-        runs.append(lambda model=model, plan=plan: chart.run(
-            model, plan.choice.step, plan.scheme)[1].seconds)
+        runs.append(lambda model=model, plan=plan: processor_seconds(
+            chart.simulation(model, plan.choice.step, plan.scheme), chart.t_end))
     points = [Point(plan.family, plan.label, error, times.quickest / chart.t_end,
                     result.numbering.free, plan.choice.step.h, result.iterations_per_step,
                     times.slowest / chart.t_end)
@@ -94,7 +97,7 @@ class _Chart:
         self.quantity = quantity or self._moving(scene.tip)
         self.quantities = Quantities(self.quantity)
         self.parts: list[Part] = parts_of(self.model, self.quantities.owners)
-        self.builder = Builder(self.model, self.parts)
+        self.builder = Builder(self.model, self.parts, self.quantities.owners)
         self.given = tuple(part.given for part in self.parts)
         self.richest = tuple(part.richest for part in self.parts)
 
@@ -122,12 +125,13 @@ class _Chart:
         result = self._simulated(model, step, scheme)
         return self.quantities.of(result, self.h), result
 
-    def _simulated(self, model: Model, step: Step, scheme: Scheme | None) -> Result:
+    def simulation(self, model: Model, step: Step, scheme: Scheme | None) -> Simulation:
+        """A run that begins, recorded on the chart's grid."""
         tolerance = None if step.local is None else Tolerance(step.local)
-        with warnings.catch_warnings():         # variants may be poor
-            warnings.simplefilter("ignore", LimitWarning)
-            return Simulation(model, step.h, scheme, round(self.grid * self.h / step.h),
-                              tolerance).run_to(self.t_end).result()
+        return Simulation(model, step.h, scheme, round(self.grid * self.h / step.h), tolerance)
+
+    def _simulated(self, model: Model, step: Step, scheme: Scheme | None) -> Result:
+        return self.simulation(model, step, scheme).run_to(self.t_end).result()
 
     def reference(self) -> Reference:
         """The richest model, extrapolated in the step, with what its division leaves."""

@@ -147,7 +147,7 @@ def _legend(figure, axes) -> None:
     for columns in range(min(COLUMNS, len(names)), 0, -1):
         legend = figure.legend(handles, names, loc="outside lower center", ncols=columns,
                                frameon=False, fontsize=8)
-        figure.draw_without_rendering()
-        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+        box = legend.get_window_extent(figure.canvas.get_renderer())
+        if columns == 1 or box.width <= figure.bbox.width:
             break
         legend.remove()

@@ -1,7 +1,13 @@
 """Times of runs on a machine that does other things, too."""
 
-from collections.abc import Callable, Sequence
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import NamedTuple
+
+from sebody.analysis.simulation import Simulation
+from sebody.errors import LimitWarning
 
 LEAST, MOST = 3, 9      # runs of each
 AGREE = 1.05            # ratio of the two quickest runs from which the quickest is trusted
@@ -13,6 +19,21 @@ class Times(NamedTuple):
 
     quickest: float
     slowest: float
+
+
+@contextmanager
+def poor_variants() -> Iterator[None]:
+    """Variants of a chart may be poor: that is what it shows, and nothing to warn of."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LimitWarning)
+        yield
+
+
+def processor_seconds(run: Simulation, t_end: float) -> float:
+    """Run to a time, and the seconds that the processor worked on it, not those it did not."""
+    begin = time.thread_time()
+    run.run_to(t_end)
+    return time.thread_time() - begin
 
 
 def repeated(runs: Sequence[Callable[[], float]], least: int = LEAST, most: int = MOST

@@ -1,0 +1,57 @@
+"""How beams were built, in a plane of symmetry: so they can be divided anew there."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from sebody.fem.beam import section_axes
+from sebody.fem.section import AnySection, StiffnessSection, section_at
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Beam
+from sebody.model.variants.flattening import Flattening
+
+_SAME = 1e-9            # relative: stiffnesses that are the same but for rounding
+
+
+def flat_beams(model: Mechanism, made: Mechanism, flat: Flattening) -> list[Beam]:
+    """The beams of a planar model, without those that changed since they were built.
+
+    Parameters
+    ----------
+    model, made : Mechanism
+        Spatial and planar.
+    """
+    found = []
+    for beam in model.beams:
+        if all(model.bodies.get(part.name) is part and part.body is body
+               for part, body in zip(beam.parts, beam.bodies, strict=True)):
+            parts = tuple(made.bodies[part.name] for part in beam.parts)
+            options = {**beam.options, "up": None, "modes": max(p.body.modes for p in parts)}
+            found.append(Beam(beam.name, tuple(flat.node(node) for node in beam.nodes),
+                              _flat_section(beam, flat), beam.elements, options, parts,
+                              tuple(part.body for part in parts)))
+    return found
+
+
+def _flat_section(beam: Beam, flat: Flattening) -> AnySection:
+    """A section that bends in the plane about its z axis."""
+    line = beam.nodes[-1].point - beam.nodes[0].point
+    _, y, z = section_axes(line, beam.options["up"])
+    if z @ flat.plane.normal > 1.0 - _SAME:
+        return beam.section
+    if callable(beam.section):
+        return lambda place: _turned(section_at(beam.section, place), abs(y @ flat.plane.normal))
+    return _turned(section_at(beam.section, 0.0), abs(y @ flat.plane.normal))
+
+
+def _turned(section: StiffnessSection, part: float) -> StiffnessSection:
+    """A section whose y axis has this part along the normal: 1, 0, or any of an equal section.
+
+    What is seen of it, outline and fibres, has axes that are not these.
+    """
+    section = replace(section, outline=None, fibres=())
+    if part < np.sqrt(0.5):
+        return section
+    return replace(section, bending_y=section.bending_z, bending_z=section.bending_y,
+                   inertia_y=section.inertia_z, inertia_z=section.inertia_y,
+                   shear_y=section.shear_z, shear_z=section.shear_y)
