@@ -12,7 +12,7 @@ import json
 import statistics
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -32,10 +32,10 @@ QUICKEST = 4        # choices of the full search whose times are measured again
 FACTORS = 3.0, 0.1  # predicted over confirmed error: within the first either way, never below
 
 
-def measured(scene: AdviceScene, tolerances: Iterable[float] = TOLERANCES) -> dict:
+def measured(scene: AdviceScene, tolerances: Sequence[float] = TOLERANCES) -> dict:
     """All numbers of a scene."""
     full = BruteForce(scene.build(), scene.quantities, scene.h, scene.t_end)
-    full.explore()
+    full.explore(max(tolerances))
     found = {f"{tolerance:g}": _against(scene, full, tolerance) for tolerance in tolerances}
     return {"tuning": scene.tuning, "forms": [len(part.forms) for part in full.parts],
             "steps": len(full.steps), "exact": full.exact, "reference": full.own_error,

@@ -1,15 +1,18 @@
 """The cheapest model of a scene within a tolerance, by running everything on advise's axes.
 
 All forms of all parts with all steps are the choices, as `sebody.analysis.advice` has them in its
-table. Three rules save runs; no indicator of advise is used.
+table. Four rules save runs; no indicator of advise is used.
 
 1. Choices run in the order of predicted time, that of the poorest model with the same step and of
    each part's form beside it, all measured. They end where the rest is predicted to take `SLACK`
    times as long as the cheapest that was found.
 2. A form that alone, beside the richest forms of the other parts and with the same step, errs by
-   `SPOILS` times the tolerance is left out: errors of other parts do not take this away again.
+   `SPOILS` times the tolerance is left out, and so are forms whose errors alone do as the root of
+   the sum of their squares: errors of several parts do not take one another away.
 3. In a model of several parts a form is left out if another form of its part takes less time and
    errs less alone.
+4. Forms that miss the tolerance with a step with which the richest model errs by less than `FINE`
+   of it do not run with other steps: the step is not what they miss it by.
 
 As `advise` does, the search wants a choice to be within the tolerance with half its step, too;
 what is so by luck is counted apart.
@@ -38,6 +41,7 @@ from sebody.studies.chart.timing import poor_variants, processor_seconds
 
 SLACK = 1.5
 SPOILS = 2.0
+FINE = 0.25
 FINEST = 8              # steps of the reference in one given step; twice as many, extrapolated
 TIMES = 3               # runs of which the quickest counts, for predictions
 LOCAL = [10.0**-k for k in range(1, 7)]     # local tolerances of variable steps
@@ -145,8 +149,8 @@ class BruteForce:
         return difference(Values(self._histories.of(result, self.h).histories, frequencies),
                           self.reference, self.sizes, (1, max(round(step.h / self.h), 1)))
 
-    def explore(self) -> None:
-        """What the rules need: errors of forms alone, times of forms beside the poorest model."""
+    def explore(self, tolerance: float) -> None:
+        """What the rules need up to a tolerance: errors of forms alone, and their times."""
         given = Step(self.h)
         whole = self._values(self.richest._replace(step=given))[0]
         self.alone = [{form: self._alone(k, form, given, whole) for form in part.forms}
@@ -156,11 +160,14 @@ class BruteForce:
         base = base._replace(**self.exact)
         least = self._quickest(base)
         self._added = [{form: self._quickest(self._with(base, k, form)) - least
-                        for form in part.forms} for k, part in enumerate(self.parts)]
+                        for form, error in alone.items() if error <= SPOILS * tolerance}
+                       for k, alone in enumerate(self.alone)]
         self._of_steps = {step: self._quickest(base._replace(step=step)) for step in self.steps}
         self._of_steps = {step: seconds for step, seconds in self._of_steps.items()
                           if np.isfinite(seconds)}
         self._least = least
+        self._of_richest = {step: self.run(self.richest._replace(step=step)).error
+                            for step in self.steps}
 
     def _with(self, choice: Choice, k: int, form: Form) -> Choice:
         return choice._replace(forms=tuple(form if k == i else one
@@ -234,12 +241,16 @@ class BruteForce:
         int
             How many choices ran.
         """
-        best, sure, found, count = np.inf, [], [], 0
+        best, sure, found, count, missed = np.inf, [], [], 0, set()
         for choice in self._cheapest_first(self.forms(tolerance)):
             if self.predicted(choice) > SLACK * best:
                 break
+            if choice.forms in missed or self._spoilt(choice.forms, tolerance):
+                continue
             one = self.run(choice)
             count += 1
+            if one.error > tolerance and self._of_richest[choice.step] <= FINE * tolerance:
+                missed.add(choice.forms)
             if one.error <= tolerance:
                 found.append(one)
                 finer = choice._replace(step=choice.step.finer())
@@ -247,6 +258,10 @@ class BruteForce:
                     best = min(best, one.seconds)
                     sure.append(one)
         return *(sorted(own, key=lambda one: one.seconds) for own in (sure, found)), count
+
+    def _spoilt(self, forms: tuple[Form, ...], tolerance: float) -> bool:
+        errors = [alone[form] for alone, form in zip(self.alone, forms, strict=True)]
+        return bool(np.linalg.norm(errors) > SPOILS * tolerance)
 
     def _cheapest_first(self, forms: list[list[Form]]) -> Iterator[Choice]:
         """All choices by their predicted times, without making all of them first."""

@@ -128,6 +128,7 @@ class Builder:
     def __init__(self, model: Model, parts: list[Part], kept: Collection[str] = ()):
         self.model, self.parts, self.kept = model, parts, kept
         self._made: dict[tuple, Made | InputError] = {}
+        self._steps: dict[tuple[str, ...], Made] = {}
 
     def make(self, choice: Choice) -> Made:
         """The model of a choice.
@@ -157,24 +158,23 @@ class Builder:
         # rigid bodies last: beams are divided before their nodes are linked
         made = sorted((one for part, form in pairs for one in changes(part, form)),
                       key=lambda one: one.variant == "rigid")
-        model, done, sentences = self.model, [], []
+        found = Made(self.model, (), ())
         for change in made:
-            model = _apply(change, model, done, sentences)
+            found = self._further(found, change)
         if choice.dropped:
-            for body, node, what in can_be_dropped(model):
+            for body, node, what in can_be_dropped(found.model):
                 if node not in self.kept:
-                    model = _apply(Change("drop_triplet", body, {"node": node, "what": what}),
-                                   model, done, sentences)
+                    found = self._further(found, Change("drop_triplet", body,
+                                                        {"node": node, "what": what}))
         if choice.shared:
-            for name in can_be_shared(model):
-                model = _apply(Change("shared", name, {}), model, done, sentences)
-        if choice.planar:
-            model = _apply(Change("planar", None, {}), model, done, sentences)
-        return Made(model, tuple(done), tuple(sentences))
+            for name in can_be_shared(found.model):
+                found = self._further(found, Change("shared", name, {}))
+        return self._further(found, Change("planar", None, {})) if choice.planar else found
 
-
-def _apply(change: Change, model: Model, done: list[Change], sentences: list[str]) -> Model:
-    model, sentence = change.of(model)
-    done.append(change)
-    sentences.append(sentence)
-    return model
+    def _further(self, made: Made, change: Change) -> Made:
+        """A model with one more change, which others may have in common."""
+        key = (*(one.code() for one in made.changes), change.code())
+        if key not in self._steps:
+            model, sentence = change.of(made.model)
+            self._steps[key] = Made(model, (*made.changes, change), (*made.sentences, sentence))
+        return self._steps[key]

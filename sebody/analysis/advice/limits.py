@@ -1,5 +1,6 @@
 """What the richest model itself may be off by: linear theory in each body, and its last modes."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 from sebody.analysis.advice.estimates import UNSURE
@@ -21,6 +22,7 @@ class Limit(NamedTuple):
     remedy: str
 
 
+@lru_cache(maxsize=1)
 def limits(lab: Laboratory) -> list[Limit]:
     """Of all parts, the largest first."""
     recorded = lab.estimates.recorded

@@ -1,16 +1,20 @@
 """Runs of a model, and what is kept of them."""
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from numpy.typing import NDArray
+
 from sebody.analysis.advice.changes import Step
 from sebody.analysis.advice.quantities import Quantities, Values
+from sebody.analysis.limits import Watch
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
-from sebody.errors import LimitWarning
+from sebody.assembly.numbering import Numbering
+from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
+from sebody.results.recording import Recording
 from sebody.results.result import Result
 
 
@@ -22,6 +26,19 @@ class Run(NamedTuple):
     seconds: float
     iterations: float
     result: Result
+
+
+class _Unwatched(Watch):
+    """Runs without warnings, whose making takes as long as a short run."""
+
+    def say(self, key: str, message: str) -> None:
+        """Nothing."""
+
+    def look(self, model: Mechanism, numbering: Numbering, rows: NDArray) -> None:
+        """Nothing is compared."""
+
+    def judge(self, run: Recording) -> None:
+        """Nothing is compared."""
 
 
 @dataclass
@@ -53,9 +70,8 @@ class Runs:
         """
         every = max(round(self.h / step.h), 1)
         tolerance = None if step.local is None else Tolerance(step.local)
-        with warnings.catch_warnings():         # of variants that are taken, none is poor
-            warnings.simplefilter("ignore", LimitWarning)
-            result = Simulation(model, step.h, output_every=every, tolerance=tolerance
-                                ).run_to(self.t_end, self.progress).result()
+        simulation = Simulation(model, step.h, output_every=every, tolerance=tolerance)
+        simulation.watch = _Unwatched()         # of variants that are taken, none is poor
+        result = simulation.run_to(self.t_end, self.progress).result()
         return Run(self.quantities.of(result, step.h), step.h * every, result.seconds,
                    result.iterations_per_step * result.steps, result)
