@@ -9,6 +9,7 @@ are done are read from the file, and an interrupted run goes on with the next on
 
 import argparse
 import json
+import re
 import statistics
 import sys
 import time
@@ -158,7 +159,7 @@ def table(found: dict) -> str:
 
 def _short(sentence: str) -> str:
     """A change without its numbers."""
-    return sentence.partition(":")[0].partition(" instead")[0].partition("; the first")[0]
+    return re.sub(r" instead of [^,;]*", "", sentence.partition(":")[0].partition("; the first")[0])
 
 
 def _joined(choice: list[str] | None) -> str:
