@@ -25,9 +25,9 @@ SUPERELEMENTS = (
     ("planar-f2m4", "converged_mean", "b"),
     ("planar-f2", "converged_mean", "a"),
     ("planar-f2", "positions", "b"),
-    ("planar-f3", "converged_mean", "b"),
     ("f2", "converged_mean", "c"),
     ("planar-f2", "converged_mean", "c"),
+    ("planar-f2m2", "converged_mean", "c"),
     # for all other layouts: counts of nodes are read at run time
     ("any", "converged_mean", "b"),
     ("any", "positions", "b"),

@@ -70,8 +70,9 @@ def _print(advice: "Advice") -> str:
     """Print runs and advice but for the last line, which is returned."""
     print(f"{'predicted':>9} {'error':>9} {'step':>9} {'seconds':>9}  change")
     for trial in advice.table:
+        local = f"; variable steps, local tolerance {trial.local:.2g}" if trial.local else ""
         print(f"{trial.predicted:9.2g} {trial.error:9.2g} {trial.step:9.3g} {trial.seconds:9.2g}  "
-              f"{trial.change}")
+              f"{trial.change}{local}")
     *lines, last = advice.summary().splitlines()
     print("\n".join(lines))
     return last

@@ -4,9 +4,11 @@ All of a kind at once: each entry of a matrix is read once for values, rates and
 """
 
 from llvmlite import ir
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from sebody.kernels.instructions import (
+    VECTOR,
     WORD,
     add_product,
     called,
@@ -19,7 +21,7 @@ from sebody.kernels.instructions import (
     totals,
     whole_vectors,
 )
-from sebody.kernels.layout import LANES
+from sebody.kernels.layout import LANES, MOST_SLAVED
 
 
 @intrinsic
@@ -63,13 +65,24 @@ def _all_to_free(builder, *args):
     with short_loop(builder, WORD(0), builder.sub(free, bound_free)) as mode:
         for given, place in zip(rows, own, strict=True):
             _copy(builder, given, builder.add(bound, mode), place, builder.add(bound_free, mode))
-    with short_loop(builder, WORD(0), free) as k:
-        at = builder.fptosi(builder.load(builder.gep(order, [k])), WORD)
-        for place, out in zip(own, to, strict=True):
-            _copy(builder, place, at, out, k)
-    with short_loop(builder, free, end) as k:
-        for out in to:
-            builder.store(ir.Constant(ir.DoubleType(), 0.0), builder.gep(out, [k]))
+    _in_order(builder, own, order, to, free, end)
+
+
+def _in_order(builder, rows, order, to, count, end):
+    """Numbers of some rows in an order, as whole vectors: what reads them next reads vectors."""
+    nothing = ir.Constant(ir.DoubleType(), 0.0)
+    with short_loop(builder, WORD(0), end, LANES) as first:
+        found = [no_sum()] * len(rows)
+        for lane in range(LANES):
+            k = builder.add(first, WORD(lane))
+            given = builder.icmp_signed("<", k, count)
+            asked = builder.select(given, k, WORD(0))
+            at = builder.fptosi(builder.load(builder.gep(order, [asked])), WORD)
+            for i, row in enumerate(rows):
+                number = builder.select(given, builder.load(builder.gep(row, [at])), nothing)
+                found[i] = builder.insert_element(found[i], number, ir.IntType(32)(lane))
+        for vector, out in zip(found, to, strict=True):
+            store_vector(builder, vector, out, first)
 
 
 def _copy(builder, given, at, out, to):
@@ -78,21 +91,28 @@ def _copy(builder, given, at, out, to):
 
 def _follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
     half = ir.Constant(ir.DoubleType(), 0.5)
+    kept = _room(builder)
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b = _of_one((Zq, Zd), builder, b, height)
-        value, rate, second = _dots(builder, height, (
-            ((Zq_b, z),), ((Zq_b, zd),), ((Zq_b, zdd), (Zd_b, zd))))
+        sums = _dots(builder, height, (((Zq_b, z),), ((Zq_b, zd),), ((Zq_b, zdd), (Zd_b, zd))))
+        store_vector(builder, sums, kept, builder.mul(b, WORD(LANES)))
+    with short_loop(builder, WORD(0), slaved) as b:
+        value, rate, second = _kept(builder, kept, b, 3)
         place = builder.add(free, b)
         for out, number in ((z, builder.fmul(value, half)), (zd, rate), (zdd, second)):
             builder.store(number, builder.gep(out, [place]))
 
 
 def _follow_changes(builder, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
+    kept = _room(builder)
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b, Za_b = _of_one((Zq, Zd, Za), builder, b, height)
-        rate, second = _dots(builder, height, (
+        sums = _dots(builder, height, (
             ((Zq_b, dzd), (Zd_b, dz)),
             ((Zq_b, dzdd), (Zd_b, dzd), (Zd_b, dzd), (Za_b, dz))))
+        store_vector(builder, sums, kept, builder.mul(b, WORD(LANES)))
+    with short_loop(builder, WORD(0), slaved) as b:
+        rate, second = _kept(builder, kept, b, 2)
         place = builder.add(free, b)
         for out, number in ((dzd, rate), (dzdd, second)):
             builder.store(number, builder.gep(out, [place]))
@@ -103,8 +123,20 @@ def _of_one(rows, builder, b, height):
     return [builder.gep(row, [builder.mul(b, height)]) for row in rows]
 
 
+def _room(builder):
+    """Place of a vector for each slaved coordinate: a number that is written just before a vector
+    with it is read keeps the processor waiting, so all are read before the first is written."""
+    return builder.bitcast(cgutils.alloca_once(builder, VECTOR, size=WORD(MOST_SLAVED)),
+                           ir.DoubleType().as_pointer())
+
+
+def _kept(builder, kept, b, count):
+    first = builder.mul(b, WORD(LANES))
+    return [builder.load(builder.gep(kept, [builder.add(first, WORD(k))])) for k in range(count)]
+
+
 def _dots(builder, count, pairs):
-    """Sums of dot products, each of some pairs of vectors of `count` numbers."""
+    """Sums of dot products, each of some pairs of vectors of `count` numbers, as a vector."""
     sums = totals(builder, LANES)
     for total in sums:
         builder.store(no_sum(), total)
@@ -113,5 +145,4 @@ def _dots(builder, count, pairs):
             for a, b in both:
                 add_product(builder, total, load_vector(builder, a, row),
                             load_vector(builder, b, row))
-    result = sums_of_lanes(builder, [builder.load(total) for total in sums])
-    return [builder.extract_element(result, ir.IntType(32)(k)) for k in range(len(pairs))]
+    return sums_of_lanes(builder, [builder.load(total) for total in sums])

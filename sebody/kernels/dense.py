@@ -53,6 +53,12 @@ def block_times(typingctx, A, x, out, rows, columns, height):
 
 
 @intrinsic
+def add_blocks_times(typingctx, A, x, B, y, out, rows, columns, of_B, height):
+    """``out += A x + B y``: see `add_block_times`."""
+    return called(_add_blocks, 5, 4)
+
+
+@intrinsic
 def add_block_times(typingctx, A, x, out, rows, columns, height):
     """``out += A x`` of the first `rows` of some columns that are `height` numbers apart."""
     return called(_add_block, 3, 3)
@@ -130,8 +136,11 @@ def _add_dots(builder, A, x, out, rows, columns, height):
     _dot(builder, A, x, out, rows, columns, height, True)
 
 
-def _wide(builder, A, x, out, rows, columns, height, add):
-    """Vector operations for ``out = A x``, or ``out += A x``, some vectors of rows at a time."""
+def _wide(builder, given, out, rows, height, add):
+    """Vector operations for ``out = A x``, or ``out += A x``, some vectors of rows at a time.
+
+    Of some matrices, vectors and numbers of columns.
+    """
     last, done = whole_vectors(builder, rows), WORD(0)
     for count in (8, 4, 3, 2, 1):
         sums = totals(builder, count)
@@ -141,23 +150,27 @@ def _wide(builder, A, x, out, rows, columns, height, add):
             places = [builder.add(row, WORD(k * LANES)) for k in range(count)]
             for place, total in zip(places, sums, strict=True):
                 builder.store(load_vector(builder, out, place) if add else no_sum(), total)
-            with short_loop(builder, WORD(0), columns) as column:
-                factor = load_broadcast(builder, x, column)
-                first = builder.mul(column, height)
-                for place, total in zip(places, sums, strict=True):
-                    add_product(builder, total, load_vector(builder, A, builder.add(first, place)),
-                                factor)
+            for A, x, columns in given:
+                with short_loop(builder, WORD(0), columns) as column:
+                    factor = load_broadcast(builder, x, column)
+                    own = builder.gep(A, [builder.mul(column, height)])
+                    for place, total in zip(places, sums, strict=True):
+                        add_product(builder, total, load_vector(builder, own, place), factor)
             for place, total in zip(places, sums, strict=True):
                 store_vector(builder, builder.load(total), out, place)
         done = end
 
 
 def _block(builder, A, x, out, rows, columns, height):
-    _wide(builder, A, x, out, rows, columns, height, False)
+    _wide(builder, [(A, x, columns)], out, rows, height, False)
 
 
 def _add_block(builder, A, x, out, rows, columns, height):
-    _wide(builder, A, x, out, rows, columns, height, True)
+    _wide(builder, [(A, x, columns)], out, rows, height, True)
+
+
+def _add_blocks(builder, A, x, B, y, out, rows, columns, of_B, height):
+    _wide(builder, [(A, x, columns), (B, y, of_B)], out, rows, height, True)
 
 
 def _add_columns(builder, A, x, out, rows, columns, height):

@@ -177,6 +177,18 @@ def test_linear_theory_that_limits_is_said_with_the_best_so_far():
     assert caught.value.advice.model.bodies
 
 
+def test_a_body_with_a_node_that_keeps_its_rotation_alone_is_looked_at():
+    model = Model(planar=True)
+    tip, root = model.node("tip", TIP), model.node("root", ROOT)
+    middle = model.node("middle", (ROOT + TIP) / 2, keeps="rotation")
+    fe_model = planar_beam(ROOT, TIP, SOFT, 8)
+    body = craig_bampton(fe_model, [(0, "full"), (4, "rotation"), (8, "full")], 2)
+    model.superelement("arm", body, [root, middle, tip])
+    model.revolute(root)
+    model.torque(root, 1.0, [(0, 0), (0.1, 60.0), (0.3, -60.0), (0.4, 0.0)])
+    assert advise(model, H, T_END, "tip.position", 0.05).error <= 0.05
+
+
 def test_a_scene_that_fails_says_when_and_what_to_do():
     with pytest.raises(SimulationError, match="stopped at t = 0.0.*results up to there are"):
         advise(arm(torque=1e9), H, T_END, "tip.position", 1e-2)

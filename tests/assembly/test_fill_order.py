@@ -38,6 +38,21 @@ def test_the_best_order_of_a_path_is_kept():
     assert kept == list(range(6))
 
 
+def test_an_order_is_remembered_by_structure_and_size():
+    """Keys of triplets differ from model to model; an order may not be that of another model."""
+    path = [0, 3, 1, 5, 2, 4]
+
+    def ordered(keys, path, size=3):
+        bodies = [{key: size} for key in keys]
+        return elimination_order(bodies, [Coupling((keys[i], keys[k]), 1, (keys[i],))
+                                          for i, k in zip(path, path[1:], strict=False)])
+    found = ordered(range(6), path)
+    assert ordered(range(70, 10, -10), path) == found
+    found.reverse()                                 # of the caller's own list
+    assert ordered(range(6), path) == found[::-1]
+    assert ordered(range(6), sorted(path)) == list(range(6))
+
+
 def pinned(pairs, order=None, masses=None):
     """Rigid bodies on a circle, pinned to each other halfway; -1 is the ground."""
     count = 1 + max(max(pair) for pair in pairs)

@@ -22,7 +22,7 @@ from sebody.studies.check.superelements import superelement_case
 from sebody.studies.references import tip_error
 
 KERNELS = (("f2", "converged_mean"), ("f2t1", "converged_mean"), ("f2t1", "positions"),
-           ("planar-f2", "converged_mean"), ("planar-f3", "converged_mean"))
+           ("planar-f2", "converged_mean"))
 ROUNDS = 15
 
 

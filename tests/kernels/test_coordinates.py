@@ -28,7 +28,7 @@ def following(Zq, Zd, Za, z, dz, free, slaved, height):
 def test_coordinates_that_determine_the_others(bound, bound_free, modes):
     """Boundary coordinates by a matrix, modes as they are, in some order, then zeros."""
     random = np.random.default_rng(bound)
-    free, end = bound_free + modes, whole_vectors(bound_free + modes) + 2
+    free, end = bound_free + modes, whole_vectors(bound_free + modes) + 4
     A, order = random.normal(size=(bound_free, bound)), random.permutation(free)
     rows = random.normal(size=(3, bound + modes))
     moved = np.full(3 * (whole_vectors(bound_free) + modes) + 1, 7.0)

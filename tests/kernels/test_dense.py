@@ -6,6 +6,7 @@ import pytest
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.dense import (
     add_block_times,
+    add_blocks_times,
     add_rows_times,
     arrow_times,
     block_times,
@@ -52,6 +53,12 @@ def by_block(A, x, out, rows, columns, height, add):
 
 
 @compiled
+def by_blocks(A, x, B, y, out, rows, columns, of_B, height):
+    add_blocks_times(pointer_to(A), pointer_to(x), pointer_to(B), pointer_to(y), pointer_to(out),
+                     rows, columns, of_B, height)
+
+
+@compiled
 def by_rows(A, x, out, rows, columns, height, add):
     if add:
         add_rows_times(pointer_to(A), pointer_to(x), pointer_to(out), rows, columns, height)
@@ -80,4 +87,9 @@ def test_blocks_of_taller_matrices(rows, columns):
         assert np.abs(sums[:columns] - add * before[:columns] - A.T @ y[:rows]).max(
             initial=0.0) < 1e-13
         assert np.array_equal(out[tail:], before[tail:])
+        both = out.copy()       # the same again, and its first column
+        by_blocks(stored.ravel(), x, stored.ravel(), x, both, rows, columns, min(columns, 1),
+                  height)
+        more = A @ x[:columns] + A[:, :1] @ x[:min(columns, 1)]
+        assert np.abs(both[:rows] - out[:rows] - more).max() < 1e-13
         assert np.array_equal(sums[columns:], before[columns:])

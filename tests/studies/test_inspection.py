@@ -1,6 +1,7 @@
 """What is said of bodies in files: numbers against closed forms, findings, repairs."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from sebody.cli.entry import main
 from sebody.fem import hexahedral_block
 from sebody.io import read_body_file, save_body
 from sebody.reduction import RigidFace, craig_bampton
-from sebody.studies.inspection import free_rigid_motion, inspect
+from sebody.studies.inspection import free_rigid_motion, inspect, report
 
 SIZE, DENSITY = np.array([3.0, 1.0, 0.5]), 2.0
 MASS = DENSITY * SIZE.prod()
@@ -52,6 +53,18 @@ def test_mass_and_inertia_are_those_of_a_block(path):
     along = np.abs(numbers["principal_axes"].T @ TURN[:, order])
     np.testing.assert_allclose(along, np.eye(3), atol=1e-9)
     assert numbers["mass_geometry_defect"] < 1e-12
+
+
+def test_what_is_of_second_order_is_counted(path, body, tmp_path):
+    kept = body.invariants.resultants
+    numbers = inspect(read_body_file(path)).numbers["stiffening"]
+    assert 0 < kept <= 6
+    assert numbers == {"load_modes": body.invariants.slaved, "resultants": kept, "motions": 6}
+    assert (f"of second order          {body.invariants.slaved} load modes, {kept} of 6 stress "
+            "resultants") in report(inspect(read_body_file(path)))
+    alone = save_body(replace(body, invariants=None), tmp_path / "alone.npz", ("left", "right"))
+    assert inspect(read_body_file(alone)).numbers["stiffening"] == {}
+    assert "of second order" not in report(inspect(read_body_file(alone)))
 
 
 def test_a_good_body_can_be_used(path, body):

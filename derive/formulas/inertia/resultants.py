@@ -46,10 +46,10 @@ def resultants(space: Space) -> Resultants:
                   sets=((by_E, sp.Matrix([half])), (by_Gy, sp.Matrix([r + half / lam]))),
                   adds=((extra, sp.Matrix([half * (r + half / (2 * lam))])),)),
             Stage("and of Sbar y", "element", sets=((one, sp.ones(1, 1)),)),
-            Call("forces of the resultants", "add_block_times", ("E", "by_E", "local", *size),
-                 ("E", "by_E", "local")),
-            Call("and those of the geometric stiffness, with Sbar y", "add_block_times",
-                 ("Gy", "by_Gy", "local", "free", "stretching", "hn"), ("Gy", "by_Gy", "local"))),
+            Call("forces of the resultants and their geometric stiffness, with Sbar y",
+                 "add_blocks_times", ("E", "by_E", "Gy", "by_Gy", "local", "free", "resultants",
+                                      "stretching", "hn"),
+                 ("E", "by_E", "Gy", "by_Gy", "local"))),
         energy=extra.symbols[0],
         stiffness=(
             Call("stiffness and geometric stiffness", "add_packed",
@@ -57,10 +57,9 @@ def resultants(space: Space) -> Resultants:
             Repeat("changes of the resultants", "j", "free", (
                 Stage("factors of the column", "resultant",
                       sets=((of_E, sp.Matrix([Gy])), (of_Gy, sp.Matrix([E + Gy / lam])))),
-                *(Call(title, "add_block_times", (matrix, factor, "at(Lz, j*deep)", *size),
-                       (matrix, factor, "Lz"))
-                  for title, matrix, factor in (("their forces", "E", "of_E"),
-                                                ("the same", "Gy", "of_Gy")))))))
+                Call("their forces", "add_blocks_times",
+                     ("E", "of_E", "Gy", "of_Gy", "at(Lz, j*deep)", "free", "resultants",
+                      "resultants", "hn"), ("E", "of_E", "Gy", "of_Gy", "Lz"))))))
 
 
 def _prove() -> None:

@@ -22,7 +22,8 @@ def drop_triplet(model: Mechanism, name: str, node: Node | str, what: str = "rot
 
     It follows the other boundary coordinates of the body statically; what it moves beyond that
     joins the internal modes, of which as many are kept as before. The frame of the body is that of
-    the nodes that are left. Results have no quantities of what is dropped.
+    the nodes that are left. Results have no quantities of what is dropped. The body takes the
+    kernel of its new layout: where that is the general one it may take longer than before.
 
     Parameters
     ----------

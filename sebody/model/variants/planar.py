@@ -69,8 +69,15 @@ def planar(model: Mechanism) -> Variant:
             made = _built(model, flat_model)
             before, after = unknowns(model), unknowns(made)
             return Variant(made, f"the model is planar, normal to {place(plane.normal)}: {after} "
-                                 f"instead of {before} unknowns")
+                                 f"instead of {before} unknowns{_of_bushings(model)}")
     raise refused
+
+
+def _of_bushings(model: Mechanism) -> str:
+    """What is not the same in the plane."""
+    names = [one.name for one in model.loads
+             if one.kind == "bushing" and np.any(one.constants["kt"])]
+    return f"; moments of {', '.join(names)} follow angles, in space their sines" if names else ""
 
 
 def _normals(model: Mechanism) -> Iterator[NDArray]:

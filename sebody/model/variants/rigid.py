@@ -8,7 +8,7 @@ from sebody.model import bodies, loads
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.variants.copying import Variant, copied, load_name, loads_on, placed
-from sebody.model.variants.hanging import hang, is_held, start_rate
+from sebody.model.variants.dependent import is_held, make_dependent, start_rate
 from sebody.reduction import ReducedBody
 from sebody.reduction.summary import place
 
@@ -47,7 +47,7 @@ def rigid(model: Mechanism, name: str) -> Variant:
     _check_rates(body, carrier)
     followers = [node for node in body.nodes if node is not carrier]
     closed = [node.name for node, keep in zip(body.nodes, body.body.keeps, strict=True)
-              if node is not carrier and hang(made, node, carrier, keep, name)]
+              if node is not carrier and make_dependent(made, node, carrier, keep, name)]
     mass, inertia, centre = rigid_constants(body.body)
     offset = carrier.point - body.body.coordinates[body.nodes.index(carrier)]
     bodies.rigid_body(made, name, carrier, mass, inertia, centre + offset)

@@ -38,8 +38,8 @@ KERNELS = tuple(
         ("f2", "mean_small", "b"), ("f2m4", "converged_mean", "b"), ("f2t1", "positions", "b"),
         ("planar-f2", "converged_mean", "b"), ("planar-f2m2", "converged_mean", "b"),
         ("planar-f2m4", "converged_mean", "b"), ("f2", "converged_mean", "c"),
-        ("planar-f2", "converged_mean", "c"), ("any", "converged_mean", "c"),
-        ("any", "positions", "c"))) + tuple(
+        ("planar-f2", "converged_mean", "c"), ("planar-f2m2", "converged_mean", "c"),
+        ("any", "converged_mean", "c"), ("any", "positions", "c"))) + tuple(
     element_name(kind) for kind in (
         "force", "torque", "planar_force", "planar_follower_force", "planar_on_line",
         "planar_point_mass", "planar_torque"))

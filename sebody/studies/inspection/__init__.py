@@ -47,6 +47,7 @@ def inspect(file: BodyFile) -> Inspection:
     numbers["definiteness"] = measures.definiteness(body)
     numbers["frequencies"] = measures.frequencies(body)
     numbers["frame"] = measures.frame(body, numbers["centre"])
+    numbers["stiffening"] = measures.stiffening(file, body)
     found = findings_of(file, body, numbers)
     return Inspection(file, numbers, found, verdict(found))
 
@@ -98,9 +99,13 @@ def _motion(numbers: dict) -> list[tuple[str, str]]:
         rows.append((name, f"asymmetry {numbers['asymmetry'][name]:.4e}, lowest eigenvalue "
                      f"{one['lowest']:.4e} of the largest, condition {one['condition']:.4e}"))
     frame = numbers["frame"]
-    return [*rows, ("weights", _row(frame["weights"])),
-            ("frame origin", f"{_row(frame['origin'])}, {_number(frame['off_centre'])} off the "
-             "centre of mass")]
+    rows += [("weights", _row(frame["weights"])),
+             ("frame origin", f"{_row(frame['origin'])}, {_number(frame['off_centre'])} off the "
+              "centre of mass")]
+    if second := numbers["stiffening"]:
+        rows.append(("of second order", f"{second['load_modes']} load modes, "
+                     f"{second['resultants']} of {second['motions']} stress resultants"))
+    return rows
 
 
 def _vibration(numbers: dict) -> list[tuple[str, str]]:

@@ -52,6 +52,19 @@ class Matrices:
         return self.coordinates.shape[1]
 
 
+def stiffening(file: BodyFile, body: Matrices) -> dict[str, int]:
+    """Load modes and resultants of second order, and elastic motions that could have a resultant.
+
+    Nothing of a body without constants of inertia.
+    """
+    i = file.parts.get("invariants")
+    if i is None:
+        return {}
+    boundary = body.rigid[:len(body.rigid) - file.parts.get("modes", 0)]
+    return {"load_modes": i.slaved, "resultants": i.resultants,
+            "motions": len(boundary) - int(np.linalg.matrix_rank(boundary))}
+
+
 def matrices_of(file: BodyFile) -> Matrices:
     """The matrices of a body file.
 

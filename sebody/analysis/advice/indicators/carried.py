@@ -41,13 +41,13 @@ def carried(recorded: Recorded, part: Part, shifts: NDArray, turns: NDArray,
     Parameters
     ----------
     shifts : (n, k, d)
-        Errors of displacements of the part's nodes.
+        Errors of displacements of the part's nodes; nan of nodes without.
     turns : (n, k, r)
         Errors of their rotations; nan of nodes without.
     force : Force, optional
         Errors at its ends; by default its mass times the second rate of the errors.
     """
-    nodes, turns = recorded.nodes(part), np.nan_to_num(turns)
+    nodes, shifts, turns = recorded.nodes(part), np.nan_to_num(shifts), np.nan_to_num(turns)
     points = np.array([node.point for node in nodes])
     found = 0.0
     for k in {0, len(nodes) - 1}:

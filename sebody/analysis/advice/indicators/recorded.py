@@ -19,7 +19,7 @@ STATES = 400        # states that are looked at
 class Deformation(NamedTuple):
     """Of some nodes against axes that follow them: the mean of their rotations, or best fit."""
 
-    shifts: NDArray     # (n, k, d) displacements in these axes
+    shifts: NDArray     # (n, k, d) displacements in these axes; nan of nodes without a position
     turns: NDArray      # (n, k, 3 or 1) rotations against them; nan of nodes without one
     axes: NDArray       # (n, d, d)
 
@@ -100,10 +100,14 @@ class Recorded:
 
     def _deformation(self, nodes: list[Node]) -> Deformation:
         points = np.array([node.point for node in nodes])
-        x = np.stack([self.read(node, "position") for node in nodes], axis=1)
+        read = [self.read(node, "position") for node in nodes]
+        placed = [k for k, one in enumerate(read) if one is not None]
+        nowhere = np.full_like(read[placed[0]], np.nan)
+        x = np.stack([nowhere if one is None else one for one in read], axis=1)
         R = [self.read(node, "rotation") for node in nodes]
         known = [_matrices(one) for one in R if one is not None]
-        arms, places = points - points.mean(axis=0), x - x.mean(axis=1)[:, None]
+        arms = points - points[placed].mean(axis=0)
+        places = x - x[:, placed].mean(axis=1)[:, None]
         axes = _nearest(sum(known) if known else np.einsum("nki,kj->nij", places, arms))
         shifts = np.einsum("nji,nkj->nki", axes, places) - arms
         planar, found = points.shape[1] == 2, []

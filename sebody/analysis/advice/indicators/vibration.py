@@ -37,6 +37,7 @@ def strain_force(recorded: Recorded, part: Part) -> Force:
 
 def frequency(recorded: Recorded, shifts: NDArray) -> float:
     """Mean angular frequency of a vibration."""
+    shifts = np.nan_to_num(shifts)
     size = float(np.sqrt((shifts**2).mean()))
     return float(np.sqrt((recorded.rate(shifts)**2).mean())) / size if size > 0.0 else 0.0
 

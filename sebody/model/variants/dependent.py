@@ -25,7 +25,7 @@ def start_rate(triplet: Triplet) -> NDArray:
                               for motion in triplet.motions)
 
 
-def hang(model: Mechanism, node: Node, carrier: Node, keep: str, body: str) -> bool:
+def make_dependent(model: Mechanism, node: Node, carrier: Node, keep: str, body: str) -> bool:
     """Put a node at the end of a rigid link, with all that it shares triplets with.
 
     Where links lead from one to the other already, or both to what is held, the link gets an end of
