@@ -91,7 +91,12 @@ class Solver:
             Constraints that contradict each other.
         """
         if not self.redundant:
-            return self.system.solve(residual)
+            if self.system.regular:
+                return self.system.solve(residual)
+            # Some motions have stiffness and no mass, as of MacNeal's bodies. They are combinations
+            # of coordinates, so what a factor divides by is rounding. They start without
+            # acceleration, and stiffness alone places them from the first step on.
+            return self.system.least(residual)[0]
         answer, left = self.relaxed.least(residual)
         if left.max() > CONTRADICTION * max(np.abs(self.relaxed.scale * residual).max(), 1e-300):
             raise InputError(f"the constraints contradict each other at "

@@ -15,7 +15,7 @@ from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.loads import named_vectors
 from sebody.reduction.recovery import Recovery
-from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.rigid import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
 
 
@@ -245,6 +245,7 @@ class ReducedBody:
                              ) from error
         rigid = self.rigid_modes.shape[1]
         omega, momenta = np.sqrt(squares[rigid:]), self.mass @ shapes[:, rigid:]
+        momenta[strainless_coordinates(self.keeps, self.coordinates.shape[1])] = 0.0   # to rounding
         damping = (momenta * (2 * ratio * omega + mass + stiffness * omega**2)) @ momenta.T
         return replace(self, damping=damping)
 

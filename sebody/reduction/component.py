@@ -1,7 +1,7 @@
 """Shapes of a reduction: of unit boundary coordinates, and internal ones that leave these 0."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,12 +30,15 @@ class ComponentModes:
         Squares of their angular frequencies [1/time^2].
     on_means : (m, n_boundary)
         Forces on the boundary coordinates that are means, in the constraint modes.
+    strainless : (k,) of int
+        Boundary coordinates whose constraint modes are rigid motions of the body.
     """
 
     constraint: NDArray
     fixed_interface: NDArray
     omega_squared: NDArray
     on_means: NDArray
+    strainless: NDArray = field(default_factory=lambda: np.zeros(0, dtype=int))
 
     @property
     def basis(self) -> NDArray:
@@ -49,6 +52,8 @@ class ComponentModes:
         summands = np.abs(static).T @ (abs(stiffness) @ np.abs(static))
         if np.all(np.abs(boundary) <= _ROUNDING * summands):
             boundary[:] = 0.0  # a boundary that holds the body without strain, e.g. one node
+        # of these rounding alone is left, which nothing else of their kind would show to be small
+        boundary[self.strainless] = boundary[:, self.strainless] = 0.0
         coupling = static.T @ (mass @ dynamic)
         reduced_mass = np.block([
             [static.T @ (mass @ static), coupling],
@@ -56,15 +61,16 @@ class ComponentModes:
         ])
         return block_diag(boundary, np.diag(self.omega_squared)), reduced_mass
 
-    def with_rigid(self, rigid: NDArray, values: NDArray) -> "ComponentModes":
+    def with_rigid(self, rigid: NDArray, values: NDArray, strainless: NDArray) -> "ComponentModes":
         """Constraint modes that make rigid motions (n_dofs, r) of their boundary values (n_b, r).
 
-        They are that but for rounding, which is large where parts of the body hang softly.
+        They are that but for rounding, which is large where parts of the body hang softly. Those
+        of the boundary coordinates `strainless` are such motions themselves.
         """
         unit = np.abs(values).max(axis=1, keepdims=True)
         unit[unit == 0] = 1.0
         missing = rigid - self.constraint @ values
-        return replace(self, constraint=self.constraint + missing @ (
+        return replace(self, strainless=strainless, constraint=self.constraint + missing @ (
             np.linalg.pinv(values / unit) / unit.T))
 
     def with_vibrations(self, interior: ClampedInterior, modes: int,

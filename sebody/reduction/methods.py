@@ -39,6 +39,7 @@ from sebody.reduction.component import ComponentModes, check_count, static_modes
 from sebody.reduction.constants import with_constants, with_shapes
 from sebody.reduction.factor import is_strainless
 from sebody.reduction.loads import fe_loads, with_residual_modes
+from sebody.reduction.rigid import strainless_coordinates
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
 _DEPENDENT = 1e-10  # strain energy of a shape beside those before it, relative to its own
@@ -133,7 +134,8 @@ def clamped(fe_model: FEModel, edge: Boundary
     static = static_modes(stiffness, interior, *edge.unit_motions())
     rigid = ties.rigid / ties.lengths[:, None]
     if is_strainless(stiffness, rigid):
-        static = static.with_rigid(rigid, edge.values(rigid))
+        static = static.with_rigid(rigid, edge.values(rigid), strainless_coordinates(
+            edge.keeps, edge.coordinates.shape[1]))
     return (stiffness, mass), interior, static
 
 

@@ -35,3 +35,24 @@ def rigid_motions(coordinates: NDArray, keeps: tuple[str, ...], size: int,
         [np.zeros((angles * axes, dimension)), np.tile(np.eye(axes), (angles, 1))])
     internal = np.zeros((size - len(positions) - len(rotations), dimension + axes))
     return np.vstack([positions, rotations, internal])
+
+
+def strainless_coordinates(keeps: tuple[str, ...], dimension: int) -> NDArray:
+    """Boundary coordinates (k,) that move a free body as a whole: it resists none of them.
+
+    Those of the only position that is kept, and the only rotation beside an only position. What a
+    reduction finds as their stiffness is rounding, and none of their kind tells that it is small.
+
+    Parameters
+    ----------
+    keeps : tuple of str
+        Triplets kept at the boundary nodes.
+    dimension : int
+        Of the body, 2 or 3.
+    """
+    positions, rotations = (sum(keep in ("full", kind) for keep in keeps)
+                            for kind in ("translation", "rotation"))
+    if positions > 1:
+        return np.arange(0)
+    angles = (1 if dimension == 2 else 3) * rotations
+    return np.arange(dimension + (angles if rotations == 1 else 0))

@@ -257,3 +257,38 @@ def test_damping_turns_with_the_body():
     scale = np.max(np.abs(turned.stiffness))
     assert np.max(np.abs(turned.stiffness - flat.stiffness)) > 0.1 * scale
     assert_allclose(turned.damping, 0.02 * turned.stiffness, rtol=0, atol=1e-9 * 0.02 * scale)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-3, 1e4])
+def test_turned_body_with_one_position_kept(unit):
+    """A rotation beside one full node: to move the only position costs nothing, to the last digit.
+
+    The other end is free to move, so a beam bends and twists uniformly: E I / L and G J / L.
+    """
+    section = replace(SQUARE, area=9 * unit**2, torsion=11 * unit**4, inertia_y=5 * unit**4,
+                      inertia_z=6.75 * unit**4, youngs_modulus=2.1e6 / unit**2)
+    stiff = 2.1e6 * unit / 100 * np.diag([11 / 2.6, 5, 6.75])
+    for seed in range(4):
+        turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+        turn *= np.linalg.det(turn)
+        start = 30 * unit * seed * turn[1]
+        beam = straight_beam(start, start + 100 * unit * turn[:, 0], section, 20, up=turn[:, 1])
+        body = craig_bampton(beam, [(20, "rotation"), (0, "full")], 3)
+        assert_array_equal(body.stiffness[:3], 0.0)
+        # one of 20 elements is 20 times as stiff, and its rounding with it
+        assert_allclose(body.stiffness[3:9, 3:9], between(turn @ stiff @ turn.T), rtol=0,
+                        atol=20 * ROUNDING * stiff.max())
+        squares, shapes = eigh(body.stiffness, body.mass)
+        rates = np.diag(shapes.T @ body.damped(0.01).damping @ shapes)[6:]
+        assert_allclose(rates, 0.02 * np.sqrt(squares[6:]), rtol=1e-10)   # EPS times 1e4
+        # rotated, the only position keeps its zeros
+        assert_array_equal(body.rotated(turn).stiffness[:, :3], 0.0)
+        held = body.stiffness.copy()
+        held[1, 1] += 1e-3 * stiff.max() / (100 * unit)**2
+        with pytest.raises(InputError, match="stiffness resists rigid motion"):
+            replace(body, stiffness=held, invariants=None)
+
+
+def between(relative):
+    """Stiffness of two triplets of rotations that act by their difference."""
+    return np.kron([[1, -1], [-1, 1]], relative)

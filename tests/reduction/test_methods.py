@@ -177,6 +177,33 @@ def test_the_runtime_takes_them_all():
     assert_allclose(tips[0], tips[1], atol=1e-5)
 
 
+def test_massless_motions_start_and_run():
+    """MacNeal's bodies, whose mass is singular: a turned pendulum, and a beam that falls freely."""
+    section = replace(SQUARE, area=1e-2, inertia_y=5e-6, inertia_z=1e-5, torsion=1e-5,
+                      youngs_modulus=2e9, density=1e3)
+    beam = straight_beam([3, -2, 1], [3.6, -2.48, 1.64], section, 12)      # of length 1
+    along = np.array([0.6, -0.48, 0.64])
+
+    def tip(method, modes, pinned):
+        body = reduce(beam, [(12, "full"), (0, "full")], modes, method)
+        assert (np.linalg.matrix_rank(body.mass) < len(body.mass)) == (method == "macneal")
+        model = Model()
+        model.node("tip", beam.coordinates[12])
+        model.node("base", beam.coordinates[0])
+        model.superelement("arm", body, ["tip", "base"], inertia="b")
+        model.gravity(9.81 * np.cross(along, [0.48, 0.6, 0]))
+        if pinned:
+            model.fix("base", "position")
+        return simulate(model, 1e-3, 0.1)["tip.position"][-1] - beam.coordinates[12]
+    fall = 9.81 * 0.1**2 / 2 * np.cross(along, [0.48, 0.6, 0])
+    expected = tip("rubin", 1, True)
+    # the whole deflection is some thousandths of the length, of which modes leave ever less
+    for modes, left in ((0, 1e-4), (1, 1e-5), (3, 1e-6)):
+        # no force deforms it: rounding of the stiffness, beside a fall of hundredths
+        assert_allclose(tip("macneal", modes, False), fall, atol=1e-11)
+        assert_allclose(tip("macneal", modes, True), expected, atol=left)
+
+
 def test_effective_masses():
     """A clamped beam between two ends: 8 / (k pi)^2-like parts of bending, all of what moves."""
     body = craig_bampton(BEAM, ENDS, 30)
