@@ -51,11 +51,11 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
     demand = np.zeros(numbering.free)
     demand[multipliers] = -rates
     parts = [_Deformation.of(body, numbering) for body in model.bodies.values()]
-    held = np.zeros(numbering.free)
+    held, heavy = np.zeros(numbering.free), HEAVY * np.abs(masses.diagonal()).max()
     triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
     for triplet in triplets:
         if triplet.given:
-            held[coordinates(numbering, triplet)] = HEAVY * abs(masses.diagonal()).max()
+            held[coordinates(numbering, triplet)] = heavy
     solve = least(_with_energies(masses, held, parts), system)
     before = state.v.copy()
     for _ in range(PASSES):
@@ -144,8 +144,8 @@ def _by_unknowns(body: Superelement, numbering: Numbering) -> tuple[NDArray, NDA
                     np.cross(np.eye(3), arm).T)
         row += size
     modes, first = body.body.modes, numbering.modes[body.name]
-    for k in range(modes):
-        blocks.append((row + k, [column.setdefault(first + k, len(column))], np.ones((1, 1))))
+    own = [column.setdefault(first + k, len(column)) for k in range(modes)]
+    blocks.append((row, own, np.eye(modes)))
     places = np.zeros((row + modes, len(column)))
     for row, own, block in blocks:
         places[row:row + len(block), own] += block
