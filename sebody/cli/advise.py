@@ -9,6 +9,7 @@ from sebody.cli.inputs import build_scene, check_picture, given_arguments, sourc
 
 if TYPE_CHECKING:
     from sebody.analysis import Advice
+    from sebody.analysis.advice.outcome import Trial
     from sebody.scenes.scene import Scene
 
 KINDS = {"reference": "richest model", "alone": "one part alone", "together": "together",
@@ -70,12 +71,19 @@ def _print(advice: "Advice") -> str:
     """Print runs and advice but for the last line, which is returned."""
     print(f"{'predicted':>9} {'error':>9} {'step':>9} {'seconds':>9}  change")
     for trial in advice.table:
-        local = f"; variable steps, local tolerance {trial.local:.2g}" if trial.local else ""
+        local = f"; {_steps(trial)}" if trial.local else ""
         print(f"{trial.predicted:9.2g} {trial.error:9.2g} {trial.step:9.3g} {trial.seconds:9.2g}  "
               f"{trial.change}{local}")
     *lines, last = advice.summary().splitlines()
     print("\n".join(lines))
     return last
+
+
+def _steps(trial: "Trial") -> str:
+    """Its steps in a few words."""
+    if trial.local is None:
+        return f"step {trial.step:.3g}"
+    return f"variable steps, local tolerance {trial.local:.2g}"
 
 
 def _advised(options: argparse.Namespace, scene: "Scene") -> "Advice":
@@ -113,8 +121,8 @@ def _draw(advice: "Advice", name: str, path: Path) -> None:
     """The runs of the search on a chart."""
     from sebody.studies import chart
 
-    points = [chart.Point(KINDS[one.kind], one.change, one.error, one.seconds / advice.t_end, 0,
-                          one.step, 0.0) for one in advice.table]
+    points = [chart.Point(KINDS[one.kind], f"{one.change}; {_steps(one)}", one.error,
+                          one.seconds / advice.t_end, 0, one.step, 0.0) for one in advice.table]
     choice = chart.Point("chosen", "chosen", advice.error, advice.seconds / advice.t_end, 0,
                          advice.step, 0.0)
     chart.draw(name, points, chart.front([*points, choice]), 0.0, path, choice, advice.tolerance)

@@ -42,7 +42,8 @@ class _Library(JITCodeLibrary):
     def finalize(self) -> None:
         """Take in what the function calls."""
         for library in dict.fromkeys(self._linking_libraries):
-            self._reload_init.update(library._reload_init)
+            if hasattr(self, "_reload_init"):       # not in all versions of Numba
+                self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         if self.optimized:
             self._optimize_final_module()

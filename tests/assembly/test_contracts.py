@@ -9,11 +9,11 @@ from sebody import InputError, Model, simulate
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.build import build
-from sebody.fem import Section
+from sebody.fem import Section, straight_beam
 from sebody.kernels.layout import INDEX, Row
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.histories import history
-from sebody.reduction import ReducedBody
+from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes import hinged_beam
 
 Z = (0.0, 0.0, 1.0)
@@ -131,6 +131,18 @@ def test_superelements_that_do_not_fit_their_kernel(kernel, message):
     model = beam()
     model.element("beam").kernel = kernel
     with pytest.raises(InputError, match=message):
+        build(model)
+
+
+def test_a_superelement_of_more_nodes_than_its_kernel():
+    body = craig_bampton(straight_beam((0, 0, 0), (1, 0, 0), SECTION, 2),
+                         [(0, "full"), (1, "full"), (2, "full")], modes=0)
+    model = Model()
+    nodes = [model.node(f"node {k}", (x, 0, 0)) for k, x in enumerate((0.0, 0.5, 1.0))]
+    model.superelement("beam", body, nodes, inertia="b")
+    model.element("beam").kernel = "superelement_f2_converged_mean_b"
+    with pytest.raises(InputError, match="it has 3 positions and the kernel 2; it has 3 rotations "
+                                         "and the kernel 2"):
         build(model)
 
 

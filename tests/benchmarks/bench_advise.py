@@ -69,7 +69,7 @@ def _against(scene: AdviceScene, full: BruteForce, tolerance: float) -> dict:
         "search": sum(one.seconds for one in advice.table) / advice.table[0].seconds,
         "runs": len(advice.table), "search with set-up": worked / richest,
         "trials": [one.predicted / one.error for one in advice.table
-                   if one.kind not in ("reference", "default") and 0 < one.error < np.inf]}
+                   if one.kind not in ("reference", "given") and 0 < one.error < np.inf]}
 
 
 def _step(advice: Advice) -> Step:

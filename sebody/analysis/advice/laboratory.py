@@ -14,6 +14,7 @@ from sebody.analysis.advice.outcome import Trial
 from sebody.analysis.advice.quantities import Quantities, difference
 from sebody.analysis.advice.reference import ORDER_FACTOR, Reference, reference, still
 from sebody.analysis.advice.runs import Run, Runs
+from sebody.analysis.advice.words import in_brief
 from sebody.errors import InputError, SimulationError
 from sebody.model.model import Model
 
@@ -21,7 +22,6 @@ FINER = (4, 2, 1)       # parts of the given step, of the first runs of the rich
 SHORTER = (8, 16)       # further ones, where the tolerance needs them
 GOOD = 0.2              # of the tolerance, that the reference may be off by without them
 SHARE = 0.5             # of the tolerance, that the reference must be good to
-WHOLE = "all as it is"
 
 
 @dataclass
@@ -107,9 +107,9 @@ class Laboratory:
         errors = {h: self.error(run) for h, run in self.bases.items()}
         finest = min(errors)
         errors[finest] = max(self.reference.step_error, self.reference.error)
-        sentence = "; ".join(self.builder.make(choice).sentences) or WHOLE
+        words = in_brief(self.parts, choice)
         for h in sorted(errors):
-            self.table.append(Trial(sentence, h, 0.0 if h == finest else errors[h],
+            self.table.append(Trial(words, h, 0.0 if h == finest else errors[h],
                                     self.bases[h].seconds))
             self.tried.append(Tried(choice._replace(step=Step(h)), errors[h], errors[h],
                                     self.bases[h].seconds))
@@ -175,14 +175,13 @@ class Laboratory:
     def attempt(self, choice: Choice, kind: str) -> tuple[Tried, Run | None]:
         """Run a choice and put it into the table; its error is infinite if it does not run."""
         predicted, cost = expected(self.estimates.contributions(choice)), self.cost.of(choice)
-        error, seconds, run, sentence = inf, 0.0, None, ""
+        error, seconds, run, words = inf, 0.0, None, in_brief(self.parts, choice)
         try:
-            sentence = "; ".join(self.builder.make(choice).sentences) or WHOLE
             run = self.run(choice)
             error, seconds = self.error(run), run.seconds
         except (InputError, SimulationError) as reason:
-            sentence = f"{sentence}: {reason}" if sentence else str(reason)
-        self.table.append(Trial(sentence, choice.step.h, error, seconds, predicted, cost, kind,
+            words = f"{words}: {reason}"
+        self.table.append(Trial(words, choice.step.h, error, seconds, predicted, cost, kind,
                                 choice.step.local))
         found = Tried(choice, error, predicted, seconds)
         self.tried.append(found)

@@ -16,7 +16,7 @@ class Trial:
     Parameters
     ----------
     change : str
-        What was changed, or why it did not run.
+        Forms of the parts and changes of the whole model, and why it did not run.
     step : float
         Its time step.
     error : float

@@ -9,6 +9,7 @@ from sebody.analysis.advice.indicators.vibration import first_frequency, frequen
 from sebody.analysis.advice.laboratory import Laboratory
 from sebody.analysis.advice.outcome import Reason
 from sebody.analysis.advice.search import Search
+from sebody.analysis.advice.words import in_words
 
 TURN = 2.0 * np.pi
 # what is chosen of the whole model, and why
@@ -40,18 +41,6 @@ def _of_part(lab: Laboratory, k: int, part: Part, form: Form) -> list[Reason]:
     head = Reason(part.name, in_words(part, form), "", total, confirmed)
     return [head, *(Reason(f"  {axis}", *_why(lab, part, form, axis), error)
                     for axis, error in predicted.items())]
-
-
-def in_words(part: Part, form: Form) -> str:
-    """A form in a few words."""
-    if form.rigid:
-        return "rigid"
-    bodies = f"{form.bodies} bod{'y' if form.bodies == 1 else 'ies'} with " if part.beam else ""
-    each = " each" if form.bodies > 1 else ""
-    stiffening = "" if form.inertia != "c" else (
-        ", stiffening" if form.stiffening else ", not stiffening")
-    return (f"{bodies}{form.modes} mode{'s' * (form.modes != 1)}{each}, inertia {form.inertia}"
-            f"{stiffening}")
 
 
 def _why(lab: Laboratory, part: Part, form: Form, axis: str) -> tuple[str, str]:
