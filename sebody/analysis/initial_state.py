@@ -1,5 +1,7 @@
 """A consistent start: velocities that fit the joints, accelerations and multipliers at t = 0."""
 
+from copy import copy
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
@@ -154,7 +156,8 @@ def _with_mass(masses: csc_matrix, held: NDArray) -> csc_matrix:
     across = masses.shape[0]
     diagonal = np.flatnonzero(       # all of it is stored, see `assembled`
         masses.indices == np.repeat(np.arange(across), np.diff(masses.indptr)))
-    found = masses.copy()
+    found = copy(masses)        # shares the pattern: SciPy's own copy verifies it once more
+    found.data = masses.data.copy()
     found.data[diagonal[held]] += HEAVY * np.abs(masses.data[diagonal]).max()
     return found
 

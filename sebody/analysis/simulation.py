@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -246,7 +247,7 @@ class Simulation:
         """The given scheme, or by default one that suits the steps and the constraints."""
         constrained = bool(self.numbering.multipliers)
         if scheme is None:
-            return generalized_alpha(index=2 if constrained and variable else 3)
+            return _default(2 if constrained and variable else 3)
         if variable and constrained and not scheme.stabilized:
             raise InputError("with constraints of index 3 errors grow where steps change: give "
                              "generalized_alpha(index=2), or a fixed step")
@@ -286,6 +287,12 @@ class Simulation:
         return (f"stopped at t = {self.time:.6g}: {reason}, even with the step cut to "
                 f"{shortest:.3g}; results up to there are kept. Use {remedy}, "
                 "check the loads, or split the body into more superelements")
+
+
+@cache
+def _default(index: int) -> Scheme:
+    """The scheme of constraints of an index, with its checks made once."""
+    return generalized_alpha(index=index)
 
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,

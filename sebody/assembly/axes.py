@@ -5,35 +5,17 @@ tangent of the body hardly changes, so one factorization serves many steps. Elem
 superelements are in the axes of their own frame, all others in global axes (-1).
 """
 
+from collections.abc import Iterable, Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.batches import Batches, starts
+from sebody.assembly.batches import Shape, starts
 from sebody.assembly.numbering import Numbering
-from sebody.engine.links import Links
 from sebody.model.mechanism import Mechanism
 
 
-def body_axes(model: Mechanism, numbering: Numbering, batches: Batches) -> dict[str, NDArray]:
-    """The members `rotated`, `rotated_blocks` and `linked` of `System`."""
-    frame_of = _frames(model, numbering)
-    blocks, start = [], 0
-    for batch in batches.all:
-        for own, unknowns in zip(batch.frames, batch.unknowns, strict=True):
-            for local, unknown in enumerate(unknowns):
-                if frame_of.get(unknown, own) != own:
-                    blocks.append((start, batch.width, local, frame_of[unknown], own))
-            start += batch.width ** 2
-    first_load = sum(len(b.rows) * b.width ** 2 for b in batches.all[:batches.first_power])
-    linked = (any(block[0] < first_load for block in blocks)
-              or any(len(equation.triplets) > 1 for equation in model.constraints))
-    return {"linked": np.array([int(linked)]),
-            "rotated": np.array([item for item in frame_of.items() if item[1] >= 0],
-                               dtype=np.int64).reshape(-1, 2),
-            "rotated_blocks": np.array(blocks, dtype=np.int64).reshape(-1, 5)}
-
-
-def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
+def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
     """First coordinates of positions -> number of the frame they are solved for in."""
     frame_of: dict[int, int] = {}
     for k, body in enumerate(model.bodies.values()):
@@ -45,16 +27,34 @@ def _frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
     return frame_of
 
 
-def summands(batches: Batches, rotated: NDArray, links: Links,
+def rotated_blocks(shapes: Iterable[Shape],
+                   frame_of: Mapping[int, int]) -> tuple[NDArray, NDArray]:
+    """The members `rotated` and `rotated_blocks` of `System`."""
+    blocks, start = [], 0
+    for shape in shapes:
+        for own, unknowns in zip(shape.frames, shape.unknowns, strict=True):
+            for local, unknown in enumerate(unknowns):
+                if frame_of.get(unknown, own) != own:
+                    blocks.append((start, shape.width, local, frame_of[unknown], own))
+            start += shape.width ** 2
+    return (np.array([item for item in frame_of.items() if item[1] >= 0],
+                     dtype=np.int64).reshape(-1, 2),
+            np.array(blocks, dtype=np.int64).reshape(-1, 5))
+
+
+def summands(shapes: Iterable[Shape], rotated: NDArray, linked: NDArray,
              kept: NDArray) -> tuple[NDArray, NDArray]:
-    """The members `J_place` and `summands` of `System`, from the `kept` entries of `State.J`."""
-    width = [b.width for b in batches.all for _ in b.rows]
+    """The members `J_place` and `summands` of `System`, from the `kept` entries of `State.J`.
+
+    `rotated` and `linked` are `System.rotated_blocks` and `Links.elements`.
+    """
+    width = [s.width for s in shapes for _ in s.unknowns]
     start = starts(w * w for w in width)
     found = np.full((len(width), 7), -1)
     found[:, 0], found[:, 1] = start[:-1], width
     firsts = np.searchsorted(rotated[:, 0], start)
     found[:, 2], found[:, 3] = firsts[:-1], firsts[1:]
-    found[np.searchsorted(start, links.elements[:, 0]), 4] = np.arange(len(links.elements))
+    found[np.searchsorted(start, linked[:, 0]), 4] = np.arange(len(linked))
     ends = np.searchsorted(kept, start)
     found[:, 5], found[:, 6] = ends[:-1], ends[1:]
     return (kept - np.repeat(start[:-1], np.diff(ends))).astype(np.int32), found

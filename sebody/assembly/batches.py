@@ -32,6 +32,16 @@ from sebody.reduction import ReducedBody
 _rows: WeakKeyDictionary[ReducedBody, dict[tuple, NDArray]] = WeakKeyDictionary()
 
 
+class Shape(NamedTuple):
+    """What the index arrays of a batch depend on."""
+
+    width: int
+    stride: int                             # length of an index row
+    frames: tuple[int, ...]                 # these as in `Batch`
+    unknowns: tuple[tuple[int, ...], ...]
+    full: tuple[int, ...]
+
+
 class Batch(NamedTuple):
     """Elements that share a kernel, numbers of positions and rotations, and of unknowns."""
 
@@ -42,6 +52,12 @@ class Batch(NamedTuple):
     unknowns: list[list[int]]       # unknowns of each element
     owners: list[int]               # id of the body, constraint or load of each element
     full: list[int]                 # leading unknowns of each beyond which its matrix is diagonal
+
+    @property
+    def shape(self) -> Shape:
+        """What index arrays depend on."""
+        return Shape(self.width, len(self.rows[0]), tuple(self.frames),
+                     tuple(map(tuple, self.unknowns)), tuple(self.full))
 
 
 class Batches(NamedTuple):

@@ -3,15 +3,16 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.axes import body_axes, summands
+from sebody.assembly.axes import frames
 from sebody.assembly.batches import Batches, make_batches, starts
-from sebody.assembly.links import link_arrays, with_entries
+from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
-from sebody.assembly.places import dense_layout, element_places, sparse_layout
 from sebody.assembly.ports import port_arrays
+from sebody.assembly.structure import Structure, indices
+from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import LANES, scratch_size
+from sebody.kernels.layout import scratch_size
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.mechanism import Mechanism
 
@@ -30,36 +31,37 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         raise InputError("the model has no body: add one with model.superelement(...) or "
                          "model.rigid_body(...)")
     numbering = number(model)
-    is_multiplier = _multipliers(model, numbering)
-    if is_multiplier[:numbering.free].all():
+    if numbering.free == sum(equation.multipliers for equation in model.constraints):
         raise InputError("every node of the model is fixed: nothing is left to move, free one")
     batches = make_batches(model, numbering)
-    axes = body_axes(model, numbering, batches)
-    own_row, own_column = element_places(batches.all, numbering.total)
-    links, linked_row, linked_column = link_arrays(model, numbering, batches.all, axes["rotated"])
-    row = np.concatenate([own_row, linked_row])
-    column = np.concatenate([own_column, linked_column])
-    entries, matrix = (dense_layout(row, column, numbering.free)
-                       if numbering.free <= DENSE_LIMIT else
-                       sparse_layout(row, column, numbering))
-    own_entries, linked_entries = entries[:len(own_row)], entries[len(own_row):]
-    kept = np.flatnonzero(own_entries < len(matrix["rows"]))
-    places, table = summands(batches, axes["rotated_blocks"], links, kept)
+    ends, vectors = link_ends(model, numbering)
+    own = indices(_structure(model, numbering, batches, ends))
     system = System(
-        **_batch_arrays(batches), J_place=places, J_entry=own_entries[kept].astype(np.int32),
-        **matrix, **axes,
-        is_multiplier=is_multiplier, pulls=_pulls(matrix, is_multiplier, numbering.free),
-        rotation_at=_rotation_starts(numbering), summands=table,
+        **own.system, links=Links(arm_vectors=vectors, **own.links),
+        address=np.array([batch.kernel.kernel.address for batch in batches.all]),
+        index=np.array([i for batch in batches.all for row in batch.rows for i in row]),
+        constants=batches.constants, rotation_at=_rotation_starts(numbering),
         routines=np.zeros(1, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
         **port_arrays(numbering.histories, numbering.prescribed),
-        links=with_entries(links, linked_entries), relaxed=np.zeros(1, dtype=np.int64),
+        relaxed=np.zeros(1, dtype=np.int64),
         damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
     return system, numbering._replace(forces_at=dict(zip(owners, first_force, strict=False)))
+
+
+def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: Ends) -> Structure:
+    """What the index arrays of a model depend on."""
+    return Structure(
+        numbering.free, numbering.total, numbering.free <= DENSE_LIMIT,
+        tuple(numbering.groups.tolist()),
+        tuple([(numbering.multipliers[id(c)], c.multipliers) for c in model.constraints]),
+        any(len(c.triplets) > 1 for c in model.constraints),
+        tuple(frames(model, numbering).items()), ends,
+        tuple([batch.shape for batch in batches.all]), batches.first_joint, batches.first_power)
 
 
 def work_size(model: Mechanism) -> int:
@@ -73,39 +75,6 @@ def work_size(model: Mechanism) -> int:
                           len(one.body.rotations)) for one in model.loads if one.body is not None]
     elements = max((sum(t.start.size for t in one.triplets) for one in model.loads), default=0)
     return max([*rows, 64, 4 * elements])
-
-
-def _batch_arrays(batches: Batches) -> dict[str, NDArray]:
-    """The members of `System` that describe the batches."""
-    found, integers = batches.all, np.array
-    widths, sizes = [b.width for b in found], [len(b.rows) for b in found]
-    return {"address": integers([b.kernel.kernel.address for b in found]),
-            "count": integers(sizes), "stride": integers([len(b.rows[0]) for b in found]),
-            "width": integers(widths),
-            "at_index": starts(len(b.rows) * len(b.rows[0]) for b in found),
-            "at_g": starts(s * w for s, w in zip(sizes, widths, strict=True)),
-            "at_J": starts(s * w * w for s, w in zip(sizes, widths, strict=True)),
-            "first_joint": integers([batches.first_joint]),
-            "first_power": integers([batches.first_power]),
-            "index": integers([i for b in found for row in b.rows for i in row]),
-            "constants": batches.constants,
-            "g_unknown": integers([u for b in found for row in b.unknowns for u in row])}
-
-
-def _multipliers(model: Mechanism, numbering: Numbering) -> NDArray:
-    """1.0 for every multiplier, and zeros behind the last coordinate."""
-    found = np.zeros(numbering.total + LANES)
-    for equation in model.constraints:
-        first = numbering.multipliers[id(equation)]
-        found[first:first + equation.multipliers] = 1.0
-    return found
-
-
-def _pulls(matrix: dict[str, NDArray], is_multiplier: NDArray, free: int) -> NDArray:
-    """Entries in rows of coordinates and columns of multipliers."""
-    moving, pulling = is_multiplier == 0.0, is_multiplier > 0.0
-    moving[free:] = pulling[free:] = False
-    return np.flatnonzero(moving[matrix["rows"]] & pulling[matrix["columns"]])
 
 
 def _parts(model: Mechanism, numbering: Numbering) -> NDArray:

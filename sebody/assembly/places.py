@@ -1,36 +1,37 @@
 """Positions of the entries of element matrices in the matrix of the system."""
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly import elimination_pattern
-from sebody.assembly.batches import Batch
-from sebody.assembly.numbering import Numbering
+from sebody.assembly.batches import Shape
 from sebody.kernels.layout import LANES
 
 
-def element_places(batches: list[Batch], unused: int) -> tuple[NDArray, NDArray]:
+def element_places(shapes: Iterable[Shape], unused: int) -> tuple[NDArray, NDArray]:
     """Row and column of every entry of the element matrices.
 
     The row is `unused` where the entry is zero in all states: between the internal modes of a
     superelement whose matrix is diagonal beyond its first rows.
     """
     rows, columns = [], []
-    for batch in batches:
-        unknowns = np.array(batch.unknowns, dtype=np.int64)
-        row, column = np.empty((2, len(unknowns), batch.width, batch.width), dtype=np.int64)
+    for shape in shapes:
+        unknowns = np.array(shape.unknowns, dtype=np.int64)
+        row, column = np.empty((2, len(unknowns), shape.width, shape.width), dtype=np.int64)
         row[:], column[:] = unknowns[:, :, None], unknowns[:, None, :]
-        if min(batch.full) < batch.width:
-            row[_zeros(batch)] = unused
+        if min(shape.full) < shape.width:
+            row[_zeros(shape)] = unused
         rows.append(row.ravel())
         columns.append(column.ravel())
     return np.concatenate(rows), np.concatenate(columns)
 
 
-def _zeros(batch: Batch) -> NDArray:
+def _zeros(shape: Shape) -> NDArray:
     """Which entries of the matrices of a batch are zero in all states, (elements, width, width)."""
-    inner = np.arange(batch.width) >= np.array(batch.full)[:, None]
-    return inner[:, :, None] & inner[:, None, :] & ~np.eye(batch.width, dtype=bool)
+    inner = np.arange(shape.width) >= np.array(shape.full)[:, None]
+    return inner[:, :, None] & inner[:, None, :] & ~np.eye(shape.width, dtype=bool)
 
 
 def dense_layout(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, dict[str, NDArray]]:
@@ -45,12 +46,11 @@ def dense_layout(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, dict[s
         "block_starts": none, "block_rows": none, "block_diagonal": none, "slot_unknowns": none}
 
 
-def sparse_layout(row: NDArray, column: NDArray,
-                  numbering: Numbering) -> tuple[NDArray, dict[str, NDArray]]:
-    """The same as `dense_layout`, in the blocks of an elimination."""
-    n = numbering.free
+def sparse_layout(row: NDArray, column: NDArray, n: int,
+                  groups: NDArray) -> tuple[NDArray, dict[str, NDArray]]:
+    """The same as `dense_layout`, in the blocks of an elimination; `groups` as in `Numbering`."""
     free = (row < n) & (column < n)
-    slot, pattern = elimination_pattern.best_slots(row[free], column[free], numbering.groups, n)
+    slot, pattern = elimination_pattern.best_slots(row[free], column[free], groups, n)
     slots = LANES * len(pattern.diagonal)
     unknowns = np.full(slots, n)
     unknowns[slot] = np.arange(n)

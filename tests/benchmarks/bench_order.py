@@ -16,9 +16,9 @@ from scipy.sparse import csc_matrix, eye
 from scipy.sparse.linalg import splu
 
 from sebody import Model, Simulation
-from sebody.assembly.axes import body_axes
+from sebody.assembly.axes import frames, rotated_blocks
 from sebody.assembly.batches import make_batches
-from sebody.assembly.links import link_arrays
+from sebody.assembly.links import link_ends, link_tables
 from sebody.assembly.numbering import number
 from sebody.assembly.places import element_places
 from sebody.engine.state import EVALUATED, WANTED
@@ -120,10 +120,11 @@ def fill(model: Model) -> tuple[int, int]:
     pattern is given values for which every pivot will do.
     """
     numbering = number(model)
-    batches = make_batches(model, numbering)
-    row, column = element_places(batches.all, numbering.total)
-    axes = body_axes(model, numbering, batches)
-    _, linked_row, linked_column = link_arrays(model, numbering, batches.all, axes["rotated"])
+    shapes = [batch.shape for batch in make_batches(model, numbering).all]
+    row, column = element_places(shapes, numbering.total)
+    rotated, _ = rotated_blocks(shapes, frames(model, numbering))
+    _, linked_row, linked_column = link_tables(shapes, link_ends(model, numbering)[0], rotated,
+                                               numbering.total)
     row, column, n = np.r_[row, linked_row], np.r_[column, linked_column], numbering.free
     free = (row < n) & (column < n)
     row, column = row[free], column[free]
