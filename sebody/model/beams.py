@@ -107,11 +107,11 @@ def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements:
           up: ArrayLike | None, damping: float) -> ReducedBody:
     """One superelement of a beam; models of the same beam, as variants are, share it."""
     points = tuple(tuple(map(float, node.point)) for node in ends)
-    axis = None if up is None else tuple(map(float, up))
+    axis = None if up is None else tuple(inputs.vector(up, "up", 3).tolist())
     arguments = model.planar, points, section, elements, modes, axis, damping
     try:
-        hash(section)
-    except TypeError:       # of arrays
+        hash(arguments)
+    except TypeError:       # a section of arrays, or input that is refused below
         return _reduced.__wrapped__(*arguments)
     return _reduced(*arguments)
 

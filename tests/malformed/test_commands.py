@@ -107,7 +107,7 @@ REFUSED = [
     (("bench", "beam"), "there is no benchmark of scene 'beam': use"),
     (("bench", ""), "there is no benchmark of scene ''"),
     (("bench", "--csv"), "unrecognized arguments"),
-    (("chart",), "required: SCENE"), (("chart", "beam"), "there is no chart of scene 'beam'"),
+    (("chart",), "required: SCENE"), (("chart", "beam"), "scene 'beam' is unknown"),
     (("chart", "hinged-beam", "--output", "a.txt"), "picture a.txt must end in .png"),
     (("chart", "hinged-beam", "--output", "none/a.png"), "folder none of the picture"),
     (("chart", "hinged-beam", "--output", "folder.png"), "folder.png is a folder"),
