@@ -116,7 +116,7 @@ def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements:
     return _reduced(*arguments)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=KEPT, typed=True)
 def _reduced(planar: bool, ends: tuple, section: AnySection, elements: int, modes: int,
              up: tuple | None, damping: float) -> ReducedBody:
     fe_model = (planar_beam(*ends, section, elements) if planar else
