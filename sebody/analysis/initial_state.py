@@ -61,7 +61,7 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     state.frames_old[:] = state.frames
     system.relaxed[0] = int(bool(solver.redundant))
     set_powers(system, state)
-    return Start(changed, solver.redundant)
+    return Start(changed, solver.redundant, solver.shared)
 
 
 def _accelerate(system: System, numbering: Numbering, state: State, solver: Solver) -> None:

@@ -16,6 +16,7 @@ from sebody.results.advice import kernels_that_pay
 from sebody.results.energy_balance import energy_balance
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
+from sebody.results.least_norm import arm
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
@@ -237,7 +238,8 @@ class Result(Recording):
                                      for name, change in self.start.changed.items()))
         if self.start and self.start.redundant:
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
-                         + ": multipliers are those of least norm")
+                         + f"; multipliers of {', '.join(self.start.shared)} are not unique, given "
+                         f"are those of least norm (moments divided by {arm(self.model):.4g})")
         lines += [f"general kernel       of {', '.join(bodies)}: one of the layout's own is "
                   f"faster, made by {command}"
                   for command, bodies in self.advice.items()]
