@@ -119,8 +119,8 @@ def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements:
     turn = tuple(map(tuple, axes[:model.dimension, :model.dimension].T.tolist()))
     arguments = model.planar, length, section, elements, modes, damping
     try:
-        hash(section)
-    except TypeError:       # a section of arrays
+        hash(arguments)
+    except TypeError:       # a section of arrays, or input that is refused below
         return _turned(_straight.__wrapped__(*arguments), turn)
     return _placed(turn, *arguments)
 

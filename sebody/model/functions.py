@@ -5,6 +5,10 @@ from types import CellType, CodeType, FunctionType
 
 from numba import njit
 
+from sebody.errors import InputError
+
+OF_TIME, OF_MOTION = 1, 4       # arguments: t; t, x, v, force
+
 
 def rebuilt(function: FunctionType, replaced: Callable[[object], object]) -> FunctionType:
     """A copy of a function in which all that it refers to by name is replaced.
@@ -40,6 +44,41 @@ def with_compiled_helpers(function: Callable) -> Callable:
             made[id(value)] = njit(rebuilt(value, compiled))
         return made[id(value)]
     return rebuilt(function, compiled)
+
+
+def with_bound_defaults(function: Callable, arguments: int, what: str) -> Callable:
+    """A function of the first so many of its arguments; further ones keep their defaults.
+
+    Raises
+    ------
+    InputError
+        A further argument without a default, or one that only a keyword can set, which Numba does
+        not know; the message begins with `what` it is.
+    """
+    own = getattr(function, "py_func", function)
+    if not isinstance(own, FunctionType):
+        return function
+    names, count = own.__code__.co_varnames, own.__code__.co_argcount
+    further, kept = names[arguments:count], own.__defaults__ or ()
+    refused = f"{what} {own.__name__!r} cannot be compiled: its argument "
+    if own.__code__.co_kwonlyargcount:
+        raise InputError(f"{refused}{names[count]!r} comes after a *, which Numba does not know: "
+                         "leave out the *")
+    if len(further) > len(kept):
+        raise InputError(f"{refused}{further[0]!r} gets no value: give it a default, as in "
+                         "lambda t, F=F: F * t, or leave it out")
+    if not further:
+        return function
+    kept, inner = kept[-len(further):], njit(function)
+
+    def of_time(t):
+        return inner(t, *kept)
+
+    def of_motion(t, x, v, force):
+        inner(t, x, v, force, *kept)
+    made = of_time if arguments == OF_TIME else of_motion
+    made.__name__ = own.__name__
+    return made
 
 
 def _used(function: FunctionType) -> list[object]:

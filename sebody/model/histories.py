@@ -17,7 +17,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.user_functions import UserFunction, compile_history
 from sebody.model.derivatives import rates_of
-from sebody.model.functions import with_compiled_helpers
+from sebody.model.functions import OF_TIME, with_bound_defaults, with_compiled_helpers
 
 LOAD, MOTION = "load history", "motion of a drive"
 SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
@@ -256,7 +256,8 @@ def _is_function_with_rates(source: object) -> bool:
 
 
 def _compiled(function: Callable[[float], float], what: str) -> UserFunction:
-    return compile_history(with_compiled_helpers(function), what)
+    bound = with_bound_defaults(with_compiled_helpers(function), OF_TIME, what)
+    return compile_history(bound, what)
 
 
 def _less(function: Callable[[float], float], value: float) -> UserFunction:
