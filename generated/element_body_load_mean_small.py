@@ -35,6 +35,7 @@ CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
 )
 MULTIPLIERS = 0
+MEMORY = 0
 WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
@@ -42,7 +43,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 12
 OPERATIONS = {"residual": (310, 21, 129, 0),
               "column": (44, 9, 125, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
+ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -36,6 +36,7 @@ CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
 )
 MULTIPLIERS = 0
+MEMORY = 0
 WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
@@ -43,7 +44,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 9
 OPERATIONS = {"residual": (360, 21, 96, 0),
               "column": (15, 30, 84, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
+ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

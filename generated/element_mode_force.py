@@ -19,13 +19,14 @@ CONSTANTS = (
 )
 MULTIPLIERS = 0
 WIDTH = 1
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (2, 0, 0, 0),
               "column": (0, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
+ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

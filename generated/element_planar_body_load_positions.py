@@ -34,6 +34,7 @@ CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
 )
 MULTIPLIERS = 0
+MEMORY = 0
 WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
@@ -41,7 +42,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 6
 OPERATIONS = {"residual": (360, 10, 2, 0),
               "column": (1, 12, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
+ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -32,13 +32,14 @@ CONSTANTS = (
 )
 MULTIPLIERS = 0
 WIDTH = 2
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = True        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (6, 0, 0, 0),
               "column": (3, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
+ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -11,6 +11,7 @@ from math import atan2
 from sebody.kernels.abi import at
 from sebody.kernels.layout import (
     AT_CONSTANTS,
+    AT_FRAME,
     AT_PORT,
     C_DAMPING,
     C_STIFFNESS,
@@ -23,6 +24,7 @@ from sebody.kernels.layout import (
     Part,
 )
 from sebody.kernels.pipeline import kernel_function
+from sebody.kernels.rotations import near_angle
 
 PLANAR = False
 N_POSITIONS = 0
@@ -38,13 +40,14 @@ CONSTANTS = (
 )
 MULTIPLIERS = 0
 WIDTH = 6
+MEMORY = 1      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (361, 0, 0, 0),
-              "column": (1060, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
+OPERATIONS = {"residual": (362, 0, 0, 0),
+              "column": (1061, 0, 0, 0)}
+ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -90,6 +93,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Omb_x = v[unknowns[3]]
         Omb_y = v[unknowns[4]]
         Omb_z = v[unknowns[5]]
+        kept_angle = references[index[first + AT_FRAME]]
         t0 = -m_y*n_z + m_z*n_y
         t1 = m_x*n_z - m_z*n_x
         t2 = -m_x*n_y + m_y*n_x
@@ -128,47 +132,49 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t32 = t23*(m_x*t27 + m_y*t29 + m_z*t31)
         t33 = -t22
         t34 = t33*(n_x*t27 + n_y*t29 + n_z*t31)
-        t35 = -rest + atan2(t22, t23)
-        t36 = (0.5)*k*t35
-        t37 = 4*t24
-        t38 = (0.25)*k3*t35*t35*t35
-        t39 = -t12
-        t40 = n_x*t39 + n_z*t10
-        t41 = -t16
-        t42 = n_x*t41 + n_z*t14
-        t43 = -t20
-        t44 = n_x*t43 + n_z*t18
-        t45 = t23*(m_x*t40 + m_y*t42 + m_z*t44)
-        t46 = t33*(n_x*t40 + n_y*t42 + n_z*t44)
-        t47 = -t10
-        t48 = n_x*t11 + n_y*t47
-        t49 = -t14
-        t50 = n_x*t15 + n_y*t49
-        t51 = -t18
-        t52 = n_x*t19 + n_y*t51
-        t53 = t23*(m_x*t48 + m_y*t50 + m_z*t52)
-        t54 = t33*(n_x*t48 + n_y*t50 + n_z*t52)
-        t55 = n_x*t49 + n_y*t28 + n_z*t41
-        t56 = t23*(m_y*t21 + m_z*t55)
-        t57 = t33*(n_y*t21 + n_z*t55)
-        t58 = n_x*t51 + n_y*t30 + n_z*t43
-        t59 = t23*(m_x*t58 + m_z*t13)
-        t60 = t33*(n_x*t58 + n_z*t13)
-        t61 = n_x*t47 + n_y*t26 + n_z*t39
-        t62 = t23*(m_x*t17 + m_y*t61)
-        t63 = t33*(n_x*t17 + n_y*t61)
-        g[0] = (t36*(t25*t32 + t25*t34) + t38*(t32*t37 + t34*t37) + t9*(Ra_xx*t4 + Ra_yx*t6 +
+        t35 = near_angle(atan2(t22, t23), kept_angle)
+        t36 = -rest + t35
+        t37 = (0.5)*k*t36
+        t38 = 4*t24
+        t39 = (0.25)*k3*t36*t36*t36
+        t40 = -t12
+        t41 = n_x*t40 + n_z*t10
+        t42 = -t16
+        t43 = n_x*t42 + n_z*t14
+        t44 = -t20
+        t45 = n_x*t44 + n_z*t18
+        t46 = t23*(m_x*t41 + m_y*t43 + m_z*t45)
+        t47 = t33*(n_x*t41 + n_y*t43 + n_z*t45)
+        t48 = -t10
+        t49 = n_x*t11 + n_y*t48
+        t50 = -t14
+        t51 = n_x*t15 + n_y*t50
+        t52 = -t18
+        t53 = n_x*t19 + n_y*t52
+        t54 = t23*(m_x*t49 + m_y*t51 + m_z*t53)
+        t55 = t33*(n_x*t49 + n_y*t51 + n_z*t53)
+        t56 = n_x*t50 + n_y*t28 + n_z*t42
+        t57 = t23*(m_y*t21 + m_z*t56)
+        t58 = t33*(n_y*t21 + n_z*t56)
+        t59 = n_x*t52 + n_y*t30 + n_z*t44
+        t60 = t23*(m_x*t59 + m_z*t13)
+        t61 = t33*(n_x*t59 + n_z*t13)
+        t62 = n_x*t48 + n_y*t26 + n_z*t40
+        t63 = t23*(m_x*t17 + m_y*t62)
+        t64 = t33*(n_x*t17 + n_y*t62)
+        g[0] = (t37*(t25*t32 + t25*t34) + t39*(t32*t38 + t34*t38) + t9*(Ra_xx*t4 + Ra_yx*t6 +
             Ra_zx*t8))
-        g[1] = (t36*(t25*t45 + t25*t46) + t38*(t37*t45 + t37*t46) + t9*(Ra_xy*t4 + Ra_yy*t6 +
+        g[1] = (t37*(t25*t46 + t25*t47) + t39*(t38*t46 + t38*t47) + t9*(Ra_xy*t4 + Ra_yy*t6 +
             Ra_zy*t8))
-        g[2] = (t36*(t25*t53 + t25*t54) + t38*(t37*t53 + t37*t54) + t9*(Ra_xz*t4 + Ra_yz*t6 +
+        g[2] = (t37*(t25*t54 + t25*t55) + t39*(t38*t54 + t38*t55) + t9*(Ra_xz*t4 + Ra_yz*t6 +
             Ra_zz*t8))
-        g[3] = (t36*(t25*t56 + t25*t57) + t38*(t37*t56 + t37*t57) + t9*(-Rb_xx*t4 - Rb_yx*t6 -
+        g[3] = (t37*(t25*t57 + t25*t58) + t39*(t38*t57 + t38*t58) + t9*(-Rb_xx*t4 - Rb_yx*t6 -
             Rb_zx*t8))
-        g[4] = (t36*(t25*t59 + t25*t60) + t38*(t37*t59 + t37*t60) + t9*(-Rb_xy*t4 - Rb_yy*t6 -
+        g[4] = (t37*(t25*t60 + t25*t61) + t39*(t38*t60 + t38*t61) + t9*(-Rb_xy*t4 - Rb_yy*t6 -
             Rb_zy*t8))
-        g[5] = (t36*(t25*t62 + t25*t63) + t38*(t37*t62 + t37*t63) + t9*(-Rb_xz*t4 - Rb_yz*t6 -
+        g[5] = (t37*(t25*t63 + t25*t64) + t39*(t38*t63 + t38*t64) + t9*(-Rb_xz*t4 - Rb_yz*t6 -
             Rb_zz*t8))
+        frames[index[first + AT_FRAME]] = t35
         if task == ENERGY:
             t900 = (n_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + n_y*(Ra_xy*Rb_xx + Ra_yy*Rb_yx
                 + Ra_zy*Rb_zx) + n_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx))
@@ -176,7 +182,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + Ra_zy*Rb_zy) + n_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy))
             t902 = (n_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + n_y*(Ra_xy*Rb_xz + Ra_yy*Rb_yz
                 + Ra_zy*Rb_zz) + n_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz))
-            t903 = -rest + atan2(m_x*t900 + m_y*t901 + m_z*t902, n_x*t900 + n_y*t901 + n_z*t902)
+            t903 = (-rest + near_angle(atan2(m_x*t900 + m_y*t901 + m_z*t902, n_x*t900 + n_y*t901 +
+                n_z*t902), kept_angle))
             energies[STRAIN] += (0.5)*k*t903*t903 + (0.25)*k3*t903*t903*t903*t903
         if task == ENERGY:
             t900 = -m_y*n_z + m_z*n_y
@@ -223,244 +230,244 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t64 = -m_y*n_z + m_z*n_y
-                t65 = m_x*n_z - m_z*n_x
-                t66 = -m_x*n_y + m_y*n_x
-                t67 = Ra_xx*t64 + Ra_xy*t65 + Ra_xz*t66
-                t68 = 2*Ra_xx
-                t69 = Ra_yx*t64 + Ra_yy*t65 + Ra_yz*t66
-                t70 = 2*Ra_yx
-                t71 = Ra_zx*t64 + Ra_zy*t65 + Ra_zz*t66
-                t72 = 2*Ra_zx
-                t73 = t67*t68 + t69*t70 + t71*t72
-                t74 = (0.5)*c
-                t75 = (c_damping*t74*(t67*(Ra_xx*utha_x + Ra_xy*utha_y + Ra_xz*utha_z -
-                    Rb_xx*uthb_x - Rb_xy*uthb_y - Rb_xz*uthb_z) + t69*(Ra_yx*utha_x + Ra_yy*utha_y
+                t65 = -m_y*n_z + m_z*n_y
+                t66 = m_x*n_z - m_z*n_x
+                t67 = -m_x*n_y + m_y*n_x
+                t68 = Ra_xx*t65 + Ra_xy*t66 + Ra_xz*t67
+                t69 = 2*Ra_xx
+                t70 = Ra_yx*t65 + Ra_yy*t66 + Ra_yz*t67
+                t71 = 2*Ra_yx
+                t72 = Ra_zx*t65 + Ra_zy*t66 + Ra_zz*t67
+                t73 = 2*Ra_zx
+                t74 = t68*t69 + t70*t71 + t72*t73
+                t75 = (0.5)*c
+                t76 = (c_damping*t75*(t68*(Ra_xx*utha_x + Ra_xy*utha_y + Ra_xz*utha_z -
+                    Rb_xx*uthb_x - Rb_xy*uthb_y - Rb_xz*uthb_z) + t70*(Ra_yx*utha_x + Ra_yy*utha_y
                     + Ra_yz*utha_z - Rb_yx*uthb_x - Rb_yy*uthb_y - Rb_yz*uthb_z) +
-                    t71*(Ra_zx*utha_x + Ra_zy*utha_y + Ra_zz*utha_z - Rb_zx*uthb_x - Rb_zy*uthb_y
+                    t72*(Ra_zx*utha_x + Ra_zy*utha_y + Ra_zz*utha_z - Rb_zx*uthb_x - Rb_zy*uthb_y
                     - Rb_zz*uthb_z)))
-                t76 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t77 = 2*t67
-                t78 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t79 = 2*t69
-                t80 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t81 = 2*t71
-                t82 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t83 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t84 = t64*t76 + t65*t83 + t66*t82
-                t85 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t86 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t87 = t64*t78 + t65*t86 + t66*t85
-                t88 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t89 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t90 = t64*t80 + t65*t89 + t66*t88
-                t91 = (Oma_x*Ra_xx + Oma_y*Ra_xy + Oma_z*Ra_xz - Omb_x*Rb_xx - Omb_y*Rb_xy -
+                t77 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t78 = 2*t68
+                t79 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t80 = 2*t70
+                t81 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t82 = 2*t72
+                t83 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t84 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t85 = t65*t77 + t66*t84 + t67*t83
+                t86 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t87 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t88 = t65*t79 + t66*t87 + t67*t86
+                t89 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t90 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t91 = t65*t81 + t66*t90 + t67*t89
+                t92 = (Oma_x*Ra_xx + Oma_y*Ra_xy + Oma_z*Ra_xz - Omb_x*Rb_xx - Omb_y*Rb_xy -
                     Omb_z*Rb_xz)
-                t92 = (Oma_x*Ra_yx + Oma_y*Ra_yy + Oma_z*Ra_yz - Omb_x*Rb_yx - Omb_y*Rb_yy -
+                t93 = (Oma_x*Ra_yx + Oma_y*Ra_yy + Oma_z*Ra_yz - Omb_x*Rb_yx - Omb_y*Rb_yy -
                     Omb_z*Rb_yz)
-                t93 = (Oma_x*Ra_zx + Oma_y*Ra_zy + Oma_z*Ra_zz - Omb_x*Rb_zx - Omb_y*Rb_zy -
+                t94 = (Oma_x*Ra_zx + Oma_y*Ra_zy + Oma_z*Ra_zz - Omb_x*Rb_zx - Omb_y*Rb_zy -
                     Omb_z*Rb_zz)
-                t94 = t74*(t67*t91 + t69*t92 + t71*t93)
-                t95 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t96 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t97 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t98 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t99 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t100 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t101 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t102 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t103 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t104 = (t74*(t67*(Oma_x*t76 + Oma_y*t83 + Oma_z*t82 - Omb_x*t95 - Omb_y*t96 -
-                    Omb_z*t97) + t69*(Oma_x*t78 + Oma_y*t86 + Oma_z*t85 - Omb_x*t98 - Omb_y*t99 -
-                    Omb_z*t100) + t71*(Oma_x*t80 + Oma_y*t89 + Oma_z*t88 - Omb_x*t101 - Omb_y*t102
-                    - Omb_z*t103) + t84*t91 + t87*t92 + t90*t93))
-                t105 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t106 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t107 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t108 = n_x*t105 + n_y*t106 + n_z*t107
-                t109 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t110 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t111 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t112 = n_x*t109 + n_y*t110 + n_z*t111
-                t113 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t114 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t115 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t116 = n_x*t113 + n_y*t114 + n_z*t115
-                t117 = n_x*t108 + n_y*t112 + n_z*t116
-                t118 = m_x*t108 + m_y*t112 + m_z*t116
-                t119 = t117*t117 + t118*t118
-                t120 = 1/t119
-                t121 = t117*t120
-                t122 = -t106
-                t123 = n_y*t107 + n_z*t122
-                t124 = -t110
-                t125 = n_y*t111 + n_z*t124
-                t126 = -t114
-                t127 = n_y*t115 + n_z*t126
-                t128 = m_x*t123 + m_y*t125 + m_z*t127
-                t129 = 2*t128
-                t130 = -t118
-                t131 = n_x*t123 + n_y*t125 + n_z*t127
-                t132 = 2*t120
-                t133 = t131*t132
-                t134 = Ra_xx*t95 + Ra_yx*t98 + Ra_zx*t101 + Rb_xx*t76 + Rb_yx*t78 + Rb_zx*t80
-                t135 = Ra_xy*t95 + Ra_yy*t98 + Ra_zy*t101 + Rb_xx*t83 + Rb_yx*t86 + Rb_zx*t89
-                t136 = Ra_xz*t95 + Ra_yz*t98 + Ra_zz*t101 + Rb_xx*t82 + Rb_yx*t85 + Rb_zx*t88
-                t137 = n_x*t134 + n_y*t135 + n_z*t136
-                t138 = m_x*t137
-                t139 = Ra_xx*t96 + Ra_yx*t99 + Ra_zx*t102 + Rb_xy*t76 + Rb_yy*t78 + Rb_zy*t80
-                t140 = Ra_xy*t96 + Ra_yy*t99 + Ra_zy*t102 + Rb_xy*t83 + Rb_yy*t86 + Rb_zy*t89
-                t141 = Ra_xz*t96 + Ra_yz*t99 + Ra_zz*t102 + Rb_xy*t82 + Rb_yy*t85 + Rb_zy*t88
-                t142 = n_x*t139 + n_y*t140 + n_z*t141
-                t143 = m_y*t142
-                t144 = Ra_xx*t97 + Ra_yx*t100 + Ra_zx*t103 + Rb_xz*t76 + Rb_yz*t78 + Rb_zz*t80
-                t145 = Ra_xy*t97 + Ra_yy*t100 + Ra_zy*t103 + Rb_xz*t83 + Rb_yz*t86 + Rb_zz*t89
-                t146 = Ra_xz*t97 + Ra_yz*t100 + Ra_zz*t103 + Rb_xz*t82 + Rb_yz*t85 + Rb_zz*t88
-                t147 = n_x*t144 + n_y*t145 + n_z*t146
-                t148 = m_z*t147
-                t149 = t138 + t143 + t148
-                t150 = t121*t149
-                t151 = n_x*t137
-                t152 = n_y*t142
-                t153 = n_z*t147
-                t154 = t120*(t151 + t152 + t153)
-                t155 = t130*t154
-                t156 = (0.5)*k
-                t157 = t156*(t150 + t155)
-                t158 = 4*t128
-                t159 = 4*t120
-                t160 = t131*t159
-                t161 = -rest + atan2(t118, t117)
-                t162 = (0.25)*k3
-                t163 = t161*t161*t162*(3*t150 + 3*t155)
-                t164 = -t135
-                t165 = n_y*t136 + n_z*t164
-                t166 = -t140
-                t167 = n_y*t141 + n_z*t166
-                t168 = -t145
-                t169 = n_y*t146 + n_z*t168
-                t170 = t121*(m_x*t165 + m_y*t167 + m_z*t169)
-                t171 = t130*(n_x*t165 + n_y*t167 + n_z*t169)
-                t172 = -t149
-                t173 = ((-t117*(2*t151 + 2*t152 + 2*t153) - t118*(2*t138 + 2*t143 +
-                    2*t148))/(t119*t119))
-                t174 = t117*t173
-                t175 = t130*t173
-                t176 = t131*t175
-                t177 = t156*t161
-                t178 = t161*t161*t161*t162
-                t179 = Ra_xy*t77 + Ra_yy*t79 + Ra_zy*t81
-                t180 = 2*t84
-                t181 = 2*t87
-                t182 = 2*t90
-                t183 = -t107
-                t184 = n_x*t183 + n_z*t105
-                t185 = -t111
-                t186 = n_x*t185 + n_z*t109
-                t187 = -t115
-                t188 = n_x*t187 + n_z*t113
-                t189 = m_x*t184 + m_y*t186 + m_z*t188
-                t190 = 2*t189
-                t191 = n_x*t184 + n_y*t186 + n_z*t188
-                t192 = t132*t191
-                t193 = 4*t189
-                t194 = t159*t191
-                t195 = -t136
-                t196 = n_x*t195 + n_z*t134
-                t197 = -t141
-                t198 = n_x*t197 + n_z*t139
-                t199 = -t146
-                t200 = n_x*t199 + n_z*t144
-                t201 = t121*(m_x*t196 + m_y*t198 + m_z*t200)
-                t202 = t130*(n_x*t196 + n_y*t198 + n_z*t200)
-                t203 = t175*t191
-                t204 = Ra_xz*t77 + Ra_yz*t79 + Ra_zz*t81
-                t205 = -t105
-                t206 = n_x*t106 + n_y*t205
-                t207 = -t109
-                t208 = n_x*t110 + n_y*t207
-                t209 = -t113
-                t210 = n_x*t114 + n_y*t209
-                t211 = m_x*t206 + m_y*t208 + m_z*t210
-                t212 = 2*t211
-                t213 = n_x*t206 + n_y*t208 + n_z*t210
-                t214 = t132*t213
-                t215 = 4*t211
-                t216 = t159*t213
-                t217 = -t134
-                t218 = n_x*t135 + n_y*t217
-                t219 = -t139
-                t220 = n_x*t140 + n_y*t219
-                t221 = -t144
-                t222 = n_x*t145 + n_y*t221
-                t223 = t121*(m_x*t218 + m_y*t220 + m_z*t222)
-                t224 = t130*(n_x*t218 + n_y*t220 + n_z*t222)
-                t225 = t175*t213
-                t226 = -Rb_xx*t77 - Rb_yx*t79 - Rb_zx*t81
-                t227 = n_x*t207 + n_y*t124 + n_z*t185
-                t228 = m_y*t116 + m_z*t227
-                t229 = 2*t228
-                t230 = n_y*t116 + n_z*t227
-                t231 = t132*t230
-                t232 = 4*t228
-                t233 = t159*t230
-                t234 = n_x*t219 + n_y*t166 + n_z*t197
-                t235 = t121*(m_y*t147 + m_z*t234)
-                t236 = t130*(n_y*t147 + n_z*t234)
-                t237 = t175*t230
-                t238 = -Rb_xy*t77 - Rb_yy*t79 - Rb_zy*t81
-                t239 = n_x*t209 + n_y*t126 + n_z*t187
-                t240 = m_x*t239 + m_z*t108
-                t241 = 2*t240
-                t242 = n_x*t239 + n_z*t108
-                t243 = t132*t242
-                t244 = 4*t240
-                t245 = t159*t242
-                t246 = n_x*t221 + n_y*t168 + n_z*t199
-                t247 = t121*(m_x*t246 + m_z*t137)
-                t248 = t130*(n_x*t246 + n_z*t137)
-                t249 = t175*t242
-                t250 = -Rb_xz*t77 - Rb_yz*t79 - Rb_zz*t81
-                t251 = n_x*t205 + n_y*t122 + n_z*t183
-                t252 = m_x*t112 + m_y*t251
-                t253 = 2*t252
-                t254 = n_x*t112 + n_y*t251
-                t255 = t132*t254
-                t256 = 4*t252
-                t257 = t159*t254
-                t258 = n_x*t217 + n_y*t164 + n_z*t195
-                t259 = t121*(m_x*t142 + m_y*t258)
-                t260 = t130*(n_x*t142 + n_y*t258)
-                t261 = t175*t254
-                J[0 + column] = (c_stiffness*(t104*t73 + t157*(t121*t129 + t130*t133) +
-                    t163*(t121*t158 + t130*t160) + t177*(t129*t154 + t129*t174 + t132*t171 +
-                    t133*t172 + 2*t170 + 2*t176) + t178*(t154*t158 + t158*t174 + t159*t171 +
-                    t160*t172 + 4*t170 + 4*t176) + t94*(t68*t84 + t70*t87 + t72*t90 + t76*t77 +
-                    t78*t79 + t80*t81)) + t73*t75)
-                J[6 + column] = (c_stiffness*(t104*t179 + t157*(t121*t190 + t130*t192) +
-                    t163*(t121*t193 + t130*t194) + t177*(t132*t202 + t154*t190 + t172*t192 +
-                    t174*t190 + 2*t201 + 2*t203) + t178*(t154*t193 + t159*t202 + t172*t194 +
-                    t174*t193 + 4*t201 + 4*t203) + t94*(Ra_xy*t180 + Ra_yy*t181 + Ra_zy*t182 +
-                    t77*t83 + t79*t86 + t81*t89)) + t179*t75)
-                J[12 + column] = (c_stiffness*(t104*t204 + t157*(t121*t212 + t130*t214) +
-                    t163*(t121*t215 + t130*t216) + t177*(t132*t224 + t154*t212 + t172*t214 +
-                    t174*t212 + 2*t223 + 2*t225) + t178*(t154*t215 + t159*t224 + t172*t216 +
-                    t174*t215 + 4*t223 + 4*t225) + t94*(Ra_xz*t180 + Ra_yz*t181 + Ra_zz*t182 +
-                    t77*t82 + t79*t85 + t81*t88)) + t204*t75)
-                J[18 + column] = (c_stiffness*(t104*t226 + t157*(t121*t229 + t130*t231) +
-                    t163*(t121*t232 + t130*t233) + t177*(t132*t236 + t154*t229 + t172*t231 +
-                    t174*t229 + 2*t235 + 2*t237) + t178*(t154*t232 + t159*t236 + t172*t233 +
-                    t174*t232 + 4*t235 + 4*t237) + t94*(-Rb_xx*t180 - Rb_yx*t181 - Rb_zx*t182 -
-                    t101*t81 - t77*t95 - t79*t98)) + t226*t75)
-                J[24 + column] = (c_stiffness*(t104*t238 + t157*(t121*t241 + t130*t243) +
-                    t163*(t121*t244 + t130*t245) + t177*(t132*t248 + t154*t241 + t172*t243 +
-                    t174*t241 + 2*t247 + 2*t249) + t178*(t154*t244 + t159*t248 + t172*t245 +
-                    t174*t244 + 4*t247 + 4*t249) + t94*(-Rb_xy*t180 - Rb_yy*t181 - Rb_zy*t182 -
-                    t102*t81 - t77*t96 - t79*t99)) + t238*t75)
-                J[30 + column] = (c_stiffness*(t104*t250 + t157*(t121*t253 + t130*t255) +
-                    t163*(t121*t256 + t130*t257) + t177*(t132*t260 + t154*t253 + t172*t255 +
-                    t174*t253 + 2*t259 + 2*t261) + t178*(t154*t256 + t159*t260 + t172*t257 +
-                    t174*t256 + 4*t259 + 4*t261) + t94*(-Rb_xz*t180 - Rb_yz*t181 - Rb_zz*t182 -
-                    t100*t79 - t103*t81 - t77*t97)) + t250*t75)
+                t95 = t75*(t68*t92 + t70*t93 + t72*t94)
+                t96 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t97 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t98 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t99 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t100 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t101 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t102 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t103 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t104 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t105 = (t75*(t68*(Oma_x*t77 + Oma_y*t84 + Oma_z*t83 - Omb_x*t96 - Omb_y*t97 -
+                    Omb_z*t98) + t70*(Oma_x*t79 + Oma_y*t87 + Oma_z*t86 - Omb_x*t99 - Omb_y*t100 -
+                    Omb_z*t101) + t72*(Oma_x*t81 + Oma_y*t90 + Oma_z*t89 - Omb_x*t102 - Omb_y*t103
+                    - Omb_z*t104) + t85*t92 + t88*t93 + t91*t94))
+                t106 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t107 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t108 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t109 = n_x*t106 + n_y*t107 + n_z*t108
+                t110 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t111 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t112 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t113 = n_x*t110 + n_y*t111 + n_z*t112
+                t114 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t115 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t116 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t117 = n_x*t114 + n_y*t115 + n_z*t116
+                t118 = n_x*t109 + n_y*t113 + n_z*t117
+                t119 = m_x*t109 + m_y*t113 + m_z*t117
+                t120 = t118*t118 + t119*t119
+                t121 = 1/t120
+                t122 = t118*t121
+                t123 = -t107
+                t124 = n_y*t108 + n_z*t123
+                t125 = -t111
+                t126 = n_y*t112 + n_z*t125
+                t127 = -t115
+                t128 = n_y*t116 + n_z*t127
+                t129 = m_x*t124 + m_y*t126 + m_z*t128
+                t130 = 2*t129
+                t131 = -t119
+                t132 = n_x*t124 + n_y*t126 + n_z*t128
+                t133 = 2*t121
+                t134 = t132*t133
+                t135 = Ra_xx*t96 + Ra_yx*t99 + Ra_zx*t102 + Rb_xx*t77 + Rb_yx*t79 + Rb_zx*t81
+                t136 = Ra_xy*t96 + Ra_yy*t99 + Ra_zy*t102 + Rb_xx*t84 + Rb_yx*t87 + Rb_zx*t90
+                t137 = Ra_xz*t96 + Ra_yz*t99 + Ra_zz*t102 + Rb_xx*t83 + Rb_yx*t86 + Rb_zx*t89
+                t138 = n_x*t135 + n_y*t136 + n_z*t137
+                t139 = m_x*t138
+                t140 = Ra_xx*t97 + Ra_yx*t100 + Ra_zx*t103 + Rb_xy*t77 + Rb_yy*t79 + Rb_zy*t81
+                t141 = Ra_xy*t97 + Ra_yy*t100 + Ra_zy*t103 + Rb_xy*t84 + Rb_yy*t87 + Rb_zy*t90
+                t142 = Ra_xz*t97 + Ra_yz*t100 + Ra_zz*t103 + Rb_xy*t83 + Rb_yy*t86 + Rb_zy*t89
+                t143 = n_x*t140 + n_y*t141 + n_z*t142
+                t144 = m_y*t143
+                t145 = Ra_xx*t98 + Ra_yx*t101 + Ra_zx*t104 + Rb_xz*t77 + Rb_yz*t79 + Rb_zz*t81
+                t146 = Ra_xy*t98 + Ra_yy*t101 + Ra_zy*t104 + Rb_xz*t84 + Rb_yz*t87 + Rb_zz*t90
+                t147 = Ra_xz*t98 + Ra_yz*t101 + Ra_zz*t104 + Rb_xz*t83 + Rb_yz*t86 + Rb_zz*t89
+                t148 = n_x*t145 + n_y*t146 + n_z*t147
+                t149 = m_z*t148
+                t150 = t139 + t144 + t149
+                t151 = t122*t150
+                t152 = n_x*t138
+                t153 = n_y*t143
+                t154 = n_z*t148
+                t155 = t121*(t152 + t153 + t154)
+                t156 = t131*t155
+                t157 = (0.5)*k
+                t158 = t157*(t151 + t156)
+                t159 = 4*t129
+                t160 = 4*t121
+                t161 = t132*t160
+                t162 = -rest + near_angle(atan2(t119, t118), kept_angle)
+                t163 = (0.25)*k3
+                t164 = t162*t162*t163*(3*t151 + 3*t156)
+                t165 = -t136
+                t166 = n_y*t137 + n_z*t165
+                t167 = -t141
+                t168 = n_y*t142 + n_z*t167
+                t169 = -t146
+                t170 = n_y*t147 + n_z*t169
+                t171 = t122*(m_x*t166 + m_y*t168 + m_z*t170)
+                t172 = t131*(n_x*t166 + n_y*t168 + n_z*t170)
+                t173 = -t150
+                t174 = ((-t118*(2*t152 + 2*t153 + 2*t154) - t119*(2*t139 + 2*t144 +
+                    2*t149))/(t120*t120))
+                t175 = t118*t174
+                t176 = t131*t174
+                t177 = t132*t176
+                t178 = t157*t162
+                t179 = t162*t162*t162*t163
+                t180 = Ra_xy*t78 + Ra_yy*t80 + Ra_zy*t82
+                t181 = 2*t85
+                t182 = 2*t88
+                t183 = 2*t91
+                t184 = -t108
+                t185 = n_x*t184 + n_z*t106
+                t186 = -t112
+                t187 = n_x*t186 + n_z*t110
+                t188 = -t116
+                t189 = n_x*t188 + n_z*t114
+                t190 = m_x*t185 + m_y*t187 + m_z*t189
+                t191 = 2*t190
+                t192 = n_x*t185 + n_y*t187 + n_z*t189
+                t193 = t133*t192
+                t194 = 4*t190
+                t195 = t160*t192
+                t196 = -t137
+                t197 = n_x*t196 + n_z*t135
+                t198 = -t142
+                t199 = n_x*t198 + n_z*t140
+                t200 = -t147
+                t201 = n_x*t200 + n_z*t145
+                t202 = t122*(m_x*t197 + m_y*t199 + m_z*t201)
+                t203 = t131*(n_x*t197 + n_y*t199 + n_z*t201)
+                t204 = t176*t192
+                t205 = Ra_xz*t78 + Ra_yz*t80 + Ra_zz*t82
+                t206 = -t106
+                t207 = n_x*t107 + n_y*t206
+                t208 = -t110
+                t209 = n_x*t111 + n_y*t208
+                t210 = -t114
+                t211 = n_x*t115 + n_y*t210
+                t212 = m_x*t207 + m_y*t209 + m_z*t211
+                t213 = 2*t212
+                t214 = n_x*t207 + n_y*t209 + n_z*t211
+                t215 = t133*t214
+                t216 = 4*t212
+                t217 = t160*t214
+                t218 = -t135
+                t219 = n_x*t136 + n_y*t218
+                t220 = -t140
+                t221 = n_x*t141 + n_y*t220
+                t222 = -t145
+                t223 = n_x*t146 + n_y*t222
+                t224 = t122*(m_x*t219 + m_y*t221 + m_z*t223)
+                t225 = t131*(n_x*t219 + n_y*t221 + n_z*t223)
+                t226 = t176*t214
+                t227 = -Rb_xx*t78 - Rb_yx*t80 - Rb_zx*t82
+                t228 = n_x*t208 + n_y*t125 + n_z*t186
+                t229 = m_y*t117 + m_z*t228
+                t230 = 2*t229
+                t231 = n_y*t117 + n_z*t228
+                t232 = t133*t231
+                t233 = 4*t229
+                t234 = t160*t231
+                t235 = n_x*t220 + n_y*t167 + n_z*t198
+                t236 = t122*(m_y*t148 + m_z*t235)
+                t237 = t131*(n_y*t148 + n_z*t235)
+                t238 = t176*t231
+                t239 = -Rb_xy*t78 - Rb_yy*t80 - Rb_zy*t82
+                t240 = n_x*t210 + n_y*t127 + n_z*t188
+                t241 = m_x*t240 + m_z*t109
+                t242 = 2*t241
+                t243 = n_x*t240 + n_z*t109
+                t244 = t133*t243
+                t245 = 4*t241
+                t246 = t160*t243
+                t247 = n_x*t222 + n_y*t169 + n_z*t200
+                t248 = t122*(m_x*t247 + m_z*t138)
+                t249 = t131*(n_x*t247 + n_z*t138)
+                t250 = t176*t243
+                t251 = -Rb_xz*t78 - Rb_yz*t80 - Rb_zz*t82
+                t252 = n_x*t206 + n_y*t123 + n_z*t184
+                t253 = m_x*t113 + m_y*t252
+                t254 = 2*t253
+                t255 = n_x*t113 + n_y*t252
+                t256 = t133*t255
+                t257 = 4*t253
+                t258 = t160*t255
+                t259 = n_x*t218 + n_y*t165 + n_z*t196
+                t260 = t122*(m_x*t143 + m_y*t259)
+                t261 = t131*(n_x*t143 + n_y*t259)
+                t262 = t176*t255
+                J[0 + column] = (c_stiffness*(t105*t74 + t158*(t122*t130 + t131*t134) +
+                    t164*(t122*t159 + t131*t161) + t178*(t130*t155 + t130*t175 + t133*t172 +
+                    t134*t173 + 2*t171 + 2*t177) + t179*(t155*t159 + t159*t175 + t160*t172 +
+                    t161*t173 + 4*t171 + 4*t177) + t95*(t69*t85 + t71*t88 + t73*t91 + t77*t78 +
+                    t79*t80 + t81*t82)) + t74*t76)
+                J[6 + column] = (c_stiffness*(t105*t180 + t158*(t122*t191 + t131*t193) +
+                    t164*(t122*t194 + t131*t195) + t178*(t133*t203 + t155*t191 + t173*t193 +
+                    t175*t191 + 2*t202 + 2*t204) + t179*(t155*t194 + t160*t203 + t173*t195 +
+                    t175*t194 + 4*t202 + 4*t204) + t95*(Ra_xy*t181 + Ra_yy*t182 + Ra_zy*t183 +
+                    t78*t84 + t80*t87 + t82*t90)) + t180*t76)
+                J[12 + column] = (c_stiffness*(t105*t205 + t158*(t122*t213 + t131*t215) +
+                    t164*(t122*t216 + t131*t217) + t178*(t133*t225 + t155*t213 + t173*t215 +
+                    t175*t213 + 2*t224 + 2*t226) + t179*(t155*t216 + t160*t225 + t173*t217 +
+                    t175*t216 + 4*t224 + 4*t226) + t95*(Ra_xz*t181 + Ra_yz*t182 + Ra_zz*t183 +
+                    t78*t83 + t80*t86 + t82*t89)) + t205*t76)
+                J[18 + column] = (c_stiffness*(t105*t227 + t158*(t122*t230 + t131*t232) +
+                    t164*(t122*t233 + t131*t234) + t178*(t133*t237 + t155*t230 + t173*t232 +
+                    t175*t230 + 2*t236 + 2*t238) + t179*(t155*t233 + t160*t237 + t173*t234 +
+                    t175*t233 + 4*t236 + 4*t238) + t95*(-Rb_xx*t181 - Rb_yx*t182 - Rb_zx*t183 -
+                    t102*t82 - t78*t96 - t80*t99)) + t227*t76)
+                J[24 + column] = (c_stiffness*(t105*t239 + t158*(t122*t242 + t131*t244) +
+                    t164*(t122*t245 + t131*t246) + t178*(t133*t249 + t155*t242 + t173*t244 +
+                    t175*t242 + 2*t248 + 2*t250) + t179*(t155*t245 + t160*t249 + t173*t246 +
+                    t175*t245 + 4*t248 + 4*t250) + t95*(-Rb_xy*t181 - Rb_yy*t182 - Rb_zy*t183 -
+                    t100*t80 - t103*t82 - t78*t97)) + t239*t76)
+                J[30 + column] = (c_stiffness*(t105*t251 + t158*(t122*t254 + t131*t256) +
+                    t164*(t122*t257 + t131*t258) + t178*(t133*t261 + t155*t254 + t173*t256 +
+                    t175*t254 + 2*t260 + 2*t262) + t179*(t155*t257 + t160*t261 + t173*t258 +
+                    t175*t257 + 4*t260 + 4*t262) + t95*(-Rb_xz*t181 - Rb_yz*t182 - Rb_zz*t183 -
+                    t101*t80 - t104*t82 - t78*t98)) + t251*t76)
 
     return OK
