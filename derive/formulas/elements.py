@@ -20,6 +20,17 @@ from sebody.derive.symbolic.steps import cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 AMPLITUDE = sp.symbols("amplitude amplitude_rate amplitude_acceleration")
+KEPT_ANGLE = sp.Symbol("kept_angle")    # of the last accepted step
+
+
+class near_angle(sp.Function):  # noqa: N801  (printed as the function of the runtime)
+    """An angle plus as many whole turns as bring it nearest to another one."""
+
+    nargs = 2
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Whole turns do not change."""
+        return sp.Integer(argindex == 1)
 
 
 class Block(NamedTuple):
@@ -64,6 +75,7 @@ class Element(NamedTuple):
     second: tuple[sp.Expr, ...]         # and twice
     sums: dict[str, sp.Expr]            # what it adds to the energies, by name
     power: sp.Expr | None               # of loads, dampers and drives on the system
+    kept: sp.Expr | None = None         # angle that is `KEPT_ANGLE` in the next step
     linear: tuple[sp.Expr, ...] = ()    # a column of the matrix
     on_multipliers: sp.Matrix = sp.zeros(0, 0)  # derivative of the force by the multipliers
 
@@ -134,8 +146,11 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
             constants: Sequence[Constant] = (), *, constraints: Sequence[sp.Expr] = (),
             kinetic: sp.Expr = sp.S.Zero, strain: sp.Expr = sp.S.Zero,
             potential: sp.Expr = sp.S.Zero, dissipation: sp.Expr = sp.S.Zero,
-            load: sp.Expr = sp.S.Zero) -> Element:
-    """Derive an element from its scalars; `load` is virtual work, linear in the directions."""
+            load: sp.Expr = sp.S.Zero, kept: sp.Expr | None = None) -> Element:
+    """Derive an element from its scalars; `load` is virtual work, linear in the directions.
+
+    An element may keep an angle from step to step, to count its turns: see `near_angle`.
+    """
     lam = sp.symbols(f"lam_1:{len(constraints) + 1}")
     vary, time = varied(blocks), in_time(blocks)
     work = sum(f * differential(phi, vary) for f, phi in zip(lam, constraints, strict=True))
@@ -149,7 +164,7 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
         tuple(blocks), lam, (*force, *constraints), tuple(velocity),
         tuple(differential(v, time) for v in velocity),
         _sums(blocks, kinetic, strain, potential),
-        _power(blocks, lam, constraints, dissipation, load))
+        _power(blocks, lam, constraints, dissipation, load), kept)
 
 
 def linearized(given: Element) -> Element:

@@ -2,11 +2,11 @@
 
 import sympy as sp
 
-from sebody.derive.formulas.elements import AMPLITUDE, Block, Constant, Element
+from sebody.derive.formulas.elements import AMPLITUDE, KEPT_ANGLE, Block, Constant, Element
 from sebody.derive.kernels.resources import Resources
 from sebody.derive.printing import parts, templates
 from sebody.derive.printing.expressions import code, indented, offset
-from sebody.derive.printing.imports import import_lines
+from sebody.derive.printing.imports import homes, import_lines
 from sebody.kernels.layout import Part
 from sebody.kernels.sources import room_hash
 
@@ -20,13 +20,16 @@ COEFFICIENTS = {"c_mass": "C_MASS", "c_damping": "C_DAMPING", "c_stiffness": "C_
 def element_text(element: Element, uses: Resources) -> str:
     """The file of an element's kernel."""
     width = len(element.residual)
-    residual, count = _assign(element.residual, [f"g[{i}] = " for i in range(width)])
+    written = {f"g[{i}] = ": force for i, force in enumerate(element.residual)}
+    if element.kept is not None:
+        written["frames[index[first + AT_FRAME]] = "] = element.kept
+    residual, count = _assign(written.values(), written)
     column, _ = _assign(element.linear, [f"J[{i * width} + column] = " for i in range(width)],
                         count)
-    names = _names(element)
-    imports = import_lines(names)
-    if uses.calls:
-        imports = f"from math import {', '.join(uses.calls)}\n\n{imports}"
+    calls = [call for call in uses.calls if call not in homes()]
+    imports = import_lines(_names(element) | set(uses.calls) - set(calls))
+    if calls:
+        imports = f"from math import {', '.join(calls)}\n\n{imports}"
     return templates.ELEMENT.format(
         **_head(element), imports=imports, work_rows=2,
         constant=templates.CONSTANT * bool(element.constants),
@@ -49,7 +52,8 @@ def _head(element: Element) -> dict[str, object]:
             "positions": sum(not b.rotational for b in element.blocks),
             "rotations": _matrices(element), "first_rotation": _first_rotation(element),
             "constants": parts.table(map(_part, element.constants)),
-            "inertial": "kinetic" in element.sums, "power": element.power is not None,
+            "memory": int(element.kept is not None), "inertial": "kinetic" in element.sums,
+            "power": element.power is not None,
             "driven": bool(element.multipliers) and element.power is not None}
 
 
@@ -58,6 +62,7 @@ def _names(element: Element) -> set[str]:
     names = {*templates.ELEMENT_NAMES, *(SUMS[name][0] for name in element.sums)}
     names |= {COEFFICIENTS[name] for name in _used_coefficients(element)}
     names |= {"VELOCITY", "ACCELERATION"} if element.multipliers else set()
+    names |= {"AT_FRAME"} if element.kept is not None else set()
     names |= {"ENERGY"} if element.sums or element.power is not None else set()
     names |= {"AT_PORT", "POWERS"} if element.power is not None else set()
     names |= {"AT_CONSTANTS", "Part"} if element.constants else set()
@@ -140,6 +145,7 @@ def _loads(element: Element) -> list[str]:
         matrix += block.rotational
     lines += [f"{s} = q[unknowns[{element.coordinates + k}]]"
               for k, s in enumerate(element.multipliers)]
+    lines += [f"{KEPT_ANGLE} = references[index[first + AT_FRAME]]"] * (KEPT_ANGLE in used)
     return lines + [f"{s} = loads[{offset('3*index[first + AT_PORT]', k)}]"
                     for k, s in enumerate(AMPLITUDE) if s in used]
 

@@ -28,6 +28,10 @@ class _CodePrinter(PythonCodePrinter):
         text = self._print(sp.Mul(*[1 / f for f in below]))
         return f"{self.parenthesize(above, precedence(expr))}/({text})"
 
+    def _print_near_angle(self, expr):
+        """A function of the runtime."""
+        return f"near_angle({self._print(expr.args[0])}, {self._print(expr.args[1])})"
+
     def _print_Rational(self, expr):
         return repr(float(expr))
 

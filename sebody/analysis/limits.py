@@ -206,7 +206,7 @@ def _spread(body: Superelement) -> float:
 def _motion(planar: bool, group: Group, rows: NDArray, parts: dict) -> tuple[NDArray, NDArray]:
     """Largest local rotations, (b,), and spins of the frames in their own axes, (n, b, 3 or 1)."""
     n, shape = len(rows), group.places.shape
-    frames = rows[:, parts["frames"]].reshape(n, -1, 3, 3)[:, group.frames]
+    frames = _frames(group, rows, parts)
     v = rows[:, parts["v"]]
     if planar:
         angles = np.arctan2(frames[..., 1, 0], frames[..., 0, 0])
@@ -222,14 +222,20 @@ def _motion(planar: bool, group: Group, rows: NDArray, parts: dict) -> tuple[NDA
     return local.max(axis=(0, 2)), spins
 
 
+def _frames(group: Group | Placed, rows: NDArray, parts: dict) -> NDArray:
+    """Frames of a group's bodies, (n, b, 3, 3)."""
+    at = parts["frames"].start + 9 * group.frames[:, None] + np.arange(9)
+    return rows[:, at].reshape(len(rows), len(group.frames), 3, 3)
+
+
 def _spins_of_positions(planar: bool, group: Placed, rows: NDArray, parts: dict) -> NDArray:
     """Spins of frames of best fit in their own axes, (n, b, 3 or 1).
 
     Of a body that moves as the nodes do, by the moment of their velocities about their mean.
     """
-    n, d = len(rows), 2 if planar else 3
+    d = 2 if planar else 3
     at = group.places[..., None] + np.arange(d)
-    frames = rows[:, parts["frames"]].reshape(n, -1, 3, 3)[:, group.frames, :d, :d]
+    frames = _frames(group, rows, parts)[..., :d, :d]
     arms, rates = ((x - x.mean(axis=2, keepdims=True)) @ frames
                    for x in (rows[:, parts[name]][:, at] for name in ("q", "v")))
     if planar:

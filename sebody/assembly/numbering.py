@@ -31,6 +31,7 @@ class Numbering(NamedTuple):
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
+    memories: dict[int, int] = {}       # id(element) -> first number it keeps, in State.frames
 
 
 def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
@@ -43,6 +44,11 @@ def stretch(numbering: Numbering, triplet: Triplet) -> slice:
     """Coordinates of a triplet, as a slice."""
     first = numbering.triplets[id(triplet)]
     return slice(first, first + triplet.start.size)
+
+
+def kept_frames(numbering: Numbering) -> int:
+    """Length of `State.frames`: frames of the superelements, and one number of each element."""
+    return 9 * len(numbering.modes) + len(numbering.memories)
 
 
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
@@ -90,7 +96,8 @@ def number(model: Mechanism) -> Numbering:
     matrices = [] if model.planar else [t for t in used if t.rotational]
     rotations = {id(t): k for k, t in enumerate(matrices)}
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
-                     order.names, dependent, *number_ports(model, order.at), np.array(groups))
+                     order.names, dependent, *number_ports(model, order.at), np.array(groups),
+                     memories=_memories(model))
 
 
 class _Order:
@@ -123,6 +130,12 @@ class _Order:
         self.multipliers[id(constraint)] = len(self.names)
         self.names.extend(f"multiplier {j} of {constraint.name}"
                           for j in range(constraint.multipliers))
+
+
+def _memories(model: Mechanism) -> dict[int, int]:
+    """Places, behind the frames of all superelements, of what elements keep."""
+    return {id(element): 9 * len(model.bodies) + k for k, element in enumerate(
+        load for load in model.loads if load.keeps_angle)}
 
 
 def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering
+from sebody.assembly.numbering import Numbering, kept_frames
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.layout import ENERGIES, RECORD
@@ -105,4 +105,4 @@ EVALUATED = "counters", "energies", "powers", "constraint_residuals"
 def record_counts(numbering: Numbering) -> dict[str, int]:
     """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
     return {"ports": len(numbering.histories), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "bodies": len(numbering.modes)}
+            "rotations": len(numbering.rotations), "kept": kept_frames(numbering)}
