@@ -35,17 +35,9 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
                   stiffness=stiffness, constraint=stiffness)
 
 
-def rotating(run: Simulation | Result, spin: Spin,
-             resistance: float = 0.0) -> tuple[csc_matrix, NDArray]:
-    """Tangent stiffness in axes that rotate with the spin, and the residual.
-
-    With a `resistance` so many times the mass times the squared spin is added.
-    """
-    if spin.rotates:
-        mass, _, stiffness = _turning(run, spin)
-        stiffness = stiffness + resistance * spin.squared * mass
-    else:
-        stiffness = derivative(run, 0.0, 0.0, 1.0)
+def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
+    """Tangent stiffness in axes that rotate with the spin, and the residual."""
+    stiffness = _turning(run, spin)[2] if spin.rotates else derivative(run, 0.0, 0.0, 1.0)
     residual = run.state.residual.copy()
     to_body_axes(run.system, run.state.frames, residual, False)
     return csc_matrix(stiffness), residual[:run.numbering.free]
