@@ -143,11 +143,12 @@ def _solution(run: Simulation, solver: Scaled, residual: NDArray) -> NDArray:
     if solver.regular:
         return solver.solve(residual)
     answer, left = solver.least(residual)
-    sums = np.zeros(run.numbering.total)
+    n, sums = len(residual), np.zeros(run.numbering.total)
     np.add.at(sums, run.system.g_unknown, np.abs(run.state.g))
     forces = max(PUSH * np.abs(solver.scale * residual).max(),
-                 ROUNDED * np.abs(solver.scale * sums[:len(residual)]).max())
-    return np.full(len(residual), np.nan) if left.max() > forces else answer
+                 ROUNDED * np.abs(solver.scale * sums[:n]).max())
+    places = ROUNDED * run.system.magnitude[:n] / solver.scale      # by rounding of unknowns
+    return np.full(n, np.nan) if np.any(left > np.maximum(forces, places)) else answer
 
 
 def _springs(run: Simulation, rate: float) -> Springs:
