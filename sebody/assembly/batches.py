@@ -205,9 +205,13 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     if not option.field:
         return values | carried_constants(reduced)
     counts = counts_of(body)
-    conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts, values)
-    return values | floating_constants(body.invariants.about(origin), reduced.stiffness,
-                                       conditions, counts, reduced.damping, ROUNDING)
+    frame = FRAMES[load(body.kernel).FRAME]
+    invariants = body.invariants.about(origin)
+    if not frame.needs_rotations:
+        invariants = invariants.rigidly_followed
+    return values | floating_constants(invariants, reduced.stiffness,
+                                       frame_conditions(frame, counts, values), counts,
+                                       reduced.damping, ROUNDING)
 
 
 def frame_constants(body: Superelement) -> dict[str, ArrayLike]:
