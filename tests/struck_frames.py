@@ -13,7 +13,14 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
-from sebody import LimitWarning, Model, SimulationError, generalized_alpha, simulate
+from sebody import (
+    InputError,
+    LimitWarning,
+    Model,
+    SimulationError,
+    generalized_alpha,
+    simulate,
+)
 from sebody.fem import Section, frame
 from sebody.reduction import craig_bampton
 
@@ -110,9 +117,7 @@ def at_random(seed: int) -> Struck:
     points, members = _grown(random, count)
     depth = random.uniform(0.004, 0.012)
     width = depth * random.uniform(1.0, 2.0)
-    section = SECTION._replace(
-        area=width * depth, inertia_y=width * depth**3 / 12, inertia_z=depth * width**3 / 12,
-        torsion=0.2 * width * depth**3) if hasattr(SECTION, "_replace") else Section(
+    section = Section(
         area=width * depth, inertia_y=width * depth**3 / 12, inertia_z=depth * width**3 / 12,
         torsion=0.2 * width * depth**3, youngs_modulus=7e10, poisson_ratio=0.3, density=2700.0)
     ends = [k for k in range(len(points)) if sum(k in member for member in members) == 1]
@@ -138,7 +143,8 @@ def _grown(random: np.random.Generator, count: int) -> tuple[NDArray, list[tuple
             members.append((root, k))
         return np.array(points), members
     angles = np.arange(count) * 2 * np.pi / count
-    points = np.column_stack([np.cos(angles), 0.8 * np.sin(angles), 0.1 * random.normal(size=count)])
+    height = 0.1 * random.normal(size=count)
+    points = np.column_stack([np.cos(angles), 0.8 * np.sin(angles), height])
     return 0.7 * points, [(k, (k + 1) % count) for k in range(count)]
 
 
@@ -167,7 +173,6 @@ class Energies(NamedTuple):
     loss: float         # at the end
     end: float          # time reached
     steps: int
-    cuts: int
     warned: bool
 
 
@@ -180,15 +185,16 @@ def energies(model: Model, step: float, vibration: float, t_end: float = 1.0,
             result = simulate(model, step, t_end, generalized_alpha(rho))
         except SimulationError as error:
             result = error.result
-            if result is None:
-                raise
     after = result.t > OVER - step / 2
-    energy = (result["energy.kinetic"] + result["energy.strain"])[after]
-    if len(energy) < 2:
-        return Energies(np.inf, 0.0, float(result.t[-1]), result.steps, result.cuts, True)
+    try:
+        energy = (result["energy.kinetic"] + result["energy.strain"])[after]
+    except InputError:      # the last state of a run that failed has none
+        energy = np.array([0.0, np.inf])
+    if not len(energy):     # stopped during the blow
+        energy = np.array([0.0, np.inf])
     return Energies(float(energy.max() - energy[0]) / vibration,
                     float(energy[0] - energy[-1]) / vibration, float(result.t[-1]), result.steps,
-                    result.cuts, bool(told) or bool(result.failure))
+                    bool(told) or bool(result.failure))
 
 
 def vibration(struck: Struck, step: float = 1e-4) -> float:

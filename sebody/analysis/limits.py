@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.analysis.quality import remarks
 from sebody.analysis.softening import cautious_limit, divergence, first_frequency, reach
-from sebody.analysis.thresholds import FAST, FLAT, LINEAR
+from sebody.analysis.thresholds import BENT, FAST, FLAT, LINEAR, OFF_LINE
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
@@ -78,6 +78,13 @@ class Watch:
                 name = group.bodies[k].name
                 self.say(f"turn {name}", f"local rotation {local[k]:.2g} rad of body {name!r} "
                          f"exceeds the linear range, {LINEAR} rad: divide it")
+            for k in np.flatnonzero((local > BENT) & group.off_line):
+                name = group.bodies[k].name
+                self.say(f"bent {name}", f"local rotation {local[k]:.2g} rad of body {name!r}, "
+                         "whose frame follows the rotations of its nodes while its mass is off "
+                         f"their line (limit {BENT} rad): its inertia depends too much on how it "
+                         "is bent, and energy may grow; keep the position of a node off the line, "
+                         "such as a corner, or divide the body")
         for group, spins in found:
             speeds = np.linalg.norm(spins, axis=2)
             for k in np.flatnonzero(speeds.max(axis=0) > group.least):
@@ -114,6 +121,7 @@ class Group(NamedTuple):
     rotations: NDArray      # (b, m) numbers of the rotation matrices, in space
     weights: NDArray        # (b, m) frame weights of the rotations
     least: NDArray          # (b,) spins below which nothing is compared
+    off_line: NDArray       # (b,) whether a frame on rotations sees little of the mass
 
 
 class Placed(NamedTuple):
@@ -142,11 +150,27 @@ def _grouped(model: Mechanism, numbering: Numbering) -> tuple[list[Group], list[
             placed.setdefault(len(places), []).append((body, k, places, least))
             least = np.inf
         if parts:
-            rotated.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True), least))
+            rotated.setdefault(len(parts), []).append(
+                (body, k, *zip(*parts, strict=True), least, _off_line(body)))
     return ([Group(list(bodies), *map(np.array, columns))
              for bodies, *columns in (zip(*rows, strict=True) for rows in rotated.values())],
             [Placed(list(bodies), *map(np.array, columns))
              for bodies, *columns in (zip(*rows, strict=True) for rows in placed.values())])
+
+
+def _off_line(body: Superelement) -> bool:
+    """Whether a body of option C has its frame on rotations, and its mass off the nodes' line."""
+    if body.inertia != "c" or body.frame == "positions" or len(body.positions) < 2:
+        return False
+    reduced = body.body
+    points = reduced.coordinates[list(reduced.position_nodes)]
+    middle = points.mean(axis=0)
+    _, extents, axes = np.linalg.svd(points - middle)
+    if reduced.planar:          # what is known of the mass off a line is its centre
+        off = abs(axes[1] @ (reduced.centre_of_mass - middle))
+    else:
+        off = np.sqrt(axes[0] @ reduced.invariants.about(middle).J0 @ axes[0] / reduced.total_mass)
+    return bool(off > OFF_LINE * np.ptp((points - middle) @ axes[0]))
 
 
 def spin_limit(body: Superelement, axis: ArrayLike | None) -> float:
