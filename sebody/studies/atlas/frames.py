@@ -24,7 +24,7 @@ def struck_frame() -> Finding:
     """Four arms in space as one body, whose frame follows rotations of the tips, or positions."""
     finding = Finding(
         "light nodes and the frame",
-        "a struck frame: only where the floating frame follows massive motion is energy kept",
+        "a struck frame keeps energy if its axes follow motion with mass",
         "Tips have little inertia of rotation. A floating frame that turns with them moves the "
         "whole bent body for the exact kinetic energy, so the inertia of these motions changes by "
         "a multiple at 0.1 rad, and steps that do not resolve them feed energy. Positions of tips "
