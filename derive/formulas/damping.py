@@ -5,14 +5,15 @@ rigid motion has no such rates, however fast, and is not damped. (The ``ydot`` o
 options is another thing: velocities, not rates of deformation.)
 """
 
+from sebody.derive.form.steps import Damping, Product, Shift, Stage, Step
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.frames.frame import origin_stage
 from sebody.derive.formulas.kinematics import elastic_rotation_variation, local_displacement
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.steps import Damping, Product, Shift, Stage, Step
+from sebody.derive.passes.linearize import Linearizer
 
-FRICTION = Product("damping force, friction = Cbar eta", "C", "eta", "friction")
-ADDED = Shift("forces conjugate to y, damping included", "s", "friction", "+")
+FRICTION = Product("damping force, friction = Cbar eta", arrays.C, arrays.eta, arrays.friction)
+ADDED = Shift("forces conjugate to y, damping included", arrays.s, arrays.friction)
 
 
 def damping(q: Quantities) -> Damping:

@@ -6,8 +6,11 @@ material ``delta Theta``.
 
 import sympy as sp
 
+from sebody.derive.form.spaces import Space
+from sebody.derive.form.steps import Stage
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import (
+    cross,
     exp,
     inverse_tangent,
     inverse_tangent_times,
@@ -15,8 +18,6 @@ from sebody.derive.symbolic.rotations import (
     skew,
     tangent,
 )
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Stage, cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 

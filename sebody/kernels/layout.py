@@ -60,15 +60,6 @@ class Part(NamedTuple):
             return (self.size(counts),)
         return tuple([counts[s] if isinstance(s, str) else s for s in self.shape])
 
-    def expression(self, known: Counts) -> str:
-        """The size as text for a kernel: known counts as numbers, the others by name."""
-        sizes = [str(known.get(s, s)) for s in self.shape]
-        if self.columns:
-            return f"{sizes[1]}*padded({sizes[0]})"
-        if self.packed:
-            return f"packed_room({', '.join(sizes)})"
-        return "*".join(sizes) or "1"
-
 
 class Row(NamedTuple):
     """Parts one after the other."""

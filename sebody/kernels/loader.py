@@ -14,6 +14,8 @@ from types import ModuleType
 
 from sebody.errors import InputError
 from sebody.kernels.names import (
+    ELEMENT,
+    IN_PLANE,
     element_name,
     general_layout,
     layout_variant,
@@ -21,6 +23,7 @@ from sebody.kernels.names import (
 )
 from sebody.kernels.sources import room_hash
 
+DERIVE = "python -m sebody.derive"
 USER_FORCE = element_name("user_force")      # written by hand, in this room
 
 
@@ -61,9 +64,10 @@ def find(name: str) -> Path | None:
     lines = re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE)
     facts = dict(lines)
     if facts.get("ROOM") != room_hash("kernels"):
-        variant = ":".join(facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA"))
+        names = [facts[fact] for fact in ("LAYOUT", "FRAME", "INERTIA") if fact in facts]
+        asked = name.removeprefix(ELEMENT) if name.startswith(ELEMENT) else ":".join(names)
         raise InputError(f"kernel {path} was made by another version of sebody: make it again with"
-                         f"\n    python -m sebody.derive {variant}")
+                         f"\n    {DERIVE} {asked}")
     return path
 
 
@@ -117,7 +121,7 @@ def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
 
 def derive_command(variant: str, frame: str, inertia: str) -> str:
     """What makes a superelement's kernel."""
-    return f"python -m sebody.derive {variant}:{frame}:{inertia}"
+    return f"{DERIVE} {variant}:{frame}:{inertia}"
 
 
 @cache
@@ -129,10 +133,15 @@ def element_kernel_name(kind: str) -> str:
     InputError
         If it has not been generated.
     """
-    name = element_name(kind)
+    name, planar = element_name(kind), kind.startswith(IN_PLANE)
+    other = kind.removeprefix(IN_PLANE) if planar else IN_PLANE + kind
     if name != USER_FORCE and not find(name):
-        raise InputError(f"there is no kernel for element {kind!r}: reinstall sebody or run "
-                         "python -m sebody.derive")
+        if find(element_name(other)):
+            spaces = ("a plane", "space") if planar else ("space", "a plane")
+            raise InputError(f"element {kind!r} does not exist for motion in {spaces[0]}, only "
+                             f"{other!r} for motion in {spaces[1]}")
+        raise InputError(f"there is no kernel for element {kind!r}: reinstall sebody or make it "
+                         f"with\n    {DERIVE} {kind}")
     return name
 
 

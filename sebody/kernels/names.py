@@ -2,6 +2,7 @@
 
 SUPERELEMENT, ELEMENT = PREFIXES = "superelement_", "element_"
 PLANAR = "planar-"  # begins names of layouts in a plane
+IN_PLANE = "planar_"     # begins names of kernels of elements in a plane
 ANY = "any"         # layout of the general kernels, which read the counts of nodes at run time
 
 
@@ -17,7 +18,7 @@ def element_name(kind: str) -> str:
 
 def body_load_kind(frame: str, planar: bool) -> str:
     """Kind of a load on a body with this frame: the name of its kernel without the prefix."""
-    return "planar_" * planar + f"body_load_{frame}"
+    return IN_PLANE * planar + f"body_load_{frame}"
 
 
 def general_layout(layout: str) -> str:

@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.functions import INVERSE_TANGENT
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.steps import Solve, Stage, Step, Values
 from sebody.derive.formulas.elastic import VirtualWork
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import Solve, Stage, Step, Values
 from sebody.derive.symbolic.variation import check_same
 from sebody.kernels.layout import FrameTraits
 
@@ -49,7 +50,7 @@ def inverse_tangent_values(q: Quantities, of: Quantity,
     """Coefficients of ``T^-1`` and their derivatives, once per node; none in a plane."""
     if q.space.planar:
         return ()
-    return (Values("coefficients of T^-1", outputs, "inverse_tangent_coefficients", of, 30),)
+    return (Values("coefficients of T^-1", outputs, INVERSE_TANGENT, of, 30),)
 
 
 def pulled_back(q: Quantities, short: sp.Matrix, equation: sp.Matrix, over: str,

@@ -4,26 +4,25 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Array, Place, scratch
+from sebody.derive.form.functions import BLOCK_TIMES, INVERSE_TANGENT_SECOND, ROWS_TIMES
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.steps import Call, Solve, Stage, Step, Values, call, solve_matrix
+from sebody.derive.form.whole import Whole
 from sebody.derive.formulas import gravity
 from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.frames.frame import Frame, origin_stage
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.rotations import skew
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import (
-    Call,
-    Solve,
-    Stage,
-    Step,
-    Values,
-    cross,
-    solve_matrix,
-)
+from sebody.derive.passes.linearize import Linearizer
+from sebody.derive.symbolic.rotations import cross, skew
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential
 from sebody.kernels.layout import axes_of
 
-MOVING, STRAINED = range(2)      # places in the array `squares`; then the power lost
+MOVING, STRAINED, LOST = range(3)       # places among the squares: energies, power lost
+SQUARES, MOVED = scratch("squares"), scratch("moved")
+
+
+RIGID = tuple(map(scratch, ("rigid0", "rigid1", "rigid2")))     # rigid parts of y and its rates
 
 
 def frame_motion(q: Quantities, frame: Frame) -> tuple[Step, ...]:
@@ -75,7 +74,7 @@ def second_derivatives(q: Quantities) -> tuple[Values, ...]:
     if q.space.planar:
         return ()
     return (Values("second derivative of the coefficients of T^-1", (q.e2,),
-                   "inverse_tangent_second", q.psi, 30),)
+                   INVERSE_TANGENT_SECOND, q.psi, 30),)
 
 
 def on_frame_stage(q: Quantities, force: sp.Matrix, moment: sp.Matrix) -> Stage:
@@ -85,34 +84,31 @@ def on_frame_stage(q: Quantities, force: sp.Matrix, moment: sp.Matrix) -> Stage:
 
 
 class Form(NamedTuple):
-    """A matrix and the row on both sides of it: titles of product and value; counts as text."""
+    """A matrix and the row on both sides of it: titles of product and value."""
 
     title: str
     value: str
-    matrix: str
-    row: str
-    rows: str
-    columns: str
-    height: str
+    matrix: Array
+    row: Array
+    rows: Whole
+    columns: Whole
+    height: Whole
 
 
 def quadratic_forms(mass: Form, stiffness: Form, damping: Form) -> tuple[Call, ...]:
     """Twice the kinetic energy of deformation and the strain energy, and the power lost."""
     steps = []
     for k, form in enumerate((mass, stiffness, damping)):
-        out = f"at(squares, {k})" if k else "squares"
-        steps += [Call(form.title, "block_times",
-                       (form.matrix, form.row, "moved", form.rows, form.columns, form.height),
-                       (form.matrix, form.row, "moved")),
-                  Call(form.value, "rows_times",
-                       ("moved", form.row, out, form.rows, "1", form.height),
-                       ("moved", form.row, "squares"))]
+        steps += [call(form.title, BLOCK_TIMES, form.matrix, form.row, MOVED, form.rows,
+                       form.columns, form.height),
+                  call(form.value, ROWS_TIMES, MOVED, form.row, SQUARES.at(k), form.rows, 1,
+                       form.height)]
     return tuple(steps)
 
 
 def form_value(q: Quantities, name: str, k: int) -> Quantity:
     """The value of a form, by its place."""
-    return q.space.quantity(name, "scalar", "element", "squares", "{k}", k)
+    return q.space.quantity(name, "scalar", "element", SQUARES, Place(k))
 
 
 def energies_stage(q: Quantities, kinetic: sp.Expr, strain: sp.Expr, momentum: sp.Matrix,
@@ -136,5 +132,5 @@ def energies_stage(q: Quantities, kinetic: sp.Expr, strain: sp.Expr, momentum: s
 
 def rigid_angle(q: Quantities) -> Quantity:
     """Mean rotation of the local coordinates, of option D."""
-    return q.space.quantity("angle0", "axial", "element", "rigid0", "{k}",
-                            axes_of(q.space.planar)["D"])
+    return q.space.quantity("angle0", "axial", "element", RIGID[0],
+                            Place(axes_of(q.space.planar)["D"]))

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from sebody.derive.printing import parts
-from sebody.derive.printing.templates import VERSION
+from sebody.derive.printing.numba import parts
+from sebody.derive.printing.numba.files import VERSION
 from sebody.kernels.layout import FrameTraits, InertiaTraits
 
 TEXT = '''"""Frames and inertia options of superelements, and what they need.
