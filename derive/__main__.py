@@ -17,21 +17,22 @@ from pathlib import Path
 
 import sebody.generated
 from sebody.derive.compiler import Variant, compile_kernel, file_name
-from sebody.derive.kernels.layouts import LayoutError
+from sebody.derive.kernels.layouts import Layout, LayoutError
 from sebody.derive.kernels.manifest import ELEMENTS, SUPERELEMENTS
-from sebody.derive.kernels.options import frame_traits, inertia_traits
+from sebody.derive.kernels.options import frame_conditions, frame_traits, inertia_traits
 from sebody.derive.names import kernel_of
 from sebody.derive.printing.numba.options import options_text
 from sebody.files import replacing
-from sebody.kernels.loader import user_directory
-from sebody.kernels.names import PREFIXES
+from sebody.kernels.loader import find, user_directory
+from sebody.kernels.names import PREFIXES, motion_name
 
 SECONDS = {True: 2.5, False: 0.4}       # to derive a superelement, or another element
 
 
 def shipped() -> dict[str, str]:
     """File name and text of every kernel of the manifest, and of the options' traits."""
-    return {"options.py": options_text(frame_traits(), inertia_traits())} | files(
+    return {"options.py": options_text(frame_traits(), inertia_traits(),
+                                          frame_conditions())} | files(
         [*(Variant(*row) for row in SUPERELEMENTS), *ELEMENTS])
 
 
@@ -53,6 +54,14 @@ def files(kernels: Iterable[Variant | str], shipped: bool = True) -> dict[str, s
           file=sys.stderr, flush=True)
     with ProcessPoolExecutor(processes) as pool:
         return dict(zip(names, pool.map(compiled, kernels), strict=True))
+
+
+def _with_motions(kernels: Iterable[Variant | str]) -> list[Variant | str]:
+    """Kernels, and those of the motions in their frames where there are none yet."""
+    found = list(kernels)
+    named = [motion_name(k.frame, Layout.parse(k.layout).planar) for k in found
+             if isinstance(k, Variant)]
+    return list(dict.fromkeys((*found, *(name for name in named if not find(name)))))
 
 
 def write(directory: Path, files: dict[str, str]) -> list[str]:
@@ -98,7 +107,7 @@ def main(arguments: list[str] | None = None) -> int:
         if options.kernels:
             own = os.access(directory, os.W_OK) and not os.environ.get("SEBODY_KERNELS")
             directory = directory if own else user_directory()
-            texts = files(map(kernel_of, options.kernels), shipped=own)
+            texts = files(_with_motions(map(kernel_of, options.kernels)), shipped=own)
         else:
             texts = shipped()
     except LayoutError as error:

@@ -11,10 +11,16 @@ from sebody.derive.kernels.catalogue import ELEMENTS
 from sebody.derive.kernels.element_form import element_form
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.linearize import linearized
+from sebody.derive.kernels.motion import MOTIONS, frame_motion, motion_form
 from sebody.derive.kernels.superelement import superelement
 from sebody.derive.kernels.superelement_form import superelement_form
 from sebody.derive.printing.numba.files import Head, file_text
-from sebody.derive.printing.numba.heads import body_load_head, element_head, superelement_head
+from sebody.derive.printing.numba.heads import (
+    body_load_head,
+    element_head,
+    motion_head,
+    superelement_head,
+)
 from sebody.kernels.names import element_name, superelement_name
 
 
@@ -33,12 +39,21 @@ class Stages(NamedTuple):
     linearize: Callable
     assemble: Callable[[Any], Kernel]
     head: Callable[[Any, Kernel], Head]
+    name: Callable[[Any], str]          # of the module
 
 
-SUPERELEMENT = Stages(lambda v: superelement(Layout.parse(v.layout), v.frame, v.inertia),
-                      linearized, superelement_form, superelement_head)
-BODY_LOAD = Stages(body_load_kernel, lambda kernel: kernel, body_load_form, body_load_head)
-ELEMENT = Stages(lambda name: ELEMENTS[name](), elements.linearized, element_form, element_head)
+def _same(kernel: Any) -> Any:
+    return kernel
+
+
+SUPERELEMENT = Stages(
+    lambda v: superelement(Layout.parse(v.layout), v.frame, v.inertia), linearized,
+    superelement_form, superelement_head,
+    lambda v: superelement_name(Layout.parse(v.layout).name, v.frame, v.inertia))
+BODY_LOAD = Stages(body_load_kernel, _same, body_load_form, body_load_head, element_name)
+ELEMENT = Stages(lambda name: ELEMENTS[name](), elements.linearized, element_form, element_head,
+                 element_name)
+MOTION = Stages(frame_motion, _same, motion_form, motion_head, _same)
 
 
 def compile_kernel(kernel: Variant | str, shipped: bool = True) -> str:
@@ -55,8 +70,8 @@ def compile_kernel(kernel: Variant | str, shipped: bool = True) -> str:
     Parameters
     ----------
     kernel : Variant or str
-        A superelement, or the name of a joint, rigid body or load. The matrix of a load on a body
-        is derived with its force.
+        A superelement, or the name of a joint, rigid body, load or motion. The matrix of a load on
+        a body is derived with its force; motions have none.
     shipped : bool
         The file goes with the package; else it carries a hash of the functions that it calls.
 
@@ -82,13 +97,9 @@ def stages_of(kernel: Variant | str) -> Stages:
     """How a kernel is compiled."""
     if isinstance(kernel, Variant):
         return SUPERELEMENT
-    return BODY_LOAD if kernel in BODY_LOADS else ELEMENT
+    return MOTION if kernel in MOTIONS else BODY_LOAD if kernel in BODY_LOADS else ELEMENT
 
 
 def file_name(kernel: Variant | str) -> str:
     """Name of the file of a kernel."""
-    if isinstance(kernel, Variant):
-        name = superelement_name(Layout.parse(kernel.layout).name, kernel.frame, kernel.inertia)
-    else:
-        name = element_name(kernel)
-    return name + ".py"
+    return stages_of(kernel).name(kernel) + ".py"

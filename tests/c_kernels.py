@@ -10,7 +10,7 @@ import numpy as np
 
 from sebody.kernels.layout import ACCELERATION, ENERGY, OK, RESIDUAL, TANGENT, VELOCITY
 from sebody.studies.check.elements import element_case
-from sebody.studies.check.states import _call, arguments
+from sebody.studies.check.states import arguments, called
 
 COMPILER = next((found for name in (os.environ.get("CC", "cc"), "gcc", "clang")
                  if (found := shutil.which(name))), None)
@@ -45,7 +45,7 @@ def largest_difference(function, module, seed: int) -> float:
         mine, other = mine._replace(T=T), other._replace(T=T)
         status = function(task, *map(ctypes.c_int64, (1, len(case.index), case.n)),
                           *(ctypes.c_void_p(array.ctypes.data) for array in mine))
-        assert status == _call(module.kernel.address, task, len(case.index), case.n, other) == OK
+        assert status == called(case, task, other) == OK
         for name in ("forces", "matrices", "energies"):
             a, b = getattr(mine, name), getattr(other, name)
             worst = max(worst, np.abs(a - b).max() / max(np.abs(b).max(), 1.0))

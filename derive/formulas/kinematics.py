@@ -33,6 +33,14 @@ def unknown_rules(q: Quantities) -> Rules:
     return rules | along(q.Om.symbols, q.dOm.symbols) | along(q.A.symbols, q.dA.symbols)
 
 
+def in_time(q: Quantities) -> Rules:
+    """Velocities in place of variations: whatever varies so has these rates."""
+    pairs = (q.dx, q.vs), (q.dx0, q.v0), (q.dth, q.Om), (q.dth0, q.Om0)
+    return {d: rate for varied, rated in pairs
+            for d, rate in zip(varied.symbols, rated.symbols, strict=True)
+            if isinstance(d, sp.Symbol)}
+
+
 def local_displacement(q: Quantities) -> Stage:
     """Displacement of the nodes in the frame, (11); varied, (17)."""
     r = q.X.symbols + q.u.symbols

@@ -16,6 +16,7 @@ from sebody.errors import InputError
 from sebody.kernels.names import (
     ELEMENT,
     IN_PLANE,
+    SUPERELEMENT,
     element_name,
     general_layout,
     layout_variant,
@@ -64,10 +65,11 @@ def find(name: str) -> Path | None:
     lines = re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE)
     facts = dict(lines)
     if facts.get("ROOM") != room_hash("kernels"):
-        names = [facts[fact] for fact in ("LAYOUT", "FRAME", "INERTIA") if fact in facts]
-        asked = name.removeprefix(ELEMENT) if name.startswith(ELEMENT) else ":".join(names)
+        asked = [name.removeprefix(ELEMENT)]
+        if name.startswith(SUPERELEMENT):
+            asked = [facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA")]
         raise InputError(f"kernel {path} was made by another version of sebody: make it again with"
-                         f"\n    {DERIVE} {asked}")
+                         f"\n    {derive_command(*asked)}")
     return path
 
 
@@ -119,9 +121,9 @@ def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
                      f"{derive_command(variants[1], frame, inertia)}")
 
 
-def derive_command(variant: str, frame: str, inertia: str) -> str:
-    """What makes a superelement's kernel."""
-    return f"{DERIVE} {variant}:{frame}:{inertia}"
+def derive_command(*name: str) -> str:
+    """What makes a kernel: by its name, or a superelement's by layout, frame and inertia option."""
+    return f"{DERIVE} {':'.join(name)}"
 
 
 @cache
@@ -141,7 +143,7 @@ def element_kernel_name(kind: str) -> str:
             raise InputError(f"element {kind!r} does not exist for motion in {spaces[0]}, only "
                              f"{other!r} for motion in {spaces[1]}")
         raise InputError(f"there is no kernel for element {kind!r}: reinstall sebody or make it "
-                         f"with\n    {DERIVE} {kind}")
+                         f"with\n    {derive_command(kind)}")
     return name
 
 

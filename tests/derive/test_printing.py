@@ -2,6 +2,7 @@
 
 import ast
 
+import numpy as np
 import pytest
 import sympy as sp
 
@@ -9,6 +10,7 @@ from sebody.derive.form import counts
 from sebody.derive.form.arrays import pointed, scratch
 from sebody.derive.form.functions import CLEAR, INVERSE_3, PACKED_TIMES
 from sebody.derive.form.kernel import Kernel, Operations
+from sebody.derive.form.spaces import Space
 from sebody.derive.form.statements import (
     Change,
     For,
@@ -23,10 +25,13 @@ from sebody.derive.form.statements import (
     compared,
     invoked,
 )
+from sebody.derive.formulas.frames.frame import Condition
+from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.printing.numba import options, parts
 from sebody.derive.printing.numba.expressions import code
 from sebody.derive.printing.numba.imports import import_lines
 from sebody.derive.printing.numba.statements import lines
+from sebody.derive.symbolic.rotations import skew
 from sebody.kernels.layout import FrameTraits, InertiaTraits, Part
 
 x, y, z = sp.symbols("x y z")
@@ -130,5 +135,26 @@ def test_traits_are_printed_as_they_are_declared():
     frames = {"f": FrameTraits("a frame", planar=False, constants=(Part("w", ("N_POSITIONS",)),))}
     inertia = {"i": InertiaTraits("an option", material=True)}
     scope = {}
-    exec(options.options_text(frames, inertia), scope)
+    exec(options.options_text(frames, inertia, {}), scope)
     assert scope["FRAMES"] == frames and scope["INERTIA_OPTIONS"] == inertia
+    assert scope["CONDITIONS"] == {}
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_conditions_are_printed_as_functions_of_the_constants(planar):
+    """A vector condition of displacements, and a scalar one of rotations."""
+    q = Quantities(Space(planar))
+    found = {("fit", planar): Condition(q.u, 2 * q.fit.symbols[0] * skew(q.X.symbols),
+                                        (q.fit, q.X)),
+             ("mean", planar): Condition(q.psi, q.alpha_r.symbols[0] * sp.eye(3), (q.alpha_r,))}
+    scope, X = {}, np.array([0.3, -0.7, 1.1])[:2 if planar else 3]
+    exec(options.options_text({}, {}, found), scope)
+    fit, mean = (scope["CONDITIONS"][name, planar] for name in ("fit", "mean"))
+    assert (fit.of, fit.constants) == ("position", ("fits", "X"))
+    assert (mean.of, mean.constants) == ("rotation", ("alpha_rs",))
+    u, moment = np.arange(1.0, 4.0)[:len(X)], [0, 0, 0]
+    moment[3 - (1 if planar else 3):] = np.atleast_1d(
+        X[0] * u[1] - X[1] * u[0] if planar else np.cross(X, u))
+    assert np.array(fit.coefficients(0.25, X)) @ u == pytest.approx(
+        0.5 * np.array(moment[2:] if planar else moment))
+    assert np.array_equal(mean.coefficients(0.5), 0.5 * np.eye(1 if planar else 3))

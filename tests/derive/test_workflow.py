@@ -21,10 +21,11 @@ FOLDERS = {"sebody": "", "derive": "derive", "generated": "generated", "examples
 MANIFEST = '''"""A small manifest."""
 
 SUPERELEMENTS = (("planar-f2", "positions", "b"),)
-ELEMENTS = ("force", "torque", "planar_force", "planar_torque")
+ELEMENTS = ("force", "torque", "planar_force", "planar_torque", "motion_planar_positions")
 '''
 SHIPPED = ["element_force.py", "element_planar_force.py", "element_planar_torque.py",
-           "element_torque.py", "superelement_planar_f2_positions_b.py"]
+           "element_torque.py", "motion_planar_positions.py",
+           "superelement_planar_f2_positions_b.py"]
 
 # An editable installation would serve what a copy lacks from the checkout.
 ISOLATED = '''
@@ -179,7 +180,7 @@ def original(tmp_path_factory) -> Path:
 @pytest.mark.parametrize("seed", ["1", "2"])
 def test_text_is_the_same_for_every_hash_seed(original, seed):
     done = derive(original, "--check", PYTHONHASHSEED=seed)
-    assert (done.returncode, done.stdout) == (0, "5 kernels are up to date\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "6 kernels are up to date\n"), done.stderr
 
 
 def stale(tree: Path) -> list[str]:
@@ -200,7 +201,7 @@ def test_change_a_formula(original, tmp_path):
     untouched = (package / "generated" / "element_torque.py").stat().st_mtime_ns
     done = derive(tree)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("5 kernels derived, 2 written")
+    assert done.stdout.startswith("6 kernels derived, 2 written")
     assert (package / "generated" / "element_torque.py").stat().st_mtime_ns == untouched
     assert residuals(tree) == [[-10.0, 0.0, 10.0, 0.0, 0.0, 0.0], [0.0, -6.0]]
     assert stale(tree) == []

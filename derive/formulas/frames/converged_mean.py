@@ -9,6 +9,7 @@ from sebody.derive.form.steps import Search, Solve, search
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
+    Condition,
     Frame,
     FrameOption,
     inverse_tangent_values,
@@ -51,7 +52,13 @@ def converged_mean(q: Quantities) -> Frame:
         variation=(angular_rate(q.dth0, q.dth, False),),
         pull=(pulled_back(q, alpha * inverse_tangent_times(psi, wp), equation(q.wp, q.dth),
                           "rotation", alpha),),
-        work=virtual_work, position=sp.zeros(3, 1), origin=sp.zeros(3, 1), rotation=back)
+        work=virtual_work, position=sp.zeros(3, 1), origin=sp.zeros(3, 1), rotation=back,
+        condition=condition(q))
+
+
+def condition(q: Quantities) -> Condition:
+    """What the elastic rotations obey."""
+    return Condition(q.psi, -q.alpha_r.symbols[0] * sp.eye(3), (q.alpha_r,))
 
 
 def mean_search(q: Quantities, operations: int) -> Search:
@@ -67,4 +74,5 @@ def mean_search(q: Quantities, operations: int) -> Search:
 
 
 FRAME = FrameOption(
-    FrameTraits("weighted mean of the node rotations, iterated until it is one"), converged_mean)
+    FrameTraits("weighted mean of the node rotations, iterated until it is one"), converged_mean,
+    condition)

@@ -9,13 +9,26 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Place
 from sebody.derive.form.functions import INVERSE_TANGENT
 from sebody.derive.form.spaces import Quantity
 from sebody.derive.form.steps import Solve, Stage, Step, Values
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import VirtualWork
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.variation import check_same
 from sebody.kernels.layout import FrameTraits
+
+
+class Condition(NamedTuple):
+    """What the local coordinates obey in a frame: ``sum_j weight_j of_j = 0``.
+
+    Beside it the weighted displacements add up to zero in every frame, (14).
+    """
+
+    of: Quantity                        # displacements of the nodes, or their rotation vectors
+    weight: sp.Matrix                   # 3 x 3, of constants of a node
+    constants: tuple[Quantity, ...]     # these
 
 
 class Frame(NamedTuple):
@@ -30,6 +43,8 @@ class Frame(NamedTuple):
     origin: sp.Matrix               # force of wp on R0^T delta x_0, summed over positions
     rotation: sp.Matrix             # force of wp on delta Theta_j
     differentials: tuple[Stage, ...] = ()   # of what `locate` computes, once dth0 is known
+    # linear, and of the sign of the equation in `velocity`; None of a frame without one
+    condition: Condition | None = None
 
 
 class FrameOption(NamedTuple):
@@ -37,12 +52,23 @@ class FrameOption(NamedTuple):
 
     traits: FrameTraits
     derive: Callable[[Quantities], Frame]
+    # that of its `Frame`; of frames that depend on the last step to first order
+    condition: Callable[[Quantities], Condition] | None = None
 
 
 def origin_stage(q: Quantities, result: Quantity, of: Quantity) -> Stage:
     """Weighted mean (14), (18) of positions, or of their variations or velocities."""
     return Stage("origin of the frame, (14)", "position",
                  adds=((result, q.alpha.symbols[0] * of.symbols),))
+
+
+def kept_rotation(q: Quantities) -> Stage:
+    """A rotation of the frame that was computed by stages, where the caller finds it."""
+    R0 = q.R0.symbols
+    places = (0, 1, 3, 4) if q.space.planar else range(9)
+    entries = [(q.space.quantity(f"frame_{k}", "scalar", "element", arrays.frame, Place(k)),
+                sp.Matrix([R0[k]])) for k in places]
+    return Stage("rotation of the frame, kept", "element", sets=tuple(entries))
 
 
 def inverse_tangent_values(q: Quantities, of: Quantity,

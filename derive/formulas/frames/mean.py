@@ -8,6 +8,7 @@ from sebody.derive.form.spaces import Quantity
 from sebody.derive.form.steps import Stage, Step, Values, search
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import virtual_work
+from sebody.derive.formulas.frames.converged_mean import condition
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, inverse_tangent_values
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import (
@@ -70,4 +71,4 @@ def _check_variation(q: Quantities) -> None:
 
 FRAME = FrameOption(
     FrameTraits("the paper's weighted mean of rotation increments since the last step",
-                planar=False, incremental=True), mean)
+                planar=False, incremental=True), mean, condition)

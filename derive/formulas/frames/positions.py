@@ -14,6 +14,7 @@ from sebody.derive.form.steps import Search, Solve, search
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
+    Condition,
     Frame,
     FrameOption,
     inverse_tangent_values,
@@ -21,7 +22,7 @@ from sebody.derive.formulas.frames.frame import (
     pulled_back,
 )
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.rotations import cross
+from sebody.derive.symbolic.rotations import cross, skew
 from sebody.derive.symbolic.variation import along, check_same, differential, rotating
 from sebody.kernels.layout import FrameTraits
 
@@ -59,7 +60,13 @@ def positions(q: Quantities) -> Frame:
         pull=(pulled_back(q, fit * cross(r, cross(X, q.wp.symbols)),
                           equation(q.wp, q.dx, q.dx0), "position"),),
         work=virtual_work, position=-conjugate_to(work, q.dx.symbols),
-        origin=-conjugate_to(work, q.dx0.symbols), rotation=sp.zeros(3, 1))
+        origin=-conjugate_to(work, q.dx0.symbols), rotation=sp.zeros(3, 1),
+        condition=condition(q))
+
+
+def condition(q: Quantities) -> Condition:
+    """What the displacements obey."""
+    return Condition(q.u, q.fit.symbols[0] * skew(q.X.symbols), (q.fit, q.X))
 
 
 def _searches(q: Quantities) -> tuple[Search, Search]:
@@ -79,4 +86,4 @@ def _searches(q: Quantities) -> tuple[Search, Search]:
 
 FRAME = FrameOption(
     FrameTraits("rotation of best fit of the node positions", needs_rotations=False,
-                fewest_positions=(3, 2)), positions)
+                fewest_positions=(3, 2)), positions, condition)

@@ -5,6 +5,7 @@ from sebody.derive.form.kernel import Kernel
 from sebody.derive.formulas.elements import Constant, Element
 from sebody.derive.kernels.body_load import BodyLoad
 from sebody.derive.kernels.layouts import Layout
+from sebody.derive.kernels.motion import FrameMotion
 from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.printing.numba.files import Head, counts, operations
 from sebody.derive.printing.numba.parts import table
@@ -62,6 +63,20 @@ def _nodes(layout: Layout) -> str:
     if layout.nodes is None:
         return "Any number of positions and rotations"
     return f"{layout.positions} position(s) and {layout.rotations} rotation(s)"
+
+
+def motion_head(given: FrameMotion, kernel: Kernel) -> Head:
+    """Of the motion of bodies: any layout, one frame."""
+    planar, own = given.layout.planar, given.option.traits.constants
+    table_of_own = f" + {table(own)}" if own else ""
+    return Head(
+        "Motion of bodies: their frame and local coordinates, twice derived in time",
+        (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
+         "modes.", f"Frame: {given.option.traits.summary}.",
+         "Writes rows MOTION of sebody/kernels/layout.py."),
+        (f'FRAME = "{given.frame}"', *counts(planar, (None, None)), "N_MODES = None",
+         f"CONSTANTS = FRAME_CONSTANTS{table_of_own}", f"WORK_ROWS = {kernel.rows}"),
+        ("FRAME_CONSTANTS",), (PART,) if own else ())
 
 
 def element_head(given: Element, kernel: Kernel) -> Head:

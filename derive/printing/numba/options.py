@@ -1,8 +1,12 @@
 """The module of what the frames and inertia options of superelements declare."""
 
+import json
 from collections.abc import Mapping
 
+from sebody.derive.formulas.frames.frame import Condition
+from sebody.derive.printing.lines import INDENT
 from sebody.derive.printing.numba import parts
+from sebody.derive.printing.numba.expressions import code
 from sebody.derive.printing.numba.files import VERSION
 from sebody.kernels.layout import FrameTraits, InertiaTraits
 
@@ -20,15 +24,34 @@ FRAMES = {{
 INERTIA_OPTIONS = {{
 {options}
 }}
+
+{functions}
+
+# by frame, and whether it is in a plane
+CONDITIONS = {{
+{conditions}
+}}
 '''
+FUNCTION = '''
+def {name}({arguments}):
+{loads}
+    return {rows}
+'''
+AXES = {("vector", True): (0, 1), ("axial", True): (2,)}        # of a plane
+Conditions = Mapping[tuple[str, bool], Condition]
 
 
-def options_text(frames: Mapping[str, FrameTraits], options: Mapping[str, InertiaTraits]) -> str:
+def options_text(frames: Mapping[str, FrameTraits], options: Mapping[str, InertiaTraits],
+                 conditions: Conditions) -> str:
     """The file of the traits of all frames and inertia options."""
     declared = any(t.constants for t in (*frames.values(), *options.values()))
-    return TEXT.format(version=VERSION, names="FrameTraits, InertiaTraits" + ", Part" * declared,
-                       frames="\n".join(map(_entry, frames, frames.values())),
-                       options="\n".join(map(_entry, options, options.values())))
+    names = ["Condition", "FrameTraits", "InertiaTraits", *["Part"] * declared]
+    return TEXT.format(
+        version=VERSION, names=", ".join(names),
+        frames="\n".join(map(_entry, frames, frames.values())),
+        options="\n".join(map(_entry, options, options.values())),
+        functions="\n".join(_function(*item) for item in conditions.items()),
+        conditions="\n".join(_condition(*item) for item in conditions.items()))
 
 
 def _entry(name: str, traits: FrameTraits | InertiaTraits) -> str:
@@ -40,3 +63,25 @@ def _entry(name: str, traits: FrameTraits | InertiaTraits) -> str:
             text = parts.table(value, 2) if field == "constants" else repr(value)
             lines.append(f"        {field}={text},")
     return "\n".join([*lines, "    ),"])
+
+
+def _function(key: tuple[str, bool], condition: Condition) -> str:
+    """Coefficients of one node, from its constants."""
+    rows, columns = (AXES.get((kind, key[1]), (0, 1, 2)) for kind in ("axial", condition.of.kind))
+    entries = [f"[{', '.join(code(condition.weight[r, c]) for c in columns)}]" for r in rows]
+    loads = [f"{INDENT}{', '.join(map(str, q.kept))} = {q.array.name}"
+             for q in condition.constants]
+    return FUNCTION.format(
+        name=_name(*key), arguments=", ".join(q.array.name for q in condition.constants),
+        loads="\n".join(loads), rows=f"[{', '.join(entries)}]")
+
+
+def _condition(key: tuple[str, bool], condition: Condition) -> str:
+    (frame, planar), names = key, [json.dumps(q.array.name) for q in condition.constants]
+    listed = f"({', '.join(names)}{',' * (len(names) == 1)})"
+    return (f'    ("{frame}", {planar}): Condition("{condition.of.home}", {listed}, '
+            f"{_name(*key)}),")
+
+
+def _name(frame: str, planar: bool) -> str:
+    return f"_{frame}_in_{'a_plane' if planar else 'space'}"
