@@ -33,7 +33,8 @@ from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.kernels.superelement_form import filled, known_of
 from sebody.derive.passes.lower import Lowering
 from sebody.derive.passes.operations import operations
-from sebody.derive.passes.reverse import Reversal, bar_array, transposed_forms
+from sebody.derive.passes.reverse import Reversal, transposed_forms
+from sebody.derive.passes.transposes import bar_array
 from sebody.derive.passes.uses import uses
 from sebody.kernels.layout import MARGIN
 

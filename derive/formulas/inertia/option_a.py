@@ -41,8 +41,10 @@ def option_a(q: Quantities) -> Inertia:
     on_frame_w = cross(w, p)
     check_same("frame term of option A (45)", on_frame_w.subs(meaning),
                -conjugate_to(form, dth0), frames)
+    # an angle in a plane has the same axis in all frames
+    relative = () if q.space.planar else (relative_rotation(q),)
     return Inertia(
-        (relative_rotation(q),
+        (*relative,
          Stage("angular velocities in frame axes, (36)", "rotation", sets=((q.w, Q * Om),))),
         (accelerate, Stage("their rates, (46)", "rotation", sets=((q.wd, w_rate),))),
         force, short, on_frame, on_frame_w, conjugate, relative_rotating(Q, dth, dth0), PRODUCTS,
