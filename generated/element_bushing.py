@@ -44,7 +44,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (720, 0, 0, 0),
               "column": (1723, 0, 0, 0)}
-ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -89,7 +88,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         vb_x = v[unknowns[3]]
         vb_y = v[unknowns[4]]
         vb_z = v[unknowns[5]]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -101,7 +100,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_x = v[unknowns[6]]
         Oma_y = v[unknowns[7]]
         Oma_z = v[unknowns[8]]
-        Rb_xx = R[9*nodes[1] + 0]
+        Rb_xx = R[9*nodes[1]]
         Rb_xy = R[9*nodes[1] + 1]
         Rb_xz = R[9*nodes[1] + 2]
         Rb_yx = R[9*nodes[1] + 3]
@@ -858,7 +857,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t569 = -t516
                 t570 = -t437
                 t571 = -t520
-                J[0 + column] = (c_damping*(t180*t187 + t188*t192 + t193*t197) +
+                J[column] = (c_damping*(t180*t187 + t188*t192 + t193*t197) +
                     c_stiffness*(t185*t228 + t187*t243 + t190*t229 + t192*t244 + t195*t230 +
                     t197*t245 + t205*t207 + t205*t237 + t209*t211 + t209*t238 + t213*t215 +
                     t213*t239))
@@ -927,5 +926,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     t428*t570) + t480*(t431*t571 + t432*t540 + t433*t570) + t499*t565 + t500*t566
                     + t501*t567 + t551*(t371*t493 + t385*t497 + t408*t489) + t552*(t426*t493 +
                     t427*t497 + t428*t489) + t553*(t431*t493 + t432*t497 + t433*t489)))
-
     return OK

@@ -24,7 +24,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (6, 0, 0, 0),
               "column": (6, 0, 0, 0)}
-ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -87,7 +86,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dxb_x = dq[3]
                 dxb_y = dq[4]
                 dxb_z = dq[5]
-                J[0 + column] = 0.0
+                J[column] = 0.0
                 J[9 + column] = 0.0
                 J[18 + column] = 0.0
                 J[27 + column] = 0.0

@@ -45,7 +45,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (123, 0, 0, 0),
               "column": (286, 0, 0, 0)}
-ROOM = "f46c252e096c"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -261,7 +260,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t114 = -2*t71
                 t115 = e1_x*t113 + e1_y*t114
                 t116 = e2_x*t113 + e2_y*t114
-                J[0 + column] = (c_damping*(t45*t51 + t52*t57) + c_stiffness*(t49*t73 + t51*t86 +
+                J[column] = (c_damping*(t45*t51 + t52*t57) + c_stiffness*(t49*t73 + t51*t86 +
                     t55*t74 + t57*t87 + t61*t63 + t61*t82 + t66*t68 + t66*t83))
                 J[6 + column] = (c_damping*(t45*t90 + t52*t93) + c_stiffness*(t63*t95 + t68*t97 +
                     t73*t89 + t74*t92 + t82*t95 + t83*t97 + t86*t90 + t87*t93))
@@ -273,5 +272,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     c_stiffness*(t108*t73 + t109*t86 + t110*t74 + t111*t87 - t112 + t115*t63 +
                     t115*t82 + t116*t68 + t116*t83))
                 J[30 + column] = -c_damping*t104*t105 + c_stiffness*t112
-
     return OK

@@ -10,20 +10,21 @@ with Hamel's term ``Omega x dT/dOmega`` on rotations, whose variations do not co
 """
 
 from collections.abc import Sequence
+from math import pi
 from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.spaces import Quantity, Space
 from sebody.derive.formulas.elastic import conjugate_to
-from sebody.derive.symbolic.spaces import Quantity, Space
-from sebody.derive.symbolic.steps import cross
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 AMPLITUDE = sp.symbols("amplitude amplitude_rate amplitude_acceleration")
 KEPT_ANGLE = sp.Symbol("kept_angle")    # of the last accepted step
 
 
-class near_angle(sp.Function):  # noqa: N801  (printed as the function of the runtime)
+class near_angle(sp.Function):  # noqa: N801  (as functions of SymPy)
     """An angle plus as many whole turns as bring it nearest to another one."""
 
     nargs = 2
@@ -31,6 +32,14 @@ class near_angle(sp.Function):  # noqa: N801  (printed as the function of the ru
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Whole turns do not change."""
         return sp.Integer(argindex == 1)
+
+
+def whole_turns(expr: sp.Expr) -> sp.Expr:
+    """An expression that is not differentiated any more, with all `near_angle` written out."""
+    expr, turn = sp.sympify(expr), sp.Float(2.0 * pi)
+    return expr.xreplace({
+        near: near.args[0] + turn * sp.floor((near.args[1] - near.args[0]) / turn + 0.5)
+        for near in expr.atoms(near_angle)})
 
 
 class Block(NamedTuple):

@@ -11,12 +11,6 @@ NEAR_PI = -0.98     # cosine beyond which the logarithm of a relative rotation i
 
 
 @compiled
-def near_angle(angle, other):
-    """The angle plus as many whole turns as bring it nearest to another one."""
-    return angle + 2.0 * math.pi * math.floor((other - angle) / (2.0 * math.pi) + 0.5)
-
-
-@compiled
 def stumpff(k, s):
     """``c_k(s) = sum_j (-s)^j / (k + 2j)!``; 24 terms serve ``0 <= s <= 10`` to rounding."""
     term = 1.0

@@ -198,3 +198,18 @@ def test_scenes_for_advice_are_fixed():
         parts = {*model.nodes, *(one.name for one in model.elements())}
         assert {quantity.rpartition(".")[0] for quantity in scene.quantities
                 if quantity != "frequency 1"} <= parts
+
+
+def test_struck_frames_beside_beams(monkeypatch, capsys):
+    bench = imported("bench_frames")
+    monkeypatch.setattr(bench, "STEPS", (1e-3,))
+    monkeypatch.setattr(bench, "OTHERS", {})
+    monkeypatch.setattr(bench, "T_END", 0.1)
+    measure = bench.measure
+    monkeypatch.setattr(bench, "measure",
+                        lambda struck, options: measure(struck, options, (1e-3,), 0.1))
+    bench.main(["--json", "--random", "0", "T"])
+    row = json.loads(capsys.readouterr().out)["T"]
+    assert list(row) == ["default", "on rotations", "beams"]
+    assert row["default"]["0.001"]["gain"] < 1e-2 and row["beams"]["0.001"]["gain"] < 1e-2
+    assert row["default"]["0.001"]["end"] == pytest.approx(0.1)

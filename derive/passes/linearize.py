@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import sympy as sp
 
-from sebody.derive.symbolic.spaces import Quantity, Space
-from sebody.derive.symbolic.steps import Solve, Stage, solve_matrix
+from sebody.derive.form.spaces import Quantity, Space
+from sebody.derive.form.steps import Solve, Stage, solve_matrix
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential
 
 

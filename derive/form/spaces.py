@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Array, Place
 from sebody.derive.symbolic.variation import check_same
 
 AXES = "xyz"
@@ -16,12 +17,10 @@ class Quantity(NamedTuple):
 
     name: str
     kind: str           # vector | axial | scalar | rotation (a 3x3 matrix) | inertia (symmetric)
-    home: str           # what carries one value each: element | position | rotation | mode, or
-                        # coordinate | shape (y or z) | resultant
-    array: str          # kernel array that holds it; "" for local variables of the element
+    home: str           # what carries one value each, see `loops`
+    array: Array | None     # that holds it; None for local variables of the element
     symbols: sp.Matrix  # components in space; zeros where motion in a plane has none
-    place: str = ""     # where number {k} of the array is, if not where its home has it
-    first: int = 0      # which of them is the first component
+    place: Place | None = None      # of its components, if not where its home has them
 
     @property
     def kept(self) -> list[sp.Symbol]:
@@ -38,20 +37,19 @@ class Space:
     planar: bool
     known: dict[str, Quantity] = field(default_factory=dict, hash=False, compare=False)
 
-    def quantity(self, name: str, kind: str, home: str, array: str = "",
-                 place: str = "", first: int = 0) -> Quantity:
+    def quantity(self, name: str, kind: str, home: str, array: Array | None = None,
+                 place: Place | None = None) -> Quantity:
         """Declare a quantity (or return the one of that name)."""
         if name not in self.known:
             symbols = getattr(self, "_" + kind)(name)
-            self.known[name] = Quantity(name, kind, home, array, symbols, place, first)
+            self.known[name] = Quantity(name, kind, home, array, symbols, place)
         return self.known[name]
 
     def d(self, quantity: Quantity) -> Quantity:
         """The differential of a quantity, as a quantity of its own."""
-        array = quantity.array and "d" + quantity.array
+        array = quantity.array and quantity.array.d
         kind = "axial" if quantity.kind == "rotation" else quantity.kind
-        return self.quantity("d" + quantity.name, kind, quantity.home, array, quantity.place,
-                             quantity.first)
+        return self.quantity("d" + quantity.name, kind, quantity.home, array, quantity.place)
 
     def components(self, kind: str, value: sp.Matrix) -> list[sp.Expr]:
         """Kept components of an expression; those a plane drops must vanish identically."""
