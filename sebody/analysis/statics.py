@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike
 
 from sebody import inputs
 from sebody.analysis import user_faults
+from sebody.analysis.folding import Tensions
 from sebody.analysis.settling import balance, settle
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.turning import Spin
@@ -44,7 +45,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     InputError
         Not a positive number of steps, a spin of the wrong shape.
     SimulationError
-        No equilibrium is found; what was found before is in its `result`.
+        No equilibrium is found, or one that only the model has, in which bodies without geometric
+        stiffening fold up under tension; what was found before is in its `result`.
     """
     steps = inputs.integer(steps, "steps", least=1)
     t = inputs.number(t, "t")
@@ -57,6 +59,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     set_loads(run.system, state.loads, t)
     loads = state.loads.copy()
     run.rows = [state.now[None].copy()]
+    tensions = Tensions.of(run)
     share, step, slack = 0.0, 1.0 / steps, False
     while share < 1.0 - 1e-12:
         kept = state.now.copy()
@@ -70,6 +73,10 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
             found = settle(run, tolerance, spinning, near=slack)
             slack |= found and not steady.rotates
         if found:
+            if not steady.rotates and (folded := tensions.spurious(run)):
+                state.now[:] = kept
+                raise SimulationError(f"the equilibrium at {target:.4g} of the load {folded}",
+                                      _result(run))
             share = target
             state.now[RECORD_T] = share
             run.rows.append(state.now[None].copy())
@@ -77,11 +84,11 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         state.now[:] = kept
         step /= 2
         if step < SMALLEST:
-            message = (f"no equilibrium was found above {share:.4g} of the load: the structure may "
-                       "buckle there, or a mechanism is free to move; use more steps or supports")
-            if did := user_faults.fault(model, -np.inf):
-                message = f"no equilibrium was found above {share:.4g} of the load: {did}"
-            raise SimulationError(message, _result(run))
+            reason = user_faults.fault(model, -np.inf) or tensions.reason(run) or (
+                "the structure may buckle there, or a mechanism is free to move; use more steps or "
+                "supports")
+            raise SimulationError(f"no equilibrium was found above {share:.4g} of the load: "
+                                  f"{reason}", _result(run))
     return _result(run)
 
 
