@@ -24,14 +24,15 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh, null_space
+from scipy.linalg import null_space
 from scipy.spatial.transform import Rotation
 
 from sebody.analysis.softening import fit, rows_of, skew
 from sebody.model.parts import Superelement
 
 PASSES = 30         # of the rotation of best fit
-LEAST = 1e-9        # share of a largest eigenvalue below which others are none
+LEAST = 1e-9        # share of a largest eigenvalue of geometry below which others are none
+ROUNDED = 1e-13     # likewise, of scaled stiffnesses
 
 
 class Load(NamedTuple):
@@ -65,7 +66,7 @@ class Axial(NamedTuple):
     moved: NDArray          # (p, 3, n) displacements by y
     points: NDArray         # (p, 3) about their mean
     flexible: NDArray       # (r, 3, 3) roots of the rotations of nodes by moments of unit size
-    free: NDArray           # (n, m) motions that leave the frame and one node where they are
+    compliance: NDArray     # (n, n) with the frame and one node held
 
     @classmethod
     def of(cls, part: Superelement) -> "Axial | None":
@@ -80,14 +81,12 @@ class Axial(NamedTuple):
         line = np.linalg.pinv(_moments(points), rcond=LEAST)
         turned = line @ np.einsum("jik,jkn->in", [skew(x) for x in points], moved)
         seen = (line @ _moments(points)) @ (rotated - turned)
-        flexible = seen @ np.linalg.pinv(body.stiffness, rcond=LEAST, hermitian=True) @ np.swapaxes(
-            seen, 1, 2)
-        values, axes = np.linalg.eigh(flexible)
         held = (fit(body, moved) if part.frame == "positions" else
                 np.einsum("j,jin->in", part.alpha_r, rotated))
+        compliance = _compliance(body.stiffness, np.vstack([moved[0], held]))
+        values, axes = np.linalg.eigh(seen @ compliance @ np.swapaxes(seen, 1, 2))
         return cls(body.stiffness, moved, points,
-                   axes * np.sqrt(np.maximum(values, 0.0))[:, None, :],
-                   null_space(np.vstack([moved[0], held])))
+                   axes * np.sqrt(np.maximum(values, 0.0))[:, None, :], compliance)
 
     def bound(self, y: NDArray) -> NDArray:
         """An upper bound of the shares of states y, (k, n): (k,)."""
@@ -110,8 +109,9 @@ class Axial(NamedTuple):
         shares = np.linalg.eigvalsh(np.swapaxes(self.flexible, 1, 2) @ work @ self.flexible)
         values, axes = np.linalg.eigh(virial)
         k = int(np.argmax(np.abs(values)))
-        return Load(float(values[k] / np.ptp(self.points @ axes[:, k])), float(np.abs(shares).max()),
-                    self._folding(forces, work), float(Rotation.from_matrix(turn).magnitude()))
+        force = values[k] / np.ptp(self.points @ axes[:, k])
+        return Load(float(force), float(np.abs(shares).max()), self._folding(forces, work),
+                    float(Rotation.from_matrix(turn).magnitude()))
 
     def _forces(self, y: NDArray) -> NDArray:
         """On the positions, (k, p, 3)."""
@@ -131,10 +131,17 @@ class Axial(NamedTuple):
         pulled = values > LEAST * np.abs(values).max()
         if not pulled.any():
             return 0.0
-        c = -np.einsum("jik,jkn->in", [skew(s) for s in forces], self.moved) @ self.free
+        c = -np.einsum("jik,jkn->in", [skew(s) for s in forces], self.moved)
         c = (axes[:, pulled].T @ c) / np.sqrt(values[pulled])[:, None]
-        return float(eigh(c.T @ c, self.free.T @ self.stiffness @ self.free,
-                          eigvals_only=True)[-1])
+        return float(np.linalg.eigvalsh(c @ self.compliance @ c.T)[-1])
+
+
+def _compliance(stiffness: NDArray, held: NDArray) -> NDArray:
+    """Inverse of a stiffness, (n, n), where some combinations of coordinates are zero, (k, n)."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1e-300))
+    free = scale[:, None] * null_space(held * scale)
+    own = free.T @ stiffness @ free
+    return free @ np.linalg.pinv(own, rcond=ROUNDED, hermitian=True) @ free.T
 
 
 def _moments(points: NDArray) -> NDArray:

@@ -131,9 +131,9 @@ def _too_strong(body: Superelement, axial: Axial, y: NDArray) -> Iterator[Findin
         return
     load = axial.load(y[np.argmax(bounds)])
     if load.share > AXIAL:
-        yield Finding("axial", body.name, load.share, f"{load.described} in body {body.name!r} counts "
-                      f"{load.share:.2g} times as much as its own bending stiffness (limit a third), "
-                      "which does not depend on it: bending is off by a tenth and more"
+        yield Finding("axial", body.name, load.share, f"{load.described} in body {body.name!r} "
+                      f"counts {load.share:.2g} times as much as its own bending stiffness (limit "
+                      "a third), which does not depend on it: bending is off by a tenth and more"
                       f"{load.consequence}; {remedy(body)}")
 
 

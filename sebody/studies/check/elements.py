@@ -35,7 +35,7 @@ from sebody.studies.check.states import (
     tangent_rate,
 )
 
-TURNED = 6.0 * np.pi    # angle that an element keeps: it has turned before
+TURNED = 2.0 * np.pi    # angle that an element keeps: it has turned once
 AMPLITUDES = np.array([0.7, 0.3, -0.4])     # of a load or drive, with its rates
 
 
