@@ -54,6 +54,10 @@ class FEModel:
         Edges of the sections of the cells of kind line, about their axes, for pictures [length].
     stress : sequence of SolidStress or BeamStress
         What stresses the displacements cause, one for each kind of element; see `solid_stress`.
+    followers : (n_nodes dimension, n_dofs), sparse, optional
+        Displacements of nodes without DOFs that follow others; rows of all other nodes are zero.
+    missing : mapping of str to str
+        Why the model has no 'stresses', 'stiffening' or 'exact inertia', where its source knows.
 
     Raises
     ------
@@ -76,6 +80,8 @@ class FEModel:
     units: str = ""
     outlines: NDArray | None = None
     stress: Sequence[SolidStress | BeamStress] = ()
+    followers: sparse.csr_array | None = None
+    missing: Mapping[str, str] = field(default_factory=dict)
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
 
     def __post_init__(self) -> None:
@@ -98,6 +104,9 @@ class FEModel:
         else:
             own = nodal_field(self.mass, self.coordinates, self.rows)
             object.__setattr__(self, "mass_field", own)
+        if self.followers is not None and self.followers.shape != (count * dimension, size):
+            raise InputError(f"followers has shape {self.followers.shape}; {count} nodes and "
+                             f"{size} DOFs need ({count * dimension}, {size})")
         checked = mesh.labels(self.labels, count), mesh.node_sets(self.node_sets, count), \
             mesh.cells(self.cells, count)
         for name, value in zip(("labels", "node_sets", "cells"), checked, strict=True):
@@ -206,12 +215,19 @@ class FEModel:
         return f"node {node if self.labels is None else self.labels[node]}"
 
     def by_nodes(self, shapes: NDArray) -> NDArray:
-        """Displacements (n_dofs, m) node after node, (n_nodes k, m); 0 for DOFs there are not."""
+        """Displacements (n_dofs, m) node after node, (n_nodes k, m); 0 for DOFs there are not.
+
+        Nodes without DOFs move as `followers` says.
+        """
         if self.dof_map is None:
             return shapes
         rows = self.rows.ravel()
         result = np.zeros((len(rows), shapes.shape[1]))
         result[rows >= 0] = shapes[rows[rows >= 0]]
+        if self.followers is not None:
+            count, dimension = self.coordinates.shape
+            moved = (self.followers @ shapes).reshape(count, dimension, -1)
+            result.reshape(count, -1, shapes.shape[1])[:, :dimension] += moved
         return result
 
 

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.fem.model import FEModel
-from sebody.io.deck import Deck, deck_cells, deck_sets, read_deck
-from sebody.io.prestress import deck_prestress, deck_stress
+from sebody.io.deck.model import deck_model
+from sebody.io.deck.reading import Deck, read_deck
 from sebody.io.reading import Reading
-from sebody.io.reduced import NAMES, reduced_parts
+from sebody.io.reduced import reduced_parts
 from sebody.io.text import fault, read_text
 from sebody.io.triplets import symmetric
 
@@ -153,18 +152,8 @@ def read_generated(path: Path) -> Reading:
         raise InputError(f"{path} has rows of node {unknown[0]}, which {deck.path} does not have: "
                          "give files of one job, flattened (no parts and instances)")
     stiffness, mass = (_matrix(found, keys) for found in entries)
-    index = {label: k for k, label in enumerate(deck.nodes)}
-    dof_map = [(index[label], NAMES[direction - 1]) for label, direction in keys.tolist()]
-    points = np.array(list(deck.nodes.values()))
-    by_nodes = np.full((len(points), 6), -1)
-    for row, (label, direction) in enumerate(keys.tolist()):
-        by_nodes[index[label], direction - 1] = row
-    geometric, note = deck_prestress(deck, index, points, by_nodes, stiffness)
-    model = FEModel(stiffness, mass, points, dof_map=dof_map, labels=np.array(list(deck.nodes)),
-                    node_sets=deck_sets(deck, index), cells=deck_cells(deck, index),
-                    geometric_stiffness=geometric, source=f"Abaqus {job}",
-                    stress=deck_stress(deck, index, points, by_nodes))
-    return Reading(model, notes={"geometric stiffness": note})
+    dofs = [(label, direction - 1) for label, direction in keys.tolist()]
+    return deck_model(deck, list(deck.nodes), dofs, stiffness, mass, f"Abaqus {job}")
 
 
 def _entries(path: Path) -> NDArray:

@@ -10,7 +10,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.fem.solids import TETRAHEDRON_EDGES, SolidPrestress, knows
-from sebody.fem.stress import solid_stress
+from sebody.fem.stress import elasticity, solid_stress
 from sebody.io.tied import motion_of
 
 _REMEDY = "give VectorH1(mesh, order=1) or order=2, whole (no dirichlet), on straight cells"
@@ -63,7 +63,7 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
                              "the material")
         whole = np.hstack([rows, np.full(rows.shape, -1)])
         stress = solid_stress(points, cells, *law)
-        geometric = SolidPrestress(points, [(*cells[0], *law)],
+        geometric = SolidPrestress(points, [(*cells[0], elasticity(*law))],
                                    motion_of(whole, np.zeros_like(points), space.ndof))
     return FEModel(*matrices, points, dof_map=dof_map, cells=cells,
                    node_sets=_boundaries(mesh, ends),

@@ -11,7 +11,7 @@ from sebody.errors import InputError
 from sebody.fem.isoparametric import reference_nodes
 from sebody.fem.model import FEModel, fe_matrix
 from sebody.fem.solids import SolidPrestress, knows
-from sebody.fem.stress import solid_stress
+from sebody.fem.stress import elasticity, solid_stress
 
 _REMEDY = ("give a Basis of an ElementVector of Lagrange elements of order one or two, such as "
            "ElementVector(ElementHex1()) or ElementVector(ElementTetP2())")
@@ -66,7 +66,7 @@ def from_skfem(basis: Any, stiffness: sparse.spmatrix, mass: sparse.spmatrix,
         by_nodes = sparse.csr_array((np.ones(basis.N), (3 * owner + axis, np.arange(basis.N))),
                                     shape=(basis.N, basis.N))
         stress = solid_stress(points, cells, *law)
-        geometric = SolidPrestress(points, [(*cells[0], *law)], by_nodes)
+        geometric = SolidPrestress(points, [(*cells[0], elasticity(*law))], by_nodes)
     return FEModel(stiffness, mass, points, dof_map=dof_map, cells=cells,
                    node_sets=_boundaries(basis, owner), geometric_stiffness=geometric,
                    stress=stress, source=f"scikit-fem, {_name(basis)}", units=units)

@@ -226,9 +226,9 @@ CALCULIX = {
     "a place that is none": Case("se.inp, line 2: 'x' is no number",
                                  replaced("se.inp", "10, 0.0", "10, x")),
     "an element cut": Case("is no label", replaced("se.inp", "E\n1, ", "E\n1, E, ")),
-    "a rigid body of nothing": Case("*RIGID BODY of node set FACE, which there is not", lines_of(
+    "a rigid body of nothing": Case("'FACE' is no label and no set of nodes", lines_of(
         "se.inp", lambda ls: [*ls, "*RIGID BODY, NSET=FACE, REF NODE=10"])),
-    "a rigid body without node": Case("*RIGID BODY has no REFNODE", lines_of(
+    "a rigid body without node": Case("*RIGID BODY has no REF NODE", lines_of(
         "se.inp", lambda ls: [*ls, "*RIGID BODY, NSET=LEFT"])),
     "a missing include": Case("mesh.inp does not exist", lines_of(
         "se.inp", lambda ls: [*ls, "*INCLUDE, INPUT=mesh.inp"])),

@@ -1,0 +1,69 @@
+"""The FE model of a deck and of matrices whose rows belong to its nodes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import sparse
+
+from sebody.fem.model import FEModel
+from sebody.io.deck.motion import deck_motion
+from sebody.io.deck.reading import CELLS, Deck
+from sebody.io.deck.solids import deck_prestress, deck_solids, deck_stress
+from sebody.io.reading import Reading
+from sebody.io.tied import tied_mass_field
+
+_NAMES = ("x", "y", "z", "rx", "ry", "rz")
+
+
+def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]],
+               stiffness: sparse.csc_array, mass: sparse.csc_array, source: str) -> Reading:
+    """The FE model.
+
+    Parameters
+    ----------
+    labels : sequence of int
+        Nodes of the model.
+    dofs : sequence of (int, int)
+        Label and direction, 0 to 5, of every row.
+    stiffness, mass : (n_dofs, n_dofs)
+    source : str
+        In words.
+    """
+    index = {label: k for k, label in enumerate(labels)}
+    rows = np.full((len(labels), 6), -1)
+    for row, (label, direction) in enumerate(dofs):
+        rows[index[label], direction] = row
+    motion = deck_motion(deck, index, np.array([deck.nodes[label] for label in labels]), rows,
+                         len(dofs))
+    solids = deck_solids(deck, index, motion)
+    geometric, note = deck_prestress(solids, motion, stiffness)
+    present = rows[:, 0] >= 0
+    field = tied_mass_field(mass, motion.points[present], rows[present])
+    missing = {} if geometric else {"stiffening": note}
+    if solids.lacks:
+        missing["stresses"] = "; ".join(solids.lacks)
+    follows = motion.known & ~present
+    model = FEModel(
+        stiffness, mass, motion.points,
+        dof_map=[(index[label], _NAMES[direction]) for label, direction in dofs],
+        labels=np.array(labels), node_sets=_node_sets(deck, index), cells=_cells(deck, index),
+        mass_field=field, geometric_stiffness=geometric,
+        stress=deck_stress(solids, motion.points), source=source,
+        followers=motion.matrix.multiply(np.repeat(follows, 3)[:, None]), missing=missing)
+    return Reading(model, notes={"geometric stiffness": note} if geometric else {})
+
+
+def _node_sets(deck: Deck, index: dict[int, int]) -> dict[str, list[int]]:
+    """Node sets and surfaces as node indices."""
+    return {name: list(dict.fromkeys(index[label] for label in labels if label in index))
+            for name, labels in deck.named_nodes()}
+
+
+def _cells(deck: Deck, index: dict[int, int]) -> list[tuple[str, np.ndarray]]:
+    """Connectivity of the solids by meshio's names."""
+    found: dict[str, list] = {}
+    for group in deck.elements:
+        if group.kind in CELLS:
+            found.setdefault(CELLS[group.kind], []).extend(
+                [index[label] for label in nodes] for nodes in group.nodes.values())
+    return [(kind, np.array(cells)) for kind, cells in found.items()]
