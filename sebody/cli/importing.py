@@ -41,7 +41,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 def run(options: argparse.Namespace) -> int:
     """Read, reduce, write, and say what was found."""
     from sebody.files import check_target
-    from sebody.io.body_file import TARGET, write_body_file
+    from sebody.io.body_file import TARGET, lean, write_body_file
     from sebody.io.importing import imported
     from sebody.io.interfaces import parsed
     from sebody.io.registry import read_source
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
                     options.units, options.file)
     body = None if options.unchecked else file.body()
     if options.lean:
-        file.parts["recovery"] = None
+        file = lean(file)
     write_body_file(file, options.output)
     for name, text in file.provenance.items():
         print(f"{name}: {text}")

@@ -8,6 +8,7 @@ from scipy import sparse
 
 from sebody import inputs
 from sebody.fem.layout import SOLID
+from sebody.fem.materials import Material
 from sebody.fem.model import FEModel, assemble
 from sebody.fem.stress import SolidStress, elasticity
 
@@ -73,6 +74,7 @@ def hexahedral_block(
     columns = (3 * np.array(_MESHIO)[:, None] + np.arange(3)).ravel()
     own = SolidStress("hexahedron", cells, nodes, law, strains[_MESHIO][:, :, columns])
     return FEModel(stiffness, mass, nodes, SOLID, cells=[("hexahedron", cells)], stress=(own,),
+                   materials=[Material("", float(np.sqrt(youngs_modulus / density)), density)],
                    geometric_stiffness=BrickPrestress(dofs, volume * law @ strains, slopes,
                                                       3 * len(nodes)))
 

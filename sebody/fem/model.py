@@ -13,7 +13,9 @@ from sebody.fem import mesh
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SOLID, SPATIAL, equal_rows, mapped_rows
 from sebody.fem.mass_field import MassField, nodal_field
+from sebody.fem.materials import Material, checked_materials
 from sebody.fem.stress import SolidStress
+from sebody.units import parsed_units
 
 SYMMETRY_LIMIT = 1e-8   # difference of entries across the diagonal, relative to its own entries
 
@@ -48,8 +50,10 @@ class FEModel:
         Named sets of node indices.
     cells : sequence of (str, (n, k) of int)
         Kind of the elements, by meshio's names, and their nodes.
-    source, units : str
-        Where the model comes from and its units, in words.
+    source : str
+        Where the model comes from, in words.
+    units : str
+        Units of its numbers, such as ``mm t N s``.
     outlines : (n_lines, corners, 3), optional
         Edges of the sections of the cells of kind line, about their axes, for pictures [length].
     stress : sequence of SolidStress or BeamStress
@@ -57,7 +61,10 @@ class FEModel:
     followers : (n_nodes dimension, n_dofs), sparse, optional
         Displacements of nodes without DOFs that follow others; rows of all other nodes are zero.
     missing : mapping of str to str
-        Why the model has no 'stresses', 'stiffening' or 'exact inertia', where its source knows.
+        Why the model has no 'stresses', 'stiffening' or 'exact inertia', where its source knows:
+        ``why; what to do``.
+    materials : sequence of Material
+        What it is made of, for the units.
 
     Raises
     ------
@@ -82,6 +89,7 @@ class FEModel:
     stress: Sequence[SolidStress | BeamStress] = ()
     followers: sparse.csr_array | None = None
     missing: Mapping[str, str] = field(default_factory=dict)
+    materials: Sequence[Material] = ()
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
 
     def __post_init__(self) -> None:
@@ -116,6 +124,8 @@ class FEModel:
             object.__setattr__(self, "outlines", inputs.array(
                 self.outlines, "outlines", (lines, None, 3),
                 remedy=f"give corners (x, y, z) for each of the {lines} cells of kind line"))
+        object.__setattr__(self, "materials", checked_materials(self.materials))
+        object.__setattr__(self, "units", str(parsed_units(self.units) or ""))
         remedy = "give SolidStress, as solid_stress makes them"
         object.__setattr__(self, "stress", tuple(
             inputs.instance(one, "stress", SolidStress | BeamStress, remedy)

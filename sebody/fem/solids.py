@@ -65,6 +65,11 @@ class SolidPrestress:
             np.add.at(found, nodes, pushed.sum(axis=1))
         return self._motion.T @ found.ravel()
 
+    @property
+    def volume(self) -> float:
+        """Of all cells."""
+        return float(sum(volumes.sum() for _, _, volumes, _ in self._groups))
+
     def _stressed(self, displacement: NDArray) -> Iterator[tuple[NDArray, NDArray, NDArray]]:
         """Of every group nodes (e, a), slopes and ``sigma_ij N_a,j`` times volume (e, g, a, 3)."""
         moved = (self._motion @ displacement).reshape(-1, 3)

@@ -17,6 +17,8 @@ from sebody.io.reading import Reading
 from sebody.io.reduced import NAMES
 
 _REMEDY = "write file.full of a free model (WRFULL or a modal analysis), and file.rst or file.cdb"
+_NO_MATERIAL = ("materials are not read from files of Ansys; give the FE model of read_fe_model "
+                "its stress=solid_stress(...), or divide the body where it spins fast")
 # of elements that are solids: meshio's names by the number of different nodes, see `_cell`
 _SOLIDS = {20: "hexahedron20", 8: "hexahedron", 10: "tetra10", 4: "tetra"}
 
@@ -46,7 +48,8 @@ def read(path: Path) -> Reading:
     dof_map = [(int(node), NAMES[dof]) for node, dof in zip(places, reference[:, 1], strict=True)]
     return Reading(FEModel(
         stiffness, mass, np.asarray(mesh.nodes)[:, :3], dof_map=dof_map, labels=labels,
-        node_sets=_sets(mesh, labels), cells=_cells(mesh, labels), source=f"Ansys {path.name}"))
+        node_sets=_sets(mesh, labels), cells=_cells(mesh, labels), source=f"Ansys {path.name}",
+        missing=dict.fromkeys(("stresses", "stiffening"), _NO_MATERIAL)))
 
 
 def full_matrices(path: Path) -> tuple[np.ndarray, sparse.csc_array, sparse.csc_array]:

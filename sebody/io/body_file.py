@@ -8,7 +8,7 @@ format and version, layout, names of the boundary nodes, units, provenance.
 import json
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -24,11 +24,13 @@ from sebody.files import check_target, replacing
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
+from sebody.units import parsed_units
 
 FORMAT, VERSION = "sebody body", 1
 TARGET = "body file", (".npz",)     # see `files.check_target`
 STRESSES = SolidStress, BeamStress, StressModes     # of a Recovery
 PARTS = {"invariants": InertiaInvariants, "recovery": Recovery}     # of a ReducedBody
+_LEAN = "shapes and mesh of the FE model were left out of the file; write it with them"
 _REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
 
 
@@ -43,7 +45,7 @@ class BodyFile:
     names : tuple of str
         Of the boundary nodes.
     units : str
-        In words; the program has none.
+        Units of its numbers, such as ``mm t N s``; empty if they are not known.
     provenance : dict of str
         What the body was made from and how.
     """
@@ -67,7 +69,7 @@ class BodyFile:
         InputError
             See `ReducedBody`.
         """
-        return ReducedBody(**self.parts)
+        return ReducedBody(**self.parts, units=self.units)
 
 
 def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None, *,
@@ -80,7 +82,7 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     names : tuple of str, optional
         Of the boundary nodes, ``node 0``, ``node 1``, ... by default.
     units : str
-        Units of its numbers, in words.
+        Units of its numbers, such as ``mm t N s``; those of the body by default.
     provenance : dict of str, optional
         What the body was made from and how.
     recovery : bool
@@ -96,10 +98,21 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     """
     inputs.instance(body, "body", ReducedBody, "give a ReducedBody")
     names = checked_names(names, len(body.keeps))
-    parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
-    if not inputs.flag(recovery, "recovery"):
-        parts["recovery"] = None
-    return write_body_file(BodyFile(parts, names, units, provenance or {}), path)
+    file = BodyFile(body_parts(body), names, str(parsed_units(units) or body.units),
+                    provenance or {})
+    return write_body_file(file if inputs.flag(recovery, "recovery") else lean(file), path)
+
+
+def body_parts(body: ReducedBody) -> dict[str, Any]:
+    """Arguments of a body but for its units."""
+    return {one.name: getattr(body, one.name) for one in fields(ReducedBody)
+            if one.name != "units"}
+
+
+def lean(file: BodyFile) -> BodyFile:
+    """A body file without the shapes and the mesh of the FE model."""
+    missing = {**file.parts.get("missing", {}), "stresses": _LEAN}
+    return replace(file, parts={**file.parts, "recovery": None, "missing": missing})
 
 
 def load_body(path: str | Path) -> ReducedBody:
@@ -196,7 +209,10 @@ def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -
         elif isinstance(value, np.ndarray):
             arrays[prefix + name] = value
         elif isinstance(value, Mapping):
-            arrays |= {f"{prefix}{name}.{key}": array for key, array in value.items()}
+            arrays |= {f"{prefix}{name}.{key}": one for key, one in value.items()
+                       if isinstance(one, np.ndarray)}
+            if texted := {key: one for key, one in value.items() if isinstance(one, str)}:
+                texts[prefix + name] = texted
         elif value is not None:
             texts[prefix + name] = _named(value, prefix + name, arrays)
 

@@ -1,7 +1,6 @@
 """From the files of an FE program to a body and its file."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.files import check_target
-from sebody.io.body_file import TARGET, BodyFile, write_body_file
+from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
 from sebody.io.interfaces import Interface, boundary_items, parsed
 from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
@@ -20,6 +19,7 @@ from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.methods import reduce
 from sebody.reduction.rigid import rigid_motions
+from sebody.units import parsed_units
 
 
 def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
@@ -64,7 +64,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     kind : str, optional
         Name of the source, see `SOURCES`; guessed from the files by default.
     units : str
-        Units of the numbers, in words.
+        Units of the numbers, such as ``mm t N s``.
     output : str or Path, optional
         Body file to write.
 
@@ -87,7 +87,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
 def imported(reading: Reading, interfaces: list[Interface], modes: int | Accuracy, method: str,
              units: str, path: str | Path) -> BodyFile:
     """What is to be written of a reading."""
-    model = reading.model
+    model, units = reading.model, str(parsed_units(units) or "")
     if not isinstance(model, FEModel):
         return _reduced(reading, interfaces, modes, units)
     items = boundary_items(model, interfaces, reading.rotation_nodes)
@@ -100,8 +100,7 @@ def imported(reading: Reading, interfaces: list[Interface], modes: int | Accurac
     provenance = {"source": model.source or str(path), "method": f"{method}, {body.modes} modes",
                   "FE matrices": f"{model.stiffness.shape[0]} rows, |K R| of rigid "
                   f"motions up to {rigid_residual(model):.4e} of a row's entries", **reading.notes}
-    parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
-    return BodyFile(parts, names, units or model.units, provenance)
+    return BodyFile(body_parts(body), names, units or model.units, provenance)
 
 
 def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accuracy,

@@ -21,6 +21,8 @@ from sebody.io.text import fault, first_repeated, read_text
 _DIRECTIONS = {word: name for k, name in enumerate(NAMES)
                for word in (("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ")[k], str(k + 1),
                             name.upper())}
+_NO_MESH = ("the files have no mesh and no materials; give the FE model of read_fe_model its "
+            "stress=solid_stress(...), or divide the body where it spins fast")
 _REMEDY = "give NAME_K.mtx, NAME_M.mtx, NAME.mapping and NAME.nodes, see sebody/io/README.md"
 
 
@@ -53,7 +55,8 @@ def read(path: Path) -> Reading:
                              f"{path.with_name(f'{name}.nodes')}: list all nodes there")
     model = FEModel(stiffness, mass, np.array(list(points.values())),
                     dof_map=[(index[label], kind) for label, kind in rows],
-                    labels=np.array(list(points)), source=f"Matrix Market {name}")
+                    labels=np.array(list(points)), source=f"Matrix Market {name}",
+                    missing=dict.fromkeys(("stresses", "stiffening"), _NO_MESH))
     return Reading(model)
 
 

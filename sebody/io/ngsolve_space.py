@@ -8,11 +8,13 @@ from scipy import sparse
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.materials import uniform_material
 from sebody.fem.model import FEModel
 from sebody.fem.solids import TETRAHEDRON_EDGES, SolidPrestress, knows
 from sebody.fem.stress import elasticity, solid_stress
 from sebody.io.tied import motion_of
 
+_NO_MATERIAL = "no material was given; pass youngs_modulus and poisson_ratio"
 _REMEDY = "give VectorH1(mesh, order=1) or order=2, whole (no dirichlet), on straight cells"
 _NAMES = ("x", "y", "z")
 _KINDS = {("TET", 1): "tetra", ("TET", 2): "tetra10"}
@@ -34,7 +36,7 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
     youngs_modulus, poisson_ratio : float, optional
         Isotropic material, for stresses and geometric stiffness; none without them.
     units : str
-        In words.
+        Of the numbers, such as ``mm t N s``.
 
     Raises
     ------
@@ -54,7 +56,8 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
         for row, name in zip(own, _NAMES, strict=False):
             dof_map[row] = (node, name)
     cells = _cells(mesh, points, len(corners), ends)
-    geometric, stress = None, ()
+    geometric, stress, materials = None, (), ()
+    missing = dict.fromkeys(("stresses", "stiffening"), _NO_MATERIAL)
     if youngs_modulus is not None and poisson_ratio is not None:
         law = (inputs.number(youngs_modulus, "youngs_modulus", above=0),
                inputs.number(poisson_ratio, "poisson_ratio", above=-1, below=0.5))
@@ -65,10 +68,13 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
         stress = solid_stress(points, cells, *law)
         geometric = SolidPrestress(points, [(*cells[0], elasticity(*law))],
                                    motion_of(whole, np.zeros_like(points), space.ndof))
+        materials = [uniform_material(law[0], matrices[1].sum() / dimension, geometric.volume)]
+        missing = {}
     return FEModel(*matrices, points, dof_map=dof_map, cells=cells,
                    node_sets=_boundaries(mesh, ends),
                    geometric_stiffness=geometric, stress=stress,
-                   source=f"NGSolve, VectorH1 of order {2 if len(ends) else 1}", units=units)
+                   source=f"NGSolve, VectorH1 of order {2 if len(ends) else 1}", units=units,
+                   missing=missing, materials=materials)
 
 
 def _rows(space: Any) -> tuple[Any, int, NDArray]:

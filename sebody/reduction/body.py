@@ -10,13 +10,16 @@ from scipy.linalg import LinAlgError, block_diag, eigh
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.materials import Material, checked_materials
 from sebody.reduction import checks
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.loads import named_vectors
+from sebody.reduction.missing import checked_missing, lacks, sentences
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.rigid import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
+from sebody.units import parsed_units
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -53,6 +56,12 @@ class ReducedBody:
         How the body was made, in sentences, for `summary`.
     loads : mapping of str to (n,), optional
         Reduced loads by name, ``Phi^T p``; see `Model.body_load`.
+    missing : mapping of str to str
+        Why the body has no 'stresses', 'stiffening' or 'exact inertia', ``why; what to do``.
+    materials : tuple of Material
+        What it is made of.
+    units : str
+        Units of its numbers, such as ``mm t N s``; empty if they are not known.
 
     Raises
     ------
@@ -71,6 +80,9 @@ class ReducedBody:
     recovery: Recovery | None = None
     notes: tuple[str, ...] = ()
     loads: Mapping[str, NDArray] = field(default_factory=dict)
+    missing: Mapping[str, str] = field(default_factory=dict)
+    materials: tuple[Material, ...] = ()
+    units: str = ""
 
     def __post_init__(self) -> None:
         coordinates = inputs.reals(self.coordinates, "coordinates",
@@ -105,6 +117,9 @@ class ReducedBody:
                              self.rigid_modes_about(self.invariants.origin), names)
         loads = named_vectors(self.loads, len(names), "coordinates of the body")
         object.__setattr__(self, "loads", {n: _read_only(load) for n, load in loads.items()})
+        object.__setattr__(self, "missing", checked_missing(self.missing))
+        object.__setattr__(self, "materials", checked_materials(self.materials))
+        object.__setattr__(self, "units", str(parsed_units(self.units) or ""))
 
     def _store(self, name: str, array: NDArray) -> None:
         object.__setattr__(self, name, _read_only(array))
@@ -156,6 +171,20 @@ class ReducedBody:
         moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
         return _read_only(middle + moments / self.total_mass)
 
+    @property
+    def lacks(self) -> dict[str, str]:
+        """Which of stresses, stiffening and exact inertia the body does not know, and why."""
+        return lacks(self._stressed, self.invariants is not None, self.missing)
+
+    @property
+    def cautions(self) -> list[str]:
+        """The same in sentences ``no stresses: why; what to do``."""
+        return sentences(self.lacks, self._stressed)
+
+    @property
+    def _stressed(self) -> bool:
+        return self.recovery is not None and bool(self.recovery.stress)
+
     def summary(self) -> str:
         """Order, mass, frequencies and effective masses of the internal modes, and the notes."""
         nodes, n = len(self.coordinates), len(self.mass)
@@ -168,7 +197,7 @@ class ReducedBody:
             *(f"boundary node {k} at {place(point)} keeps {keep!r}"
               for k, (point, keep) in enumerate(kept)),
             *mode_lines(self.stiffness, self.mass, self.rigid_modes_about(centre), self.modes),
-            *self.notes])
+            *self.notes, *(f"caution: {text}" for text in self.cautions)])
 
     def displacements(self, y: ArrayLike) -> NDArray:
         """Displacements of all FE nodes, with those of second order, (n_nodes, dofs_per_node).

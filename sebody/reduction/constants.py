@@ -40,7 +40,7 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     if fe_model.mass_field is not None:
         invariants, extra = _invariants(body, fe_model, boundary, component, interior)
         shapes = np.hstack([shapes, extra.load_modes])
-    notes = (*body.notes, _inertia_note(fe_model), _stiffening_note(extra))
+    notes = (*body.notes, *_inertia_notes(fe_model), *_stiffening_notes(fe_model, extra))
     recovery = _recovery(fe_model, shapes)
     if fe_model.stress:
         static = static_correction(fe_model, boundary, component, interior, body, forces)
@@ -60,24 +60,25 @@ def _recovery(fe_model: FEModel, shapes: NDArray) -> Recovery:
                     outlines=fe_model.outlines)
 
 
-def _inertia_note(fe_model: FEModel) -> str:
+def _inertia_notes(fe_model: FEModel) -> list[str]:
     """What the inertia of the moving body is made of."""
     if fe_model.mass_field is None:
-        return ("no exact inertia: the mass is not that of points at the nodes, as where nodal "
-                "rotations carry a consistent mass; give a mass_field for it")
-    dimension = fe_model.coordinates.shape[1]
-    turning = fe_model.rows[:, dimension:]
-    massless = turning.size and (turning >= 0).any() and fe_model.mass_field.rotation is None
-    return "exact inertia from the points of the mass" + (
-        "; nodal rotations carry none" if massless else "")
+        return []
+    turning = fe_model.rows[:, fe_model.coordinates.shape[1]:]
+    turning = turning[turning >= 0]
+    massless = len(turning) and not fe_model.mass.diagonal()[turning].any()
+    return ["exact inertia from the points of the mass" + (
+        "; nodal rotations carry none" if massless else "")]
 
 
-def _stiffening_note(extra: Stiffening | None) -> str:
-    if extra is None or not len(extra.Q) + len(extra.lam):
-        return "no stiffening by stresses"
+def _stiffening_notes(fe_model: FEModel, extra: Stiffening | None) -> list[str]:
+    if extra is None or fe_model.geometric_stiffness is None:
+        return []
+    if not len(extra.Q) + len(extra.lam):
+        return ["stiffening by stresses: none that matters"]
     rest = "; the others change little" if len(extra.lam) < extra.motions else ""
-    return (f"stiffening by stresses: {len(extra.Q)} load modes, {len(extra.lam)} of "
-            f"{extra.motions} resultants of second order{rest}")
+    return [f"stiffening by stresses: {len(extra.Q)} load modes, {len(extra.lam)} of "
+            f"{extra.motions} resultants of second order{rest}"]
 
 
 def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,

@@ -39,6 +39,7 @@ from sebody.reduction.component import ComponentModes, check_count, static_modes
 from sebody.reduction.constants import with_constants, with_shapes
 from sebody.reduction.factor import is_strainless
 from sebody.reduction.loads import fe_loads, with_residual_modes
+from sebody.reduction.missing import missing_of
 from sebody.reduction.rigid import strainless_coordinates
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
@@ -112,10 +113,11 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     reduced = component.project(*matrices)
     if method == "macneal":
         component, reduced = _without_residual_mass(component, reduced[0], free, matrices[1])
-        notes.append("no exact inertia: residual modes carry no mass")
     body = ReducedBody(*reduced, edge.coordinates, edge.keeps, len(component.omega_squared),
                        notes=tuple(notes),
-                       loads=dict(zip(names, forces.T @ component.basis, strict=True)))
+                       loads=dict(zip(names, forces.T @ component.basis, strict=True)),
+                       missing=missing_of(fe_model, method), materials=fe_model.materials,
+                       units=fe_model.units)
     if method == "macneal":
         body = with_shapes(body, fe_model, edge, component)
     else:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly import numbering
 from sebody.assembly.numbering import Numbering
+from sebody.fem import materials
 from sebody.model import histories, mechanism, parts
 from sebody.model.mechanism import Mechanism
 from sebody.reduction import invariants, recovery
@@ -26,7 +27,7 @@ def _kinds(*modules: ModuleType) -> dict[str, type]:
             if isinstance(kind, type) and (is_dataclass(kind) or hasattr(kind, "_fields"))}
 
 
-KINDS = _kinds(parts, histories, mechanism, numbering, invariants, recovery)
+KINDS = _kinds(parts, histories, mechanism, numbering, invariants, recovery, materials)
 
 
 def described(model: Mechanism, numbers: Numbering) -> tuple[str, NDArray]:

@@ -21,7 +21,7 @@ from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces
 from sebody.results.recording import EVALUATED, Recording, Start
 
-VERSION = 2
+VERSION = 3
 OWN = "sebody/"         # beginning of the names of members that are no named histories
 NOTES = "seconds", "failure", "warnings", "error", "all_seconds"        # members of a Recording
 

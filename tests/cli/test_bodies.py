@@ -20,7 +20,7 @@ def test_import_inspect_run(tmp_path, capsys):
     assert said.endswith(f"body: {body}, see 'sebody inspect {body}'\n")
     assert main(["inspect", str(body), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["layout"]["names"] == ["left", "right"] and found["units"] == "m, kg, s"
+    assert found["layout"]["names"] == ["left", "right"] and found["units"] == "m kg N s"
     assert found["mass"] == pytest.approx(6.0)
     assert main(["run", "imported-link", "--set", f"body={body}", "--t-end", "0.05"]) == 0
     assert "four-bar with a coupler of 2 interfaces and 3 modes" in capsys.readouterr().out

@@ -56,7 +56,7 @@ def test_damaged_and_foreign_hdf5_files(result, tmp_path):
     with h5py.File(path, "r+") as file:
         del file["sebody/notes"]
         file["sebody/notes"] = json.dumps({"version": 1})
-    with pytest.raises(InputError, match="run.h5 is of version 1, this program reads 2"):
+    with pytest.raises(InputError, match="run.h5 is of version 1, this program reads 3"):
         Result.load(path)
 
 

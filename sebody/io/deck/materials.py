@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from sebody.fem.materials import Material
 from sebody.fem.stress import elasticity
 from sebody.io.deck.cards import Card
 
@@ -18,7 +19,7 @@ _OURS = np.array([0, 1, 2, 5, 4, 3])
 
 
 @dataclass(eq=False)
-class Material:
+class DeckMaterial:
     """A material as far as the deck gives it.
 
     Parameters
@@ -34,10 +35,13 @@ class Material:
     density: float | None = None
     lack: str = "has no *ELASTIC"
 
-    @property
-    def youngs_modulus(self) -> float | None:
-        """Of the stiffest axis."""
-        return None if self.law is None else float(1 / np.diag(np.linalg.inv(self.law))[:3].min())
+    def substance(self, name: str) -> Material | None:
+        """What tells the units, by Young's modulus of the stiffest axis; None if it is not given.
+        """
+        if self.law is None or not self.density:
+            return None
+        modulus = 1 / np.diag(np.linalg.inv(self.law))[:3].min()
+        return Material(name, float(np.sqrt(modulus / self.density)), self.density)
 
 
 class Orientation(NamedTuple):
@@ -103,7 +107,7 @@ class Section(NamedTuple):
     orientation: str
 
 
-def read_elastic(material: Material, card: Card) -> None:
+def read_elastic(material: DeckMaterial, card: Card) -> None:
     """The law of *ELASTIC.
 
     Raises

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import sparse
 
+from sebody.fem.materials import Material
 from sebody.fem.model import FEModel
 from sebody.io.deck.motion import deck_motion
 from sebody.io.deck.reading import CELLS, Deck
@@ -12,6 +13,7 @@ from sebody.io.deck.solids import deck_prestress, deck_solids, deck_stress
 from sebody.io.reading import Reading
 from sebody.io.tied import tied_mass_field
 
+_REMEDY = "correct the deck and import again"
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
@@ -39,9 +41,12 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
     geometric, note = deck_prestress(solids, motion, stiffness)
     present = rows[:, 0] >= 0
     field = tied_mass_field(mass, motion.points[present], rows[present])
-    missing = {} if geometric else {"stiffening": note}
+    missing = {} if geometric else {"stiffening": f"{note}; {_REMEDY}"}
     if solids.lacks:
-        missing["stresses"] = "; ".join(solids.lacks)
+        missing["stresses"] = f"{', '.join(solids.lacks)}; {_REMEDY}"
+    if field is None:
+        missing["exact inertia"] = ("the mass matrix is not that of solids whose nodes are free, "
+                                    "tied or follow a rigid body; use solids alone")
     follows = motion.known & ~present
     model = FEModel(
         stiffness, mass, motion.points,
@@ -49,8 +54,16 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
         labels=np.array(labels), node_sets=_node_sets(deck, index), cells=_cells(deck, index),
         mass_field=field, geometric_stiffness=geometric,
         stress=deck_stress(solids, motion.points), source=source,
-        followers=motion.matrix.multiply(np.repeat(follows, 3)[:, None]), missing=missing)
+        followers=motion.matrix.multiply(np.repeat(follows, 3)[:, None]), missing=missing,
+        materials=_materials(deck))
     return Reading(model, notes={"geometric stiffness": note} if geometric else {})
+
+
+def _materials(deck: Deck) -> list[Material]:
+    """Materials that sections use and of which the deck says enough."""
+    used = {section.material: deck.materials.get(section.material) for section in deck.sections}
+    found = [one.substance(name) for name, one in used.items() if one is not None]
+    return [one for one in found if one is not None]
 
 
 def _node_sets(deck: Deck, index: dict[int, int]) -> dict[str, list[int]]:

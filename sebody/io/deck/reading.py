@@ -9,7 +9,7 @@ from typing import NamedTuple
 from sebody.errors import InputError
 from sebody.io.deck.cards import Card, Row, plain_name, read_cards
 from sebody.io.deck.materials import (
-    Material,
+    DeckMaterial,
     Orientation,
     Section,
     read_elastic,
@@ -70,7 +70,7 @@ class Deck:
     rigid_bodies: list[RigidBody] = field(default_factory=list)
     coupling: RigidBody | None = None       # the last one
     ties: list[Tie] = field(default_factory=list)
-    materials: dict[str, Material] = field(default_factory=dict)
+    materials: dict[str, DeckMaterial] = field(default_factory=dict)
     orientations: dict[str, Orientation] = field(default_factory=dict)
     sections: list[Section] = field(default_factory=list)
     supports: list[Row] = field(default_factory=list)       # rows of *BOUNDARY
@@ -215,7 +215,7 @@ def _tie(deck: Deck, card: Card) -> None:
 def _material(deck: Deck, card: Card) -> None:
     name = card.name("NAME")
     deck.materials.pop(name, None)      # the last one read is the last in order
-    deck.materials[name] = Material()
+    deck.materials[name] = DeckMaterial()
 
 
 def _elastic(deck: Deck, card: Card) -> None:
@@ -228,7 +228,7 @@ def _density(deck: Deck, card: Card) -> None:
         _last(deck).density = card.reals()[0]
 
 
-def _last(deck: Deck) -> Material:
+def _last(deck: Deck) -> DeckMaterial:
     return next(reversed(deck.materials.values()))
 
 

@@ -118,7 +118,7 @@ def deck_prestress(solids: Solids, motion: Motion, stiffness: sparse.csc_array
         What the stresses are compared with.
     """
     if solids.lacks:
-        return None, "; ".join(solids.lacks)
+        return None, ", ".join(solids.lacks)
     unknown = [group.kind for group in solids.groups if not knows(group.kind)]
     if unknown:
         return None, f"cells of kind {unknown[0]} have no full integration here"
