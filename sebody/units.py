@@ -45,6 +45,8 @@ class Units(NamedTuple):
 
     def of(self, words: str) -> str:
         """The unit of a quantity in words, ``force/length^2``; words that are none stay."""
+        if words == "1/time" and self.time == "s":
+            return "Hz"
         if words == "force/length^2":
             value = self.factor(words)
             return _named(PRESSURES, value) or f"{self.force}/{self.length}^2"

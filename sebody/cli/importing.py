@@ -59,6 +59,9 @@ def run(options: argparse.Namespace) -> int:
         print(f"{name}: {text}")
     if body:
         print(body.summary())
+    for text in file.cautions:
+        if body is None or text not in body.cautions:
+            print(f"caution: {text}")
     print(f"body: {options.output}, see 'sebody inspect {options.output}'")
     return 0
 

@@ -1,12 +1,12 @@
 """Materials by what tells the units of a model: speed of sound and density."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from sebody import inputs
-from sebody.units import Units, common_units
+from sebody.units import Units, common_units, parsed_units
 
 SLOWEST, FASTEST = 100.0, 2e4   # speed of sound in a solid, sqrt(E / density) [m/s]
 LIGHTEST, HEAVIEST = 10.0, 3e4  # its density [kg/m^3]
@@ -72,17 +72,24 @@ def doubt(material: Material, units: Units | None) -> tuple[str, str] | None:
             return None
         density = "" if material.density is None else f" and density {material.density:.6g}"
         return (f"{named}speed of sound {material.speed:.6g}{density} are those of no solid in "
-                "any common set of units", f"check E and density; {_steel(None)}; name the units")
+                "any common set of units",
+                f"check E and density, {_steel(None)}, and name the units")
     speed = material.speed * units.factor("length/time")
     if not SLOWEST <= speed <= FASTEST:
         return (f"{named}the speed of sound sqrt(E/density) is {speed:.3g} m/s in the units "
                 f"{units}, no solid has less than {SLOWEST:g} or more than {FASTEST:g}",
-                f"check E, density and units; {_steel(units)}")
+                f"check E, density and units, {_steel(units)}")
     if material.density is not None and not _fits(material, units):
         density = material.density * units.factor("mass/length^3")
         return (f"{named}the density is {density:.3g} kg/m^3 in the units {units}",
-                f"check E, density and units; {_steel(units)}")
+                f"check E, density and units, {_steel(units)}")
     return None
+
+
+def doubts(materials: Iterable[Material], units: str) -> list[str]:
+    """What `doubt` says of materials, in sentences ``what; what to do``, each once."""
+    found = [doubt(Material(*one), parsed_units(units)) for one in materials]
+    return [f"{text}; {remedy}" for text, remedy in dict.fromkeys(filter(None, found))]
 
 
 def _fits(material: Material, units: Units) -> bool:

@@ -19,10 +19,12 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.beam_stress import BeamStress
+from sebody.fem.materials import doubts
 from sebody.fem.stress import SolidStress, StressModes
 from sebody.files import check_target, replacing
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.missing import lacks, sentences
 from sebody.reduction.recovery import Recovery
 from sebody.units import parsed_units
 
@@ -60,6 +62,14 @@ class BodyFile:
         """FE nodes (n, 3), planar (n, 2), and elements by kind, if the body knows its shapes."""
         recovery = self.parts.get("recovery")
         return recovery and (recovery.points, recovery.cells)
+
+    @property
+    def cautions(self) -> list[str]:
+        """What the body does not know, and materials of other units: ``what; what to do``."""
+        parts = self.parts
+        stressed = parts.get("recovery") is not None and bool(parts["recovery"].stress)
+        found = lacks(stressed, parts.get("invariants") is not None, parts.get("missing", {}))
+        return sentences(found, stressed) + doubts(parts.get("materials", ()), self.units)
 
     def body(self) -> ReducedBody:
         """The body, checked.

@@ -19,6 +19,7 @@ from sebody.results.drawing import overview
 from sebody.results.result import Result
 from sebody.results.scenery import DrawnBody, Scenery, extent, scenery
 from sebody.results.templates import filled
+from sebody.results.units import unit
 
 SUFFIXES = ".html", ".gif", ".mp4"
 SCRIPTS = ("numbers", "vectors", "motion", "shapes", "renderer", "camera", "scene", "plot", "main")
@@ -31,6 +32,7 @@ ROOM = 1.1              # of what is seen at the start, over what moves
 SAMPLED = 200           # frames at which the largest displacement is looked for
 REAL_TIME = (2.0, 120.0)        # durations that are played at their own speed
 SECONDS = 10.0          # that the others take
+NAMED = {"displacement": ".displacement", "stress": ".stress", "time": ".t"}   # that have units
 LONGEST = 30.0          # seconds of a film without a speed
 
 
@@ -153,6 +155,9 @@ def _header(result: Result, drawn: Scenery, plots: list[Panel]) -> tuple[dict, B
         "trace": number[drawn.farthest],
         "largest": {"displacement": largest / size, "stress": stress},
         "units": {"displacement": size, "stress": 1.0},
+        "unit_names": {name: unit(quantity, result.units) if result.units else ""
+                       for name, quantity in NAMED.items()},
+        "cautions": result.cautions,
         "plots": [_plot(blocks, plot, drawn.states) for plot in plots if plot.kind == "history"],
     }
     return header, blocks

@@ -12,6 +12,7 @@ from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.results.result import Result
 from sebody.results.skeleton import lines_of
+from sebody.results.units import with_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -93,7 +94,7 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     with rc_context(STYLE):
         figure = Figure(figsize=(9.6, 4.2), layout="constrained")
         FigureCanvasAgg(figure)
-        _draw_rates(figure.add_subplot(1, 2, 1), result.t, rates, title)
+        _draw_rates(figure.add_subplot(1, 2, 1), result, rates, title)
         _draw_path(figure, result, tip)
         write_picture(figure, path, 150, bbox_inches="tight", pad_inches=0.1)
     return Path(path)
@@ -114,8 +115,10 @@ def write_picture(figure: "Figure", path: str | Path, dpi: int, **options: objec
 def _rates(result: Result, base: str, tip: str) -> tuple[str, NDArray]:
     """Title and values of the left picture."""
     if result.model.nodes[base].rotation is None:
-        return f"velocity of the {tip}", result[f"{tip}.velocity"]
-    return f"angular velocity of the {base}", result[f"{base}.angular_velocity"]
+        name, title = f"{tip}.velocity", f"velocity of the {tip}"
+    else:
+        name, title = f"{base}.angular_velocity", f"angular velocity of the {base}"
+    return with_unit(title, name, result.units), result[name]
 
 
 def _spatial(points: NDArray) -> NDArray:
@@ -123,9 +126,10 @@ def _spatial(points: NDArray) -> NDArray:
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
 
 
-def _draw_rates(axes, t: NDArray, rates: NDArray, title: str) -> None:
+def _draw_rates(axes, result: Result, rates: NDArray, title: str) -> None:
+    t = result.t
     axes.set_title(title)
-    axes.set_xlabel("time")
+    axes.set_xlabel(with_unit("time", "t", result.units))
     axes.margins(x=0.01)
     about = "about " if title.startswith("angular") else "along "
     if about == "about " and (rates.ndim == 1 or
@@ -159,7 +163,7 @@ def _draw_path(figure, result: Result, tip: str) -> None:
     axes.plot(*path[:1, :size].T, "o", color=ACCENT, markersize=3, zorder=5)
     axes.set_aspect("equal", adjustable="datalim" if flat else "box")
     for name in "xyz"[:size]:
-        getattr(axes, f"set_{name}label")(name)
+        getattr(axes, f"set_{name}label")(with_unit(name, f"{tip}.position", result.units))
         _thin_ticks(axes, name, extent[:size].max())
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12 if flat else -0.05), ncols=3)
 

@@ -13,6 +13,7 @@ from sebody.errors import InputError
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.units import unit
+from sebody.units import parsed_units
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -59,7 +60,7 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
             if labels := {"axis": "xyz", "row": "xyz", "column": "xyz",
                           "component": STRESS}.get(dimension):
                 coordinates[dimension] = list(labels[:size])
-        variables[name] = (("t", *dimensions), values, {"units": unit(name)})
+        variables[name] = (("t", *dimensions), values, {"units": unit(name, parsed_units(recording.model.units))})
     return Dataset(variables, coordinates)
 
 

@@ -22,7 +22,7 @@ TURN = np.array([[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [-2.0, -1.0, 2.0]]).T / 3
 @pytest.fixture(scope="module")
 def body():
     """A block, turned, off the origin, on its end faces."""
-    model = hexahedral_block((1, 2, 3), SIZE, (4, 2, 1), 1e4, 0.25, DENSITY)
+    model = hexahedral_block((1, 2, 3), SIZE, (4, 2, 1), 4e4, 0.25, DENSITY)
     x = model.coordinates[:, 0]
     faces = [RigidFace((place, 2.5, 3.25), np.flatnonzero(np.isclose(x, place)))
              for place in (1, 4)]
@@ -31,7 +31,7 @@ def body():
 
 @pytest.fixture
 def path(body, tmp_path):
-    return save_body(body, tmp_path / "body.npz", ("left", "right"), units="m, kg, s")
+    return save_body(body, tmp_path / "body.npz", ("left", "right"), units="m, t, kN")
 
 
 def spoilt(path, **matrices):

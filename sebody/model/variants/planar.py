@@ -129,7 +129,7 @@ class _Flat(NamedTuple):
         InputError
             What is not symmetric.
         """
-        made = type(model)(planar=True)
+        made = type(model)(planar=True, units=model.units)
         made.plane = flat.plane
         made.nodes = {name: flat.node(node) for name, node in model.nodes.items()}
         made.grounds = [flat.node(node) for node in model.grounds]

@@ -24,6 +24,12 @@ class Page {
     this.last = null;
     this.waiting = false;
     element("about").textContent = this.header.about;
+    element("cautions").hidden = !this.header.cautions.length;
+    element("cautions").lastElementChild.replaceChildren(...this.header.cautions.map((text) => {
+      const item = document.createElement("li");
+      item.textContent = text;
+      return item;
+    }));
     this.choices();
     this.ticks();
     this.transport();
@@ -62,7 +68,9 @@ class Page {
     this.scene.shown.colour = kind;
     element("legend").hidden = !most;
     if (most) {
-      element("legend-name").textContent = kind === "stress" ? "von Mises stress" : kind;
+      const unit = this.header.unit_names[kind];
+      element("legend-name").textContent = (kind === "stress" ? "von Mises stress" : kind)
+        + (unit ? ` [${unit}]` : "");
       element("legend-bar").style.background = `linear-gradient(90deg, ${MAP.join(", ")})`;
       const [low, high] = element("legend-ends").children;
       low.textContent = "0";
