@@ -176,8 +176,9 @@ class FEModel:
             A node or kind there is not.
         """
         last = len(self.coordinates) - 1
-        node = inputs.integer(node, "node", least=0, most=last,
-                              remedy=f"the model has nodes 0 to {last}")
+        node = inputs.integer(node, "node", least=0, most=last, remedy=(
+            f"the model has nodes 0 to {last}" + (
+                "" if self.labels is None else "; node(label) is the index of a label")))
         is_rotation = np.array([name.startswith("r") for name in self.node_dofs])
         wanted = {
             "full": np.full(len(is_rotation), True),

@@ -10,7 +10,7 @@ from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.files import check_target
 from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
-from sebody.io.interfaces import Interface, boundary_items, parsed
+from sebody.io.interfaces import Interface, parsed, tied
 from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
 from sebody.io.reduced import chosen_interfaces
@@ -90,16 +90,17 @@ def imported(reading: Reading, interfaces: list[Interface], modes: int | Accurac
     model, units = reading.model, str(parsed_units(units) or "")
     if not isinstance(model, FEModel):
         return _reduced(reading, interfaces, modes, units)
-    items = boundary_items(model, interfaces, reading.rotation_nodes)
+    boundary = tied(model, interfaces, reading.rotation_nodes)
     try:
-        body = reduce(model, items, modes, method)
+        body = reduce(model, boundary.items, modes, method)
     except InputError as error:
         by_area = any(one.tie == "rbe3" for one in interfaces) and "weights='equal'" in str(error)
         raise InputError(f"{path}: {error}" + by_area * ", rbe3-equal:SET") from error
     names = tuple(one.name for one in interfaces)
     provenance = {"source": model.source or str(path), "method": f"{method}, {body.modes} modes",
                   "FE matrices": f"{model.stiffness.shape[0]} rows, |K R| of rigid "
-                  f"motions up to {rigid_residual(model):.4e} of a row's entries", **reading.notes}
+                  f"motions up to {rigid_residual(model):.4e} of a row's entries", **reading.notes,
+                  **{f"interface {name}": note for name, note in boundary.notes.items()}}
     return BodyFile(body_parts(body), names, units or model.units, provenance)
 
 

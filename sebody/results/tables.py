@@ -52,6 +52,7 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
     _check_installed("xarray")
     from xarray import Dataset
 
+    units = parsed_units(recording.model.units)
     variables, coordinates = {}, {"t": recording.recorded("t")[:, 0]}
     for name, values in _histories(recording, names):
         sizes = values.shape[1:]
@@ -60,7 +61,7 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
             if labels := {"axis": "xyz", "row": "xyz", "column": "xyz",
                           "component": STRESS}.get(dimension):
                 coordinates[dimension] = list(labels[:size])
-        variables[name] = (("t", *dimensions), values, {"units": unit(name, parsed_units(recording.model.units))})
+        variables[name] = (("t", *dimensions), values, {"units": unit(name, units)})
     return Dataset(variables, coordinates)
 
 

@@ -254,7 +254,7 @@ CALCULIX = {
         "interfaces": {"a": "rbe4:LEFT"}}),
     "a point that is none": Case("interface 'a' is 'rbe2:LEFT@0,zero,0'", options={
         "interfaces": {"a": "rbe2:LEFT@0,zero,0"}}),
-    "a point of a plane": Case("point of a rigid face is", options={
+    "a point of a plane": Case("point of the rigid face 'a' is", options={
         "interfaces": {"a": "rbe2:LEFT@0,0"}}),
     "rotations of a solid": Case("keeps 'full', but the model's nodes have no rotations", options={
         "interfaces": {"a": "10:full", "b": 20, "c": 30}}),

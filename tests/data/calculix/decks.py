@@ -155,7 +155,7 @@ def loose():
 
 def hole():
     """A plate with a hole whose mesh is fine on one side, and a node that no element has."""
-    angles = 2 * np.pi * np.array([0, 0.35, 0.6, 0.75, 0.84, 0.9, 0.94, 0.97, 1.0])
+    angles = 2 * np.pi * np.array([0, 0.2, 0.38, 0.54, 0.67, 0.77, 0.85, 0.91, 0.96, 1.0])
     unit = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     square = unit / np.abs(unit).max(axis=-1, keepdims=True)
     grid = np.empty((len(angles), 3, 2, 3))
