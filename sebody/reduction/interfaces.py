@@ -231,7 +231,7 @@ def _weights(model: FEModel, face: MeanFace) -> sparse.csr_array:
     if len(bare):
         names = ", ".join(model.node_name(face.nodes[k]) for k in bare[:5])
         raise InputError(
-            f"{face.called}, by area, has nodes on no face that lies within it: {names}"
+            f"{face.called} by area has nodes on no face that lies within it: {names}"
             f"{' and more' if len(bare) > 5 else ''}; name all nodes of the faces and no others, "
             "give the FEModel its cells, or use weights='equal'")
     return found
