@@ -1,6 +1,6 @@
 """The superelement in the form the multibody code takes: reduced matrices and their layout."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -247,14 +247,15 @@ class ReducedBody:
             raise InputError(f"recover names no node: {remedy}")
         return replace(self, recovery=self.recovery.restricted(np.array(found)))
 
-    def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
+    def damped(self, ratio: float | Sequence[float] = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> "ReducedBody":
         """The same body with structural damping of its deformation.
 
         Parameters
         ----------
-        ratio : float
-            Part of critical damping of every free vibration mode.
+        ratio : float or sequence of float
+            Part of critical damping of every free vibration mode, or of each from the lowest
+            frequency up; the last number is also that of all modes beyond.
         mass, stiffness : float
             Rayleigh's coefficients, ``mass * M + stiffness * K`` on the vibration modes; rigid
             motion is not damped.
@@ -262,10 +263,12 @@ class ReducedBody:
         Raises
         ------
         InputError
-            A number that is negative or not finite, or a body with massless coordinates.
+            A number that is negative or not finite, more ratios than modes, or a body with
+            massless coordinates.
         """
-        ratio, mass, stiffness = (inputs.number(value, f"damping: {name}", least=0) for name, value
-                                  in (("ratio", ratio), ("mass", mass), ("stiffness", stiffness)))
+        mass, stiffness = (inputs.number(value, f"damping: {name}", least=0)
+                           for name, value in (("mass", mass), ("stiffness", stiffness)))
+        ratio = self._ratios(ratio)
         try:
             squares, shapes = eigh(self.stiffness, self.mass)
         except LinAlgError as error:
@@ -277,6 +280,18 @@ class ReducedBody:
         momenta[strainless_coordinates(self.keeps, self.coordinates.shape[1])] = 0.0   # to rounding
         damping = (momenta * (2 * ratio * omega + mass + stiffness * omega**2)) @ momenta.T
         return replace(self, damping=damping)
+
+    def _ratios(self, ratio: float | Sequence[float]) -> NDArray:
+        """Damping ratios of all free vibration modes."""
+        count = len(self.mass) - self.rigid_modes.shape[1]
+        if np.ndim(ratio) == 0:
+            return np.full(count, inputs.number(ratio, "damping: ratio", least=0))
+        found = [inputs.number(one, "damping: a ratio", least=0)
+                 for one in inputs.items(ratio, "damping: ratio", "give numbers >= 0")]
+        if not 0 < len(found) <= count:
+            raise InputError(f"damping: {len(found)} ratios, but the body has {count} free "
+                             f"vibration modes: give 1 to {count}")
+        return np.array(found + [found[-1]] * (count - len(found)))
 
     def rotated(self, rotation: ArrayLike) -> "ReducedBody":
         """The same body rotated by `rotation` about the FE origin, in the old axes.

@@ -1,6 +1,7 @@
 """The constants of a body's exact inertia and of its stiffening, from its FE model and modes."""
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +20,14 @@ from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.static_correction import static_correction
 from sebody.reduction.stiffening import GeometricStiffness, Stiffening
+from sebody.reduction.watch import Watch
 
 _ASYMMETRY = 1e-8  # of a geometric stiffness, relative to its largest entry
 
 
 def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
-                   component: ComponentModes, interior: ClampedInterior, forces: NDArray
-                   ) -> ReducedBody:
+                   component: ComponentModes, interior: ClampedInterior, forces: NDArray,
+                   watch: Watch) -> ReducedBody:
     """The body with its shapes, exact inertia if the FE model has a mass field, and stiffening.
 
     Parameters
@@ -38,7 +40,7 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     shapes = boundary.ties.spread(component.basis)
     invariants = extra = None
     if fe_model.mass_field is not None:
-        invariants, extra = _invariants(body, fe_model, boundary, component, interior)
+        invariants, extra = _invariants(body, fe_model, boundary, component, interior, watch)
         shapes = np.hstack([shapes, extra.load_modes])
     notes = (*body.notes, *_inertia_notes(fe_model), *_stiffening_notes(fe_model, extra))
     recovery = _recovery(fe_model, shapes)
@@ -82,7 +84,7 @@ def _stiffening_notes(fe_model: FEModel, extra: Stiffening | None) -> list[str]:
 
 
 def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
-                component: ComponentModes, interior: ClampedInterior
+                component: ComponentModes, interior: ClampedInterior, watch: Watch
                 ) -> tuple[InertiaInvariants, Stiffening]:
     """Integrals about the mean of the boundary nodes, and what is of second order."""
     origin = body.coordinates.mean(axis=0)
@@ -93,7 +95,8 @@ def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
         extra = Stiffening(np.zeros((len(shapes), 0)), np.zeros((0, n, n)), np.zeros(0),
                            np.zeros((n, 0)), np.zeros((0, n, n)))
     else:
-        extra = _stiffening(fe_model, boundary, component, interior, body, integrals)
+        extra = _stiffening(fe_model, boundary, component, interior, body, integrals, watch)
+    watch.stage("integrals of the inertia")
     found = integrals.integrals(np.hstack([shapes, extra.load_modes]))
     _check_mass(found["Mbar"][:len(body.mass), :len(body.mass)], body.mass)
     return InertiaInvariants(
@@ -111,14 +114,17 @@ def _check_mass(found: NDArray, mass: NDArray) -> None:
 
 
 def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes,
-                interior: ClampedInterior, body: ReducedBody, integrals: MassIntegrals
-                ) -> Stiffening:
+                interior: ClampedInterior, body: ReducedBody, integrals: MassIntegrals,
+                watch: Watch) -> Stiffening:
     """Load modes and resultants; a prestress is its displacement above the forces on the means."""
     ties, basis, n = boundary.ties, component.basis, boundary.ties.size
     shapes = ties.spread(basis)
     _check_linear(fe_model, shapes @ np.ones(shapes.shape[1]))
 
+    done = count(1)
+
     def geometric(prestress: NDArray) -> NDArray:
+        watch.stage(f"geometric stiffness of prestress {next(done)}")
         displacement = ties.spread(prestress[:n])
         tangent = fe_model.geometric_stiffness(displacement)
         G = shapes.T @ (tangent @ shapes) + boundary.second_order(
