@@ -35,9 +35,15 @@ def read_op4(path: Path) -> Reading:
     stiffness, mass = _pair(found, path)
     cards = _beside(path)
     table = _uset(cards)
-    if len(table.index) != len(stiffness):
-        raise InputError(f"{path} has {len(stiffness)} rows and {cards} tells of "
-                         f"{len(table.index)}: give files of one run")
+    told = len(table.index)
+    if told < len(stiffness) and not (table.index.get_level_values("dof") == 0).any():
+        raise InputError(f"{path} has {len(stiffness)} rows, {len(stiffness) - told} more than the "
+                         f"nodes of {cards}, which has no SPOINT cards: modes are scalar points; "
+                         "put the .asm that EXTSEOUT(ASMBULK) writes beside it, or add its SPOINT "
+                         "cards")
+    if told != len(stiffness):
+        raise InputError(f"{path} has {len(stiffness)} rows and {cards} tells of {told}: give "
+                         "files of one run")
     return _reading(stiffness, mass, list(table.index), table, path)
 
 

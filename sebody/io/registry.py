@@ -87,16 +87,24 @@ def read_source(path: str | Path, kind: str | None = None) -> Reading:
     if not path.exists():
         raise InputError(f"file to import {path} does not exist: give the path of a file of an FE "
                          "program")
-    source = _guessed(path) if kind is None else _named(kind)
+    source = _guessed(path) if kind is None else _named(kind, path)
     if source.needs and not _installed(source.needs):
         raise InputError(f"files of {source.name} are read by {source.needs}, which is not "
                          f'installed: pip install "sebody[{source.extra}]"')
     return source.read(path)
 
 
-def _named(kind: str) -> Source:
+def _named(kind: str, path: Path) -> Source:
+    """The source of a name, refused where the file has the ending of another one."""
     by_name = {source.name: source for source in SOURCES}
-    return by_name[inputs.choice(kind, "format", by_name)]
+    found = by_name[inputs.choice(kind, "format", by_name)]
+    ending = path.suffix.lower()
+    others = [source.name for source in SOURCES if ending in source.suffixes]
+    if others and found.name not in others:
+        raise InputError(f"{path} is a file of {' or '.join(others)}, by its ending, and the "
+                         f"format is {kind}, which reads {', '.join(found.suffixes)}: leave the "
+                         "format out, or give it the ending of its kind")
+    return found
 
 
 def _guessed(path: Path) -> Source:

@@ -10,8 +10,8 @@ from sebody.errors import InputError
 from sebody.fem.model import FEModel
 
 WHAT = ("stresses", "stiffening", "exact inertia")
-_REDUCED = ("the body was made of reduced matrices alone; import or reduce the FE model with its "
-            "mesh and materials")
+_REDUCED = ("the body was made without it, such as of reduced matrices alone; import or reduce the "
+            "FE model with its mesh and materials")
 _OF_MODEL = {
     "stresses": "the FE model has no stress operators; give FEModel(stress=solid_stress(...))",
     "stiffening": "the FE model has no geometric stiffness; give FEModel(geometric_stiffness=...), "

@@ -76,6 +76,10 @@ class Recovery:
         """Number in the FE model of a node, by its place among those that are kept."""
         return int(place) if self.nodes is None else int(self.nodes[place])
 
+    def called(self, place: int) -> int:
+        """The label of a node that is kept, or its number in the FE model if it has none."""
+        return self.number(place) if self.labels is None else int(self.labels[place])
+
     def displacement(self, z: NDArray, nodes: NDArray | None = None) -> NDArray:
         """Displacements of nodes, all by default, in the axes of the body.
 

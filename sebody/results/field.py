@@ -122,6 +122,15 @@ class Field(FieldStates):
         return envelope(self, quantity, static)
 
     @property
+    def fe_places(self) -> NDArray:
+        """Undeformed FE nodes in axes of the FE model, (nodes, D)."""
+        return self._recovery.coordinates
+
+    def called(self, place: int) -> int:
+        """The label of a node in the FE program, else its number in the FE model."""
+        return self._recovery.called(place)
+
+    @property
     def stress_points(self) -> NDArray:
         """Where stresses are computed, in the undeformed body, axes of the frame, (points, D)."""
         places, axes = self.stresses().places(), self._recovery.axes
@@ -160,7 +169,9 @@ class Field(FieldStates):
         if kept is None:
             return inputs.integer(node, f"node of body {self.name!r}", least=0,
                                   most=self.count - 1,
-                                  remedy=f"its FE model has nodes 0 to {self.count - 1}")
+                                  remedy=f"its FE model has nodes 0 to {self.count - 1}" + (
+                                      "" if self._recovery.labels is None else
+                                      "; field.label(label) is the number of a label"))
         node = inputs.integer(node, f"node of body {self.name!r}", least=0)
         place = int(np.searchsorted(kept, node))
         if place == len(kept) or kept[place] != node:

@@ -17,6 +17,7 @@ from sebody.results.cautions import cautions
 from sebody.results.energy_balance import energy_balance
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
+from sebody.results.hot_spots import HotSpots, hot_spots
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
@@ -111,6 +112,25 @@ class Result(Recording):
         """
         inputs.name(name, "name of a superelement")
         return field_of(self, name)
+
+    def hot_spots(self, name: str, count: int = 10, apart: float = 0.0) -> HotSpots:
+        """The most stressed FE nodes of a superelement over the whole run, as a table.
+
+        Parameters
+        ----------
+        name : str
+            Of the superelement.
+        count : int
+            How many nodes.
+        apart : float
+            Least distance between two of them, so that neighbours count as one spot [length].
+
+        Raises
+        ------
+        InputError
+            No such superelement, or one without stresses; the message says why.
+        """
+        return hot_spots(self.field(name), count, apart, self.units)
 
     def energy_balance(self) -> float:
         """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.

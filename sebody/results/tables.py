@@ -30,7 +30,7 @@ def to_pandas(recording: Recording, names: Iterable[str] | None) -> "DataFrame":
     InputError
         pandas is missing, or a name that nothing has.
     """
-    _check_installed("pandas")
+    check_installed("pandas")
     from pandas import DataFrame, Index
 
     columns = {}
@@ -49,7 +49,7 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
     InputError
         xarray is missing, or a name that nothing has.
     """
-    _check_installed("xarray")
+    check_installed("xarray")
     from xarray import Dataset
 
     units = parsed_units(recording.model.units)
@@ -94,6 +94,13 @@ def _histories(recording: Recording, names: Iterable[str] | None
             yield name, np.asarray(look_up(recording, name))
 
 
-def _check_installed(package: str) -> None:
+def check_installed(package: str) -> None:
+    """Refuse tables without their package.
+
+    Raises
+    ------
+    InputError
+        It is missing.
+    """
     if find_spec(package) is None:
         raise InputError(f'tables need {package}: pip install "sebody[tables]"')
