@@ -147,7 +147,7 @@ def _middles(space: Any, mesh: Any, rows: NDArray, ends: NDArray) -> NDArray:
                 "take VectorH1(mesh, order=2) with mesh.Curve(2), or mesh.Curve(1)"))
     if order < 2 or not len(ends):
         corners = np.array([vertex.point for vertex in mesh.vertices])
-        return corners[ends].mean(axis=1).reshape(len(ends), -1)
+        return corners[ends].mean(axis=1).reshape(len(ends), corners.shape[1])
     from ngsolve import CoefficientFunction, GridFunction, x, y, z
 
     field = GridFunction(space)

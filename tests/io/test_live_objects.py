@@ -8,6 +8,7 @@ from sebody import InputError
 from sebody.fem import FEModel
 from sebody.fem.stress import elasticity
 from sebody.io import from_ngsolve, from_skfem
+from sebody.io.importing import rigid_residual
 from sebody.reduction import RigidFace, craig_bampton
 
 E, NU, RHO = 2.1e6, 0.3, 7.8e-3
@@ -151,6 +152,41 @@ def test_ngsolve_is_scikit_fem(order):
     assert len(mine.node_sets["side"]) > 8
     with pytest.raises(InputError, match="0 of them free|give VectorH1"):
         from_ngsolve(ngsolve.VectorH1(mesh, order=3), None, None)
+
+
+def test_a_curved_mesh_of_ngsolve():
+    """Middles of edges lie on the cylinder that the mesh is curved to; the matrices fit them."""
+    ngsolve = pytest.importorskip("ngsolve", reason="large, an extra")
+    from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
+
+    geometry = OCCGeometry(Cylinder(Pnt(1, 2, 3), Z, r=1, h=3))
+
+    def read(curve, order):
+        mesh = ngsolve.Mesh(geometry.GenerateMesh(maxh=1.0))
+        if curve > 1:
+            mesh.Curve(curve)
+        space = ngsolve.VectorH1(mesh, order=order)
+        u, v = space.TnT()
+        strain, other = (ngsolve.Sym(ngsolve.Grad(w)) for w in (u, v))
+        shear, lame = E / (2 * (1 + NU)), E * NU / (1 + NU) / (1 - 2 * NU)
+        energy = (2 * shear * ngsolve.InnerProduct(strain, other)
+                  + lame * ngsolve.Trace(strain) * ngsolve.Trace(other))
+        return from_ngsolve(space, ngsolve.BilinearForm(energy * ngsolve.dx).Assemble(),
+                            ngsolve.BilinearForm(RHO * u * v * ngsolve.dx).Assemble(), E, NU)
+    model, straight = read(2, 2), read(1, 2)
+    assert rigid_residual(model) < 1e-12
+    radii = [np.hypot(*(one.coordinates[:, :2] - [1, 2]).T) for one in (model, straight)]
+    outer = radii[0] > 1 - 1e-3         # parabolas leave the circle by a little
+    assert outer.sum() > 1.2 * (radii[1] > 1 - 1e-3).sum() and radii[1][outer].min() < 0.97
+    u = np.random.default_rng(2).standard_normal(model.stiffness.shape[0])
+    wanted = model.stiffness @ u
+    np.testing.assert_allclose(model.geometric_stiffness.forces(u), wanted,
+                               atol=1e-10 * np.abs(wanted).max())
+    assert model.geometric_stiffness.volume == pytest.approx(3 * np.pi, rel=2e-3)
+    for curve, order, said in ((2, 1, r"take VectorH1\(mesh, order=2\) with mesh.Curve\(2\)"),
+                               (3, 2, r"curved, of order 3, .*: call mesh.Curve\(2\)")):
+        with pytest.raises(InputError, match=said):
+            read(curve, order)
 
 
 def rows_of_the_same_nodes(one: FEModel, other: FEModel):

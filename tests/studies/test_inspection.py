@@ -137,7 +137,7 @@ def test_massless_coordinates_have_frequencies(path, body):
     file = read_body_file(save_body(corners, path))
     file.parts["mass"] = mass
     inspection = inspect(file)
-    assert any("the mass matrix is singular, mostly in position x of node 0" in one.text
+    assert any("the mass matrix is singular, mostly in position x of " in one.text
                for one in inspection.findings)
     found = inspection.numbers["frequencies"]
     assert found["count"] == len(mass) - 1 - 6

@@ -76,7 +76,7 @@ def matrices_of(file: BodyFile) -> Matrices:
     parts = file.parts
     coordinates, keeps = np.asarray(parts["coordinates"], dtype=float), tuple(parts["keeps"])
     check_layout(coordinates, keeps)
-    names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0))
+    names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0), file.names)
     found, asymmetry = {}, {}
     for name in ("stiffness", "mass"):
         matrix = np.asarray(parts[name], dtype=float)
