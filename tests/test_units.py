@@ -36,7 +36,8 @@ def test_consistent_sets(text, whole, pressure, force, mass):
 def test_units_of_quantities():
     units = parsed_units("mm t N s")
     for words, unit in (("length/time^2", "mm/s^2"), ("force length", "N mm"),
-                        ("rad/time", "rad/s"), ("1/time", "Hz"), ("mass length^2/time", "t mm^2/s"), ("", "")):
+                        ("rad/time", "rad/s"), ("1/time", "Hz"),
+                        ("mass length^2/time", "t mm^2/s"), ("", "")):
         assert units.of(words) == unit
     assert parsed_units("m kg ms").of("1/time") == "1/ms"
     assert parsed_units("") is None and parsed_units("  ") is None

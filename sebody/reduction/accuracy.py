@@ -57,7 +57,7 @@ class Accuracy:
         inputs.number(self.tolerance, "Accuracy: tolerance", above=0, below=1)
         inputs.number(self.up_to, "Accuracy: up_to", above=0)
         if self.of != "":
-            inputs.choice(self.of, "Accuracy: of", CRITERIA)
+            inputs.choice(self.of, "criterion of Accuracy", CRITERIA)
 
     @property
     def omega(self) -> float:
