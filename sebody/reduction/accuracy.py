@@ -119,8 +119,8 @@ def _expected(known: Omission, errors: NDArray, accuracy: Accuracy) -> int:
         numbers, values, aim = np.arange(computed + 1), errors, accuracy.tolerance
     numbers, values = numbers[computed // 2:], values[computed // 2:]
     there = np.isfinite(values) & (values > 0) & (numbers > 0)
-    if there.sum() < 2:
-        return 2 * computed
+    if not there.any() or np.ptp(np.log(values[there])) < 1e-6:
+        return 2 * computed         # there is no trend to follow
     slope, start = np.polyfit(np.log(values[there]), np.log(numbers[there]), 1)
     found = np.exp(np.clip(start + slope * np.log(aim), 0.0, np.log(1e6)))
     return int(max(found, computed + 1))
