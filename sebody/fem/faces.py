@@ -11,23 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.fem.cells import CORNERS, EDGES, SOLIDS, faces_of
 from sebody.fem.model import FEModel
 
-# corners of the faces of each kind, and its edges in the order of its middle nodes
-_SOLIDS = {
-    "tetra": ([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
-              [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]),
-    "hexahedron": ([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6),
-                    (3, 0, 4, 7)],
-                   [(0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7), (0, 4), (1, 5),
-                    (2, 6), (3, 7)]),
-    "wedge": ([(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
-              [(0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5)]),
-}
-_PLANES = {
-    "triangle": ([(0, 1), (1, 2), (2, 0)], [(0, 1), (1, 2), (0, 2)]),
-    "quad": ([(0, 1), (1, 2), (2, 3), (3, 0)], [(0, 1), (1, 2), (2, 3), (0, 3)]),
-}
 _QUADRATIC = {"tetra10": "tetra", "hexahedron20": "hexahedron", "wedge15": "wedge",
               "triangle6": "triangle", "quad8": "quad"}
 _REVERSED = {"line": [1, 0], "line3": [1, 0, 2], "triangle": [0, 2, 1],
@@ -77,18 +63,16 @@ def _outward(model: FEModel, kind: str, faces: NDArray, middles: NDArray) -> NDA
 def _faces_of(kind: str, planar: bool) -> Iterator[tuple[str, list[int]]]:
     """Kind and nodes, in the element, of each face of an element."""
     base = _QUADRATIC.get(kind, kind)
-    table = _PLANES if planar else _SOLIDS
-    if base in table:
-        corners, edges = table[base]
-        middle = {frozenset(edge): len({*sum(corners, ())}) + k for k, edge in enumerate(edges)}
-        for face in corners:
-            ring = zip(face, face[1:] + face[:1], strict=True)
-            middles = [middle[edge] for edge in dict.fromkeys(map(frozenset, ring))]
-            columns = [*face, *(middles if kind in _QUADRATIC else [])]
-            yield _face_kind(len(face), len(columns)), columns
-    elif not planar and base in _PLANES:
-        corners = 3 if base == "triangle" else 4
-        yield kind, list(range(2 * corners if kind in _QUADRATIC else corners))
+    if base not in CORNERS or (planar and base in SOLIDS):
+        return
+    count = CORNERS[base] + (len(EDGES[base]) if kind in _QUADRATIC else 0)
+    if planar:
+        for k, edge in enumerate(EDGES[base]):
+            columns = [*edge, *([CORNERS[base] + k] if kind in _QUADRATIC else [])]
+            yield _face_kind(2, len(columns)), columns
+        return
+    for face in faces_of(kind, count):
+        yield _face_kind(3 if len(face) in (3, 6) else 4, len(face)), list(face)
 
 
 def _face_kind(corners: int, nodes: int) -> str:

@@ -60,6 +60,33 @@ def undeformed(recording: Recording, body: Superelement, rotation: NDArray, orig
     return Undeformed(back @ turned, (back @ shift[:, :, None])[:, :, 0])
 
 
+class Set(NamedTuple):
+    """Nodes at one place."""
+
+    number: int
+    fixed: bool             # whether one of them is
+
+
+def together(model: Mechanism) -> dict[str, Set]:
+    """Nodes that joints and rigid links keep together, by name; those of the ground, too."""
+    union = _Union()
+    nodes = [*model.nodes.values(), *model.grounds]
+    for joint in model.joints:
+        if joint.kind != "distance":
+            union.join(joint.node.name, joint.to.name)
+    for one in model.connections:
+        if one.kind == "position" and one.to is not None:
+            union.join(one.node.name, one.to.name)
+    for node in nodes:
+        if node.position is not None:
+            union.join(id(node.position), node.name)
+    roots = {node.name: union.root(node.name) for node in nodes}
+    fixed = {roots[node.name] for node in nodes if node.position is not None
+             and node.position.fixed}
+    number = {root: k for k, root in enumerate(dict.fromkeys(roots.values()))}
+    return {name: Set(number[root], root in fixed) for name, root in roots.items()}
+
+
 class Welded:
     """Nodes of a model that move as one, and bodies that are welded together at such nodes."""
 
@@ -112,6 +139,10 @@ class Welded:
                     return node
         return nodes[0] if len(self.bodies(body)) > 1 else None
 
+    def has(self, body: Superelement, name: str) -> bool:
+        """Whether displacements of a body can be measured from a node of this name, or `FRAME`."""
+        return name == FRAME or any(node.name == name for node in self.candidates(body))
+
     def candidates(self, body: Superelement) -> Iterator[Node]:
         """Nodes that displacements of a body can be measured from, each once."""
         group, found = self.bodies(body), {}
@@ -120,6 +151,13 @@ class Welded:
                                                        for i in one.body.position_nodes]
             found |= {node.name: node for node in nodes}
         yield from found.values()
+
+    def clusters(self) -> dict[str, int]:
+        """Numbers of nodes by name, equal for those that move as one."""
+        roots = {node.name: self._cluster(node)
+                 for node in (*self._model.nodes.values(), *self._model.grounds)}
+        number = {root: k for k, root in enumerate(dict.fromkeys(roots.values()))}
+        return {name: number[root] for name, root in roots.items()}
 
     def bodies(self, body: Superelement) -> list[Superelement]:
         """Bodies that are welded to one, in the order of the model, this one among them."""
