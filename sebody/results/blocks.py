@@ -10,7 +10,7 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 
-DIGITS = 9              # of the ranges of columns
+DIGITS = 12             # of the ranges of columns
 
 
 class Blocks:

@@ -9,7 +9,7 @@ from sebody.results.curves import GROUPS, Values, panels, values
 from sebody.results.quantities import names
 from sebody.results.result import Result
 from sebody.results.scenery import Scenery, thinned
-from sebody.results.units import unit
+from sebody.results.units import unit_of_curves
 
 NUMBERS = 400_000       # of all histories together, beyond which they have fewer samples
 FEWEST = 201            # samples
@@ -64,6 +64,7 @@ def _owner(name: str) -> str:
 
 
 def _plot(blocks: Blocks, owner: str, one: Values, states: np.ndarray) -> dict:
-    return {"owner": owner, "name": one.name, "labels": one.labels, "unit": unit(one.name),
+    return {"owner": owner, "name": one.name, "labels": one.labels,
+            "unit": unit_of_curves(one.name),
             "range": [float(one.numbers.min()), float(one.numbers.max())],
             "values": blocks.values(one.numbers[states])}

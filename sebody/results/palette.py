@@ -5,6 +5,7 @@ WITHOUT_VALUE = "#b9c0cc"       # of bodies that have no value of the quantity t
 LINK, SPRING, LOAD, JOINT = "#8d97aa", "#2a7f62", "#7b3fa0", "#39455f"
 GROUND, DRIVE = "#5b6478", "#c8452d"
 AXES = ("#c8452d", "#2a7f62", "#3566b8")        # x, y and z
+CURVES = (*AXES, "#d99a2b", "#6a4c93", "#1f2a44", "#8c564b", "#7f7f7f")
 # from small to large values
 MAP = ("#5b7db8", "#5f9fc6", "#6dbfb8", "#8fd0a0", "#bfd987", "#ecd06f", "#f2a65a", "#e6704a",
        "#c8352d")

@@ -15,6 +15,7 @@ from sebody.results.surface_parts import NO_EDGES, Surface, edges_of
 STRAIGHT = 2            # pieces of an edge of second order, so that deformations bend it
 MOST_PIECES = 8
 TURN = np.radians(8.0)  # of an edge by a piece
+ROUNDING = 1e-9         # of shape functions
 MOST = 100_000          # triangles of a skin, beyond which edges have the fewest pieces
 
 
@@ -137,19 +138,22 @@ def _vertices(faces: list[NDArray], lattices: list[Lattice], stations: int
 
     Points that faces share, of the same stations with the same weights, are one vertex.
     """
-    rows, width = [], max(face.shape[1] for face in faces)
+    points, width = [], max(face.shape[1] for face in faces)
     for face, one in zip(faces, lattices, strict=True):
-        values = np.round(one.values, 9)        # those of two faces differ by rounding
+        values = np.where(np.abs(one.values) > ROUNDING, one.values, 0.0)
         own = np.where(values != 0, face[:, None] + 1, 0)       # 0: not of this point
-        own = np.dstack([own, np.zeros((*own.shape[:2], width - own.shape[2]), dtype=int)])
-        values = np.broadcast_to(np.pad(values, ((0, 0), (0, width - values.shape[1]))), own.shape)
+        blank = (0, width - own.shape[2])
+        own = np.pad(own, ((0, 0), (0, 0), blank))
+        values = np.broadcast_to(np.pad(values, ((0, 0), blank)), own.shape)
         order = np.argsort(own, axis=2)
-        rows.append(np.dstack([np.take_along_axis(own, order, 2),
-                               np.take_along_axis(values, order, 2)]).reshape(-1, 2 * width))
-    found, inverse = np.unique(np.concatenate(rows), axis=0, return_inverse=True)
-    own, values = found[:, :width].astype(int) - 1, found[:, width:]
-    at = np.broadcast_to(np.arange(len(found))[:, None], own.shape)
-    weights = sparse.csr_array((values[own >= 0], (at[own >= 0], own[own >= 0])),
+        points.append(np.stack([np.take_along_axis(own, order, 2),
+                                np.take_along_axis(values, order, 2)]).reshape(2, -1, width))
+    own, values = np.concatenate(points, axis=1)
+    keys = np.hstack([own, np.round(values / ROUNDING)])        # those of two faces nearly agree
+    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    found, values = own[first].astype(int) - 1, values[first]
+    at = np.broadcast_to(np.arange(len(found))[:, None], found.shape)
+    weights = sparse.csr_array((values[found >= 0], (at[found >= 0], found[found >= 0])),
                                shape=(len(found), stations))
     sizes = [len(face) * len(one.values) for face, one in zip(faces, lattices, strict=True)]
     numbers = np.split(inverse.ravel(), np.cumsum(sizes)[:-1])

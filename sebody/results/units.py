@@ -21,3 +21,12 @@ def unit(name: str) -> str:
     if name.startswith("energy."):
         return "force length"
     return OF_MODEL.get(name) or OF_QUANTITY.get(name.rpartition(".")[2], "")
+
+
+def unit_of_curves(name: str) -> str:
+    """Unit of what is drawn of a quantity, of a component or of a group of quantities."""
+    while name.rpartition(".")[2] in ("x", "y", "z", "norm") or name.rpartition(".")[2].isdecimal():
+        name = name.rpartition(".")[0]
+    if name.rpartition(".")[2] == "rotation":
+        return "rad"            # rotation vectors
+    return "force length" if name == "energy" else unit(name)

@@ -73,10 +73,10 @@ class Labels {
     const { canvas, brush } = this, size = canvas.clientWidth < 640 ? 26 : 34;
     const middle = [canvas.clientWidth - size - 26, canvas.clientHeight - size - 22];
     const back = camera.direction(), right = unit(cross(camera.up, back));
-    const above = cross(back, right), { gravity, planar } = this.scene.header;
-    const arrows = IDENTITY.map((axis, k) => ({ axis, name: "xyz"[k], colour: AXES[k] }));
+    const above = cross(back, right), { gravity, planar, palette } = this.scene.header;
+    const arrows = IDENTITY.map((axis, k) => ({ axis, name: "xyz"[k], colour: palette.axes[k] }));
     if (planar) arrows.pop();
-    if (gravity) arrows.push({ axis: gravity, name: "g", colour: this.scene.header.palette.load });
+    if (gravity) arrows.push({ axis: gravity, name: "g", colour: palette.load });
     arrows.sort((a, b) => dot(a.axis, back) - dot(b.axis, back));
     for (const { axis, name, colour } of arrows) {
       const way = [dot(axis, right), -dot(axis, above)], seen = Math.hypot(...way);

@@ -100,7 +100,7 @@ class Marks {
     for (let axis = 0; axis < 3 && shown.frames; axis++) {
       const points = all.flatMap(({ origin, axes }) => [
         ...origin, ...add(origin, times(5 * this.header.sign, axes[axis]))]);
-      this.renderer.lines(new Float32Array(points), { tint: [...rgb(AXES[axis]), 1], width: 2.5 });
+      this.renderer.lines(new Float32Array(points), { tint: [...rgb(this.header.palette.axes[axis]), 1], width: 2.5 });
     }
   }
 }

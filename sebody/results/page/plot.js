@@ -1,7 +1,5 @@
 // The plot below the model: histories of a quantity, with a line at the time that is shown.
 
-const CURVES = ["#c8452d", "#2a7f62", "#1f2a44", "#d99a2b", "#6a4c93", "#3d8fb5", "#8c564b",
-                "#7f7f7f"];
 const MARGIN = { left: 62, right: 12, top: 20, bottom: 20 };
 
 // Round steps that divide a range into about so many parts.
@@ -30,6 +28,7 @@ class Plot {
     this.canvas = canvas;
     this.motion = motion;
     this.numbers = numbers;
+    this.colours = header.palette.curves;
     this.panels = header.plots.all;
     this.t = Array.from(numbers.indices(header.plots.frames), (frame) => motion.t[frame]);
     this.choose(0);
@@ -74,7 +73,7 @@ class Plot {
     this.unit(brush, panel, width);
     brush.lineWidth = 1.4;
     for (let k = 0; k < count; k++) {
-      brush.strokeStyle = CURVES[k % CURVES.length];
+      brush.strokeStyle = this.colours[k % this.colours.length];
       brush.beginPath();
       times.forEach((t, row) => brush.lineTo(x(t), y(values[row * count + k])));
       brush.stroke();
@@ -123,8 +122,8 @@ class Plot {
     brush.textAlign = "left";
     let at = MARGIN.left;
     const noise = 2e-5 * Math.max(...panel.range.map(Math.abs));
-    now.slice(0, CURVES.length).forEach((value, k) => {
-      brush.fillStyle = CURVES[k];
+    now.slice(0, this.colours.length).forEach((value, k) => {
+      brush.fillStyle = this.colours[k];
       brush.beginPath();
       brush.arc(x(time), y(value), 3.2, 0, 2 * Math.PI);
       brush.fill();

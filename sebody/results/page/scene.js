@@ -1,6 +1,5 @@
 // The model as it is drawn at a time: where everything is, and in which colours.
 
-const AXES = ["#c8452d", "#2a7f62", "#3566b8"];
 const TRACE = "#c8452d", TO_COME = "#e6b3a6", INK = "#1f2a44";
 const CLEAR = 0.55;             // of rigid bodies, so that joints show through them
 
