@@ -9,6 +9,7 @@ from sebody.results.drawn_bodies import DrawnBody, Undeformed
 from sebody.results.units import unit
 
 TITLES = {"displacement": "displacement", "von_mises": "von Mises stress"}
+ROUNDING = 1e-12        # of the largest body: smaller displacements are none
 AT_ONCE = 200_000       # values of stations that are computed together
 
 
@@ -30,7 +31,9 @@ def colourings(bodies: list[DrawnBody]) -> list[Colouring]:
     for name, title in TITLES.items():
         peaks = [(*_peak(body, name), k) for k, body in enumerate(bodies)]
         value, frame, station, body = max(peaks, default=(0.0, 0, 0, 0))
-        if value > 0:
+        rounding = 0.0 if name == "von_mises" or not bodies else ROUNDING * max(
+            np.ptp(one.surface.points, axis=0).max() for one in bodies)
+        if value > rounding:
             found.append(Colouring(name, title, unit(f"body.{name}"), value, frame, body, station))
     return found
 

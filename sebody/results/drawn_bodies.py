@@ -16,7 +16,8 @@ from sebody.results.result import Result
 from sebody.results.surface import box, spatial, surface_of
 from sebody.results.surface_parts import Surface
 
-NEGLIGIBLE = 1e-7       # of the model's extent: smaller displacements by an amplitude are left out
+NEGLIGIBLE = 1e-5       # of the largest displacement by an amplitude: smaller ones are left out
+ROUNDING = 1e-13        # of the model's extent: smaller ones are none
 THINNEST = 0.004        # of the model's extent: half of a section, smaller ones are drawn larger
 STRESSES = 1_000_000    # stresses of nodes in frames that are computed
 SLENDER = 0.1           # width of a planar rigid body over its length
@@ -83,7 +84,7 @@ def flexible(result: Result, body: Superelement, states: NDArray, size: float, w
     surface = surface._replace(points=surface.points - spatial(held),
                                offsets=larger * surface.offsets)
     reach = np.abs(surface.moves).max(axis=(1, 2)) * np.abs(amplitudes).max(axis=0)
-    kept = reach > NEGLIGIBLE * size
+    kept = reach > max(NEGLIGIBLE * reach.max(initial=0.0), ROUNDING * size)
     surface = surface._replace(moves=surface.moves[kept], turns=surface.turns[kept])
     node = welded.reference(body, reference)
     still = None if node is None else _still(result, body, motion, node, states)

@@ -1,7 +1,7 @@
 // The controls beside the picture, and the choice of what is plotted.
 
 const DISPLAYED_SCALES = 20;        // steps of the slider for each factor of ten
-const NARROW = 640;                 // pixels, below which the panel is closed at first
+const SMALL = "(max-width: 720px), (max-height: 560px)";     // screens on which the panel is closed
 
 const element = (name) => document.getElementById(name);
 
@@ -15,7 +15,7 @@ class Controls {
     this.page = page;
     this.header = page.header;
     this.scene = page.scene;
-    element("panel").open = window.innerWidth >= NARROW;
+    element("panel").open = !window.matchMedia(SMALL).matches;
     this.colours();
     this.references();
     this.traces();

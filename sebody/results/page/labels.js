@@ -70,7 +70,7 @@ class Labels {
 
   // Axes of space in the corner, and the direction of gravity.
   triad(camera) {
-    const { canvas, brush } = this, size = canvas.clientWidth < 640 ? 26 : 34;
+    const { canvas, brush } = this, size = canvas.clientWidth < 720 ? 26 : 34;
     const middle = [canvas.clientWidth - size - 26, canvas.clientHeight - size - 22];
     const back = camera.direction(), right = unit(cross(camera.up, back));
     const above = cross(back, right), { gravity, planar, palette } = this.scene.header;

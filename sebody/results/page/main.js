@@ -95,10 +95,12 @@ class Page {
   }
 }
 
+let page = null;
+
 async function start() {
   try {
     const header = JSON.parse(element("header").textContent);
-    const page = new Page(header, await Numbers.read(element("numbers").textContent));
+    page = new Page(header, await Numbers.read(element("numbers").textContent));
     if (window.top === window.self) page.play();        // not inside a report
   } catch (error) {
     console.error(error);

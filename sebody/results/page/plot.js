@@ -102,7 +102,7 @@ class Plot {
 
   // The unit at the right, over the curves.
   unit(brush, panel, width) {
-    if (!panel.unit || width < 640) return;
+    if (!panel.unit || width < 720) return;
     brush.fillStyle = "#66718a";
     brush.textAlign = "right";
     brush.textBaseline = "top";

@@ -139,10 +139,13 @@ class Scene {
 
   nodes() {
     const size = 0.36 * this.header.sign, axes = IDENTITY.map((axis) => times(size, axis));
-    this.motion.nodes.forEach((node, k) => {
+    const draw = (alpha) => this.motion.nodes.forEach((node, k) => {
       if (node.ground) return;
-      this.renderer.draw(this.marks.shapes.sphere, placed(axes, this.place(k)), rgb(INK));
+      const matrix = placed(axes, this.place(k));
+      this.renderer.draw(this.marks.shapes.sphere, matrix, rgb(INK), alpha);
     });
+    draw(1);
+    this.renderer.behind(() => draw(0.5));
   }
 
   trace(node) {
