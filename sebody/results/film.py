@@ -28,11 +28,13 @@ from sebody.results.scenery import Scenery, extent, seen_places
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Text
+    from PIL import Image
 
 RATES = {".gif": 15, ".mp4": 30}        # frames a second
 MOST_FRAMES = 901       # of a film
 SIZE, DPI = (9.6, 5.4), 100     # inch, pixels an inch
 COLOURS = 96, 256       # of a picture of a gif; of one with values
+BELOW = 40              # rows of the legend's colours that are put below a picture to choose them
 CLEAR = 0.6             # of rigid bodies, so that joints show through them
 ROOM = 1.12             # of the picture, over what moves
 LEGEND = 0.03, 0.155, 0.26, 0.028      # left, bottom, width and height of the bar, of the picture
@@ -77,11 +79,7 @@ def write_film(drawn: Scenery, title: str, path: Path, count: int, file: BinaryI
     rate = RATES[path.suffix]
     pictures = _pictures(drawn, title, frames, colour)
     if path.suffix == ".gif":
-        from PIL import Image  # matplotlib needs it
-
-        colours = COLOURS[colour is not None]
-        made = (Image.fromarray(picture).quantize(colours, dither=Image.Dither.NONE)
-                for picture in pictures)
+        made = _indexed(pictures, colour is not None)
         next(made).save(file, format="GIF", save_all=True, append_images=made, loop=0,
                         duration=round(1000 / rate))
         return
@@ -92,6 +90,18 @@ def write_film(drawn: Scenery, title: str, path: Path, count: int, file: BinaryI
         for picture in pictures:
             writer.append_data(picture)
     file.write(writer.request.get_result())
+
+
+def _indexed(pictures: Iterator[NDArray], valued: bool) -> "Iterator[Image.Image]":
+    """Pictures of few colours, those of the legend among them if there is one."""
+    from PIL import Image  # matplotlib needs it
+
+    for picture in pictures:
+        height, width, _ = picture.shape
+        legend = np.rint(255 * colours_of(np.linspace(0.0, 1.0, width), 0.0, 1.0)).astype(np.uint8)
+        rows = np.tile(legend, (BELOW if valued else 0, 1, 1))
+        whole = Image.fromarray(np.concatenate([picture, rows]))
+        yield whole.quantize(COLOURS[valued], dither=Image.Dither.NONE).crop((0, 0, width, height))
 
 
 def _pictures(drawn: Scenery, title: str, frames: NDArray, colour: str | None

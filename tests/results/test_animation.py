@@ -463,6 +463,43 @@ def test_films(folder):
     assert path.read_bytes()[4:8] == b"ftyp"
 
 
+def test_films_with_values(arm, folder):
+    """The bodies and the legend have the colours of the values; without, those of the bodies."""
+    from PIL import Image
+
+    from sebody.results.palette import MAP, rgb
+    for colour in ("von_mises", "displacement"):
+        pictures = Image.open(animate(arm, folder / "film.gif", speed=0.1, colour=colour))
+        assert pictures.n_frames == 16
+        pictures.seek(15)
+        legend = np.asarray(pictures.convert("RGB"))[540 - 84 - 12:540 - 84, 29:278].astype(int)
+        found = legend[6, np.linspace(1, 247, len(MAP)).astype(int)]
+        exact = 255 * np.array([rgb(one) for one in MAP])
+        # colours of a gif are shared by some columns of the bar
+        assert np.abs(found - exact).max() < 16, colour
+    frame = animate(arm, folder / "film.gif", speed=0.1, colour=colour, reference="frame")
+    other = Image.open(frame)
+    other.seek(15)
+    assert np.any(np.asarray(other.convert("RGB")) != np.asarray(pictures.convert("RGB")))
+
+
+def test_the_legend_of_a_film(arm):
+    """Its ends, its words and its largest value are those of the field."""
+    from matplotlib.figure import Figure
+
+    drawn = scenery(arm, 201, stressed=True)
+    bodies, figure = film._Bodies(drawn, "von_mises"), Figure()
+    now = bodies.add_legend(figure)
+    axes, = figure.axes
+    largest = max((arm.field(name).envelope() for name in arm.model.bodies),
+                  key=lambda one: one.largest)
+    assert axes.get_title(loc="left") == "von Mises stress [force/length^2]"
+    np.testing.assert_allclose(axes.get_xlim(), [0.0, largest.largest], rtol=1e-6)
+    assert f"at t = {largest.time:g}" in axes.texts[0].get_text()
+    bodies.solids(int(np.argmin(np.abs(drawn.t - largest.time))))
+    assert bodies.most == pytest.approx(largest.largest, rel=1e-9) and now.get_text() == ""
+
+
 @pytest.mark.parametrize("name, given, said", [
     ("a.avi", {}, "animation .*a.avi must end in .html, .gif, .mp4"),
     ("a.gif", {"speed": 0.01}, "the film has 90001 frames, more than 901: give a speed of at "),
@@ -503,7 +540,14 @@ def test_the_command(beam, folder, tmp_path, capsys):
     assert capsys.readouterr().out == f"animation: {page}\n"
     assert page.read_text().startswith("<!DOCTYPE html>")
     unknown = [str(folder / "beam.npz"), "tip.x"]
+    assert main(["animate", str(folder / "beam.npz"), "--output", str(page), "--colour",
+                 "von_mises", "--reference", "frame"]) == 0
+    capsys.readouterr()
+    header = PageData(page.read_text()).header
+    assert header["colour"] == "von_mises" and header["bodies"][0]["reference"] is None
+    colour = [str(folder / "beam.npz"), "--colour", "stress"]
     for arguments, said in ((["none.npz"], "none.npz does not exist"),
+                            (colour, "colour 'stress' is unknown: use 'body', 'displacement'"),
                             (unknown, "'x' is unknown: a node has position")):
         assert main(["animate", *arguments, "--output", str(page)]) == 2
         assert said in capsys.readouterr().err
