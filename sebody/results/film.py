@@ -164,7 +164,8 @@ class _Bodies:
         title = f"{field.title} [{field.unit}]" if field.unit else field.title
         axes = add_legend(figure, title, 0.0, field.largest, LEGEND)
         axes.text(0.0, -2.6, f"largest {short(field.largest)} at t = "
-                  f"{short(self._drawn.t[field.frame])}", transform=axes.transAxes, fontsize=9,
+                  f"{short(self._drawn.t[field.frame])}, "
+                  f"{self._drawn.bodies[field.body].name}", transform=axes.transAxes, fontsize=9,
                   color=INK)
         return axes.text(0.0, -3.7, "", transform=axes.transAxes, fontsize=9, color=INK)
 
