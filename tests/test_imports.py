@@ -39,7 +39,8 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
-PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "picture", "paper_figures"}
+PICTURES = {"plots", "frequency_pictures", "drawing", "film", "film_marks", "rendering", "draw",
+            "picture", "paper_figures"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by room, and what they may import
