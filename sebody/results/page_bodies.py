@@ -56,6 +56,8 @@ def _body(blocks: Blocks, body: DrawnBody, measure: Measure, stress: float,
         "origin": blocks.values(measure.places(body.origin), SEEN),
         "rotation": blocks.values(body.rotation),
         "amplitudes": blocks.values(body.amplitudes),
+        "thickness": 0.0 if skin else 2 * float(
+            np.median(np.linalg.norm(surface.offsets, axis=1))) / size,
         "rigid": body.labels is None, "start": measure.places(body.start).tolist(),
         "held": [{"node": number[held.name], "point": (held.point / size).tolist(),
                   "position": held.position, "rotation": held.rotation, "full": held.full}

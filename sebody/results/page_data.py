@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from sebody.results import page_bodies, palette
 from sebody.results.blocks import Blocks
@@ -23,6 +24,8 @@ FRAMES = 1801           # at most: a minute of thirty a second
 FEWEST_FRAMES = 201
 NUMBERS = 3_000_000     # of all frames together, beyond which models have fewer of them
 SIGN = 0.018            # size of signs, of the extent
+FAR = 0.15              # between neighbouring nodes, from which signs have this size
+SMALLEST = 0.35         # of this size
 ROOM = 1.1              # of what is seen at the start, over what moves
 REAL_TIME = (2.0, 120.0)        # durations that are played at their own speed
 SECONDS = 10.0          # that the others take
@@ -77,7 +80,7 @@ def _header(blocks: Blocks, result: Result, drawn: Scenery) -> dict:
         "entries": [entry._asdict() for entry in drawn.entries],
         "nodes": page_bodies.nodes(blocks, result, drawn, measure),
         **page_bodies.marks(blocks, drawn),
-        "sign": SIGN, "view": _view(drawn, measure.places(places), measure.size),
+        "sign": _sign(drawn, measure), "view": _view(drawn, measure.places(places), measure.size),
         "trace": list(drawn.nodes).index(drawn.farthest),
         "fields": [_field(field) for field in fields], "planar": drawn.planar,
         "palette": {name.lower(): value for name, value in vars(palette).items()
@@ -89,6 +92,16 @@ def _field(one: Colouring) -> dict:
     return {"name": one.name, "title": one.title, "unit": one.unit, "largest": one.largest,
             "peak": {"value": one.largest, "frame": one.frame, "body": one.body,
                      "station": one.station}}
+
+
+def _sign(drawn: Scenery, measure: Measure) -> float:
+    """Size of signs: smaller where nodes are near each other."""
+    places = np.array([node.position[0] for node in drawn.nodes.values()])
+    places = np.unique(np.round(measure.places(places), 6), axis=0)
+    if len(places) < 2:
+        return SIGN
+    apart = np.median(cKDTree(places).query(places, 2)[0][:, 1])
+    return SIGN * float(np.clip(apart / FAR, SMALLEST, 1.0))
 
 
 def _view(drawn: Scenery, places: NDArray, size: float) -> dict:

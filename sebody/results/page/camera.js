@@ -39,6 +39,12 @@ class Camera {
     return aspect < 1 ? 2 * Math.atan(Math.tan(VIEW_ANGLE / 2) / aspect) : VIEW_ANGLE;
   }
 
+  // Pixels of a unit of length at the target.
+  pixels({ clientWidth, clientHeight }) {
+    const angle = this.angle(clientWidth / clientHeight);
+    return clientHeight / (2 * this.distance * Math.tan(angle / 2));
+  }
+
   // What is seen at a pixel lies on a line from the eye.
   ray([x, y], width, height) {
     const back = this.direction(), right = unit(cross(this.up, back)), above = cross(back, right);

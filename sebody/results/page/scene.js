@@ -1,6 +1,7 @@
 // The model as it is drawn at a time: where everything is, and in which colours.
 
 const TRACE = "#c8452d", TO_COME = "#e6b3a6", INK = "#1f2a44";
+const THICK = 14;               // pixels, from which the edges of beams are drawn in full
 const CLEAR = 0.55;             // of rigid bodies, so that joints show through them
 
 const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);
@@ -99,6 +100,7 @@ class Scene {
   draw(camera) {
     const { renderer, shown, marks } = this;
     renderer.begin(camera, this.map, this.range);
+    this.pixels = camera.pixels(renderer.canvas);
     if (shown.grid) renderer.lines(this.grid, { tint: [...rgb("#9aa5b8"), 0.45], width: 1 });
     this.eachBody((body, entry, k) => { if (!body.rigid) this.body(k, entry, 1); });
     for (const link of this.header.links) {
@@ -128,7 +130,9 @@ class Scene {
     const lines = (edges, tint, width) => this.renderer.lines(
       this.along(body, edges), { tint: [...rgb(INK), tint], width, lift: 2e-5, matrix });
     if (this.shown.mesh) lines(body.edges, 0.4, 1);
-    if (this.shown.features) lines(body.features, 0.75, 1.2);
+    // on thin bodies edges would be all that is seen
+    const seen = body.thickness ? Math.min(body.thickness * this.pixels / THICK, 1) : 1;
+    if (this.shown.features) lines(body.features, 0.75 * seen, 1.2);
   }
 
   along(body, edges) {
