@@ -40,12 +40,13 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(), "units": set()
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
-PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "picture", "paper_figures"}
+PICTURES = {"plots", "frequency_pictures", "drawing", "film", "film_marks", "rendering", "draw",
+            "picture", "paper_figures"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by room, and what they may import
 OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
-          "results/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
+          "results/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"}, "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "results/film": {"PIL", "imageio"},
           "studies/places": {"distributed"}, "studies/table": {"pandas"}}
 

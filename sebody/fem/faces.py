@@ -11,24 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.fem.cells import CORNERS, EDGES, SOLIDS, faces_of
 from sebody.fem.face_functions import face_rule
 from sebody.fem.model import FEModel
 
-# corners of the faces of each kind, and its edges in the order of its middle nodes
-_SOLIDS = {
-    "tetra": ([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
-              [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]),
-    "hexahedron": ([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6),
-                    (3, 0, 4, 7)],
-                   [(0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7), (0, 4), (1, 5),
-                    (2, 6), (3, 7)]),
-    "wedge": ([(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
-              [(0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5)]),
-}
-_PLANES = {
-    "triangle": ([(0, 1), (1, 2), (2, 0)], [(0, 1), (1, 2), (0, 2)]),
-    "quad": ([(0, 1), (1, 2), (2, 3), (3, 0)], [(0, 1), (1, 2), (2, 3), (0, 3)]),
-}
 _QUADRATIC = {"tetra10": "tetra", "hexahedron20": "hexahedron", "wedge15": "wedge",
               "triangle6": "triangle", "quad8": "quad"}
 _REVERSED = {"line": [1, 0], "line3": [1, 0, 2], "triangle": [0, 2, 1],
@@ -78,29 +64,16 @@ def _outward(model: FEModel, kind: str, faces: NDArray, middles: NDArray) -> NDA
 def _faces_of(kind: str, planar: bool) -> Iterator[tuple[str, list[int]]]:
     """Kind and nodes, in the element, of each face of an element."""
     base = _QUADRATIC.get(kind, kind)
-    table = _PLANES if planar else _SOLIDS
-    if base in table:
-        for face in table[base][0]:
-            columns = face_nodes(kind, face)
-            yield _face_kind(len(face), len(columns)), columns
-    elif not planar and base in _PLANES:
-        corners = 3 if base == "triangle" else 4
-        yield kind, list(range(2 * corners if kind in _QUADRATIC else corners))
-
-
-def face_nodes(kind: str, corners: tuple[int, ...]) -> list[int]:
-    """Corners of a face of an element, and the nodes in the middles of its edges, in the element.
-
-    In a plane of an edge.
-    """
-    if kind not in _QUADRATIC:
-        return list(corners)
-    base = _QUADRATIC[kind]
-    faces, edges = (_SOLIDS | _PLANES)[base]
-    count = len({*sum(faces, ())})
-    middle = {frozenset(edge): count + k for k, edge in enumerate(edges)}
-    ring = zip(corners, corners[1:] + corners[:1], strict=True)
-    return [*corners, *(middle[edge] for edge in dict.fromkeys(map(frozenset, ring)))]
+    if base not in CORNERS or (planar and base in SOLIDS):
+        return
+    count = CORNERS[base] + (len(EDGES[base]) if kind in _QUADRATIC else 0)
+    if planar:
+        for k, edge in enumerate(EDGES[base]):
+            columns = [*edge, *([CORNERS[base] + k] if kind in _QUADRATIC else [])]
+            yield _face_kind(2, len(columns)), columns
+        return
+    for face in faces_of(kind, count):
+        yield _face_kind(3 if len(face) in (3, 6) else 4, len(face)), list(face)
 
 
 def _face_kind(corners: int, nodes: int) -> str:

@@ -166,7 +166,7 @@ def _phase(results: Mapping[str, Result], word: str, across: str, up: str) -> li
     for label in results:
         curves.append(Curve(label, *(_one(results, label, word, side) for side in (across, up))))
     units = _units(results)
-    return [Panel(f"{up} over {across}", *(with_unit(side, _base(side), units)
+    return [Panel(f"{up} over {across}", *(with_unit(side, side, units)
                                            for side in (across, up)), curves, "phase")]
 
 
@@ -203,7 +203,7 @@ def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
 
 def _history(name: str, curves: list[Curve], results: Mapping[str, Result]) -> Panel:
     units = _units(results)
-    return Panel(name, with_unit("time", "t", units), with_unit(_plain(name), _base(name), units),
+    return Panel(name, with_unit("time", "t", units), with_unit(_plain(name), name, units),
                  curves)
 
 
@@ -225,13 +225,9 @@ def _values_of(results: Mapping[str, Result], label: str, word: str) -> Values:
 
 def _plain(name: str) -> str:
     """The quantity of a name, for the axis."""
-    return _base(name).rpartition(".")[2].replace("_", " ")
-
-
-def _base(name: str) -> str:
-    """The name of a quantity without its component."""
-    first, _, last = name.rpartition(".")
-    return first if first and (last in (*AXES, NORM) or last.isdecimal()) else name
+    parts = name.split(".")
+    quantity = parts[-1] if not (parts[-1] in (*AXES, NORM) or parts[-1].isdecimal()) else parts[-2]
+    return quantity.replace("_", " ")
 
 
 def _spectrum(panel: Panel, units: Units | None) -> Panel:

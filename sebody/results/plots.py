@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
+from sebody.results.palette import AXES
 from sebody.results.result import Result
 from sebody.results.skeleton import lines_of
 from sebody.results.units import with_unit
@@ -22,7 +23,7 @@ INSTANTS = 9            # at which the bodies are drawn
 MOST_TICKS = 5          # of the longest axis of a path
 FLAT = 0.03             # share of the motion below which motion out of the plane is not drawn
 INK, ACCENT, PALE = "#1f2a44", "#c8452d", "#9aa5b8"
-COMPONENTS = ((ACCENT, "x"), ("#2a7f62", "y"), (INK, "z"))
+COMPONENTS = tuple(zip(AXES, "xyz", strict=True))
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
          "axes.edgecolor": PALE, "axes.labelcolor": INK, "axes.titlecolor": INK,
          "axes.titlesize": 10, "axes.titlelocation": "left", "xtick.color": INK,

@@ -9,10 +9,10 @@ from pathlib import Path
 from sebody import inputs
 from sebody.files import check_target, replacing
 from sebody.model.tables import model_tables, summary, table
-from sebody.results.animation import page
 from sebody.results.audit import Finding, audit
 from sebody.results.curves import Curve, Panel, panels
 from sebody.results.drawing import draw, overview
+from sebody.results.page_data import page
 from sebody.results.plots import check_matplotlib
 from sebody.results.result import Result
 from sebody.results.templates import filled

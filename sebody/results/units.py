@@ -27,12 +27,21 @@ def unit(name: str, units: Units | None = None) -> str:
     units : Units, optional
         Of the model; in words without them, such as ``length/time``.
     """
-    words = "force length" if name.startswith("energy.") or name == "energy" else (
+    words = "force length" if name.startswith("energy.") else (
         OF_MODEL.get(name) or OF_QUANTITY.get(name.rpartition(".")[2], ""))
     return words if units is None else units.of(words)
 
 
+def unit_of_curves(name: str, units: Units | None = None) -> str:
+    """Unit of what is drawn of a quantity, of a component or of a group of quantities."""
+    while name.rpartition(".")[2] in ("x", "y", "z", "norm") or name.rpartition(".")[2].isdecimal():
+        name = name.rpartition(".")[0]
+    if name.rpartition(".")[2] == "rotation":
+        return "rad"            # rotation vectors
+    return unit("energy.total" if name == "energy" else name, units)
+
+
 def with_unit(label: str, name: str, units: Units | None) -> str:
     """The label of an axis or a legend, with the unit of a quantity if the model has units."""
-    found = "" if units is None else unit(name, units).replace("^2", "\u00b2")
+    found = "" if units is None else unit_of_curves(name, units).replace("^2", "\u00b2")
     return f"{label} [{found}]" if found else label

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sebody.fem.faces import face_nodes
+from sebody.fem.cells import face_nodes, first_order
 from sebody.io.deck.cards import Row
 from sebody.io.deck.sets import Sets
 
@@ -54,7 +54,7 @@ def surface_faces(surface: Surface, sets: Sets, solids: Mapping[int, Solid]
                 raise row.fault(f"element {label} of the surface is no solid of the deck",
                                 "name faces of solid elements")
             kind, nodes = solids[label]
-            faces = [face_nodes(kind, corners) for corners in _corners(row, kind, face)]
+            faces = [face_nodes(kind, len(nodes), one) for one in _corners(row, kind, face)]
             (named if face else free).extend(tuple(nodes[k] for k in one) for one in faces)
     return named + _once(free)
 
@@ -71,7 +71,7 @@ def surface_nodes(surface: Surface, node_sets: Sets, element_sets: Sets,
 
 def _corners(row: Row, kind: str, face: str) -> tuple[tuple[int, ...], ...]:
     """Corners of the face of a name, or of all faces if it has none."""
-    faces = FACES[kind.rstrip("0123456789")]
+    faces = FACES[first_order(kind)]
     if not face:
         return faces
     number = face.upper().removeprefix("S")
