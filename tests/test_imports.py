@@ -46,7 +46,8 @@ FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by room, and what they may import
 OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
-          "results/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"}, "results/hot_spots": {"pandas"},
+          "results/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
+          "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "results/film": {"PIL", "imageio"},
           "studies/places": {"distributed"}, "studies/table": {"pandas"}}
 
