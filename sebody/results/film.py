@@ -127,7 +127,7 @@ def _pictures(drawn: Scenery, title: str, frames: NDArray, colour: str | None
     painter, marks = Painter(axes), Marks(axes, drawn, eye)
     for k in frames:
         painter.draw(eye, bodies.solids(k), marks.links(k))
-        clock.set_text(f"t = {drawn.t[k]:.4g}")
+        clock.set_text(f"t = {drawn.t[k]:.4g} {drawn.units.time if drawn.units else ''}".rstrip())
         if values:
             values.set_text(f"now at most {short(bodies.most)}")
         marks.draw(k)

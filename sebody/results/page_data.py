@@ -74,6 +74,7 @@ def _header(blocks: Blocks, result: Result, drawn: Scenery) -> dict:
     stress = next((field.largest for field in fields if field.name == "von_mises"), 1.0)
     return {
         "about": _about(result, drawn), "cautions": result.cautions,
+        "time_unit": drawn.units.time if drawn.units else "",
         "t": blocks.values(drawn.t[:, None], 1e-6 * np.ptp(drawn.t)),
         "size": measure.size, "middle": measure.middle.tolist(),
         "bodies": page_bodies.bodies(blocks, drawn, measure, stress),

@@ -89,7 +89,7 @@ class Page {
     this.plot.draw(this.time);
     const part = (this.time - motion.start) / (motion.end - motion.start);
     element("time").value = Math.round(1e5 * part);
-    element("now").textContent = `t = ${short(Number(this.time.toPrecision(5)))}`;
+    element("now").textContent = `t = ${short(Number(this.time.toPrecision(5)))} ${this.header.time_unit}`.trimEnd();
     document.body.dataset.drawn = String(Number(document.body.dataset.drawn || 0) + 1);
     if (this.playing) this.redraw();
   }
