@@ -17,6 +17,21 @@ from sebody.fem.model import assemble
 TETRAHEDRON_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]   # middles of tetra10
 
 
+class InvertedCell(InputError):
+    """A cell that is turned inside out, or has no volume.
+
+    Parameters
+    ----------
+    message : str
+    group, cell : int
+        Which of the groups of cells, and which of its cells.
+    """
+
+    def __init__(self, message: str, group: int, cell: int):
+        super().__init__(message)
+        self.group, self.cell = group, cell
+
+
 class SolidPrestress:
     """Geometric stiffness ``integral sigma_ij N_a,i N_b,j (x) I`` of the linear stresses.
 
@@ -38,14 +53,14 @@ class SolidPrestress:
     Raises
     ------
     InputError
-        An unknown kind, or an element turned inside out.
+        An unknown kind, or an element turned inside out (`InvertedCell`).
     """
 
     def __init__(self, points: NDArray, cells: Sequence[tuple[str, NDArray, NDArray]],
                  motion: sparse.csr_array,
                  tied: Sequence[tuple[NDArray, NDArray, NDArray]] = ()):
         self._motion, self._tied, self._count = motion, tuple(tied), len(points)
-        self._groups = [_group(points, *group) for group in cells]
+        self._groups = [_group(k, points, *group) for k, group in enumerate(cells)]
 
     def __call__(self, displacement: NDArray) -> sparse.csc_array:
         """Geometric stiffness (n_dofs, n_dofs) of the displacement (n_dofs,) of a prestress."""
@@ -100,7 +115,7 @@ def knows(kind: str) -> bool:
     return kind in _RULES
 
 
-def _group(points: NDArray, kind: str, nodes: NDArray, law: NDArray
+def _group(number: int, points: NDArray, kind: str, nodes: NDArray, law: NDArray
            ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Nodes (e, a), slopes (e, g, a, 3), volumes (e, g) of the points, and the law."""
     if kind not in _RULES:
@@ -112,8 +127,9 @@ def _group(points: NDArray, kind: str, nodes: NDArray, law: NDArray
     determinants = np.linalg.det(jacobians)
     if (determinants <= 0).any():
         element = int(np.argwhere(determinants <= 0)[0][0])
-        raise InputError(f"cell {element} of kind {kind!r}, nodes {nodes[element].tolist()}, is "
-                         "turned inside out: correct the mesh or the order of its nodes")
+        raise InvertedCell(f"cell {element} of kind {kind!r}, nodes {nodes[element].tolist()}, is "
+                           "turned inside out: correct the mesh or the order of its nodes", number,
+                           element)
     slopes = np.einsum("egki,gai->egak", np.linalg.inv(jacobians), of_reference)
     return nodes, slopes, determinants * weights, law
 

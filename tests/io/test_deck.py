@@ -169,6 +169,8 @@ def test_stresses_of_masses_and_springs_are_not_missed(decks):
     ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", r"\*ELASTIC, TYPE=ORTHO has 2 numbers: give 9"),
     (SECTION, "*ORIENTATION, NAME=O\n1,0,0,2,0,0\n" + SECTION, "which make no axes: give two"),
     (SECTION, "*ELSET, ELSET=A, GENERATE\n1, 4, 0\n" + SECTION, "the step of GENERATE is 0"),
+    ("3, 9, 13, 15, 11, 10, 14, 16, 12", "3, 9, 11, 15, 13, 10, 12, 16, 14",
+     "element 3 of the deck is turned inside out or has no volume: correct the order"),
     (SECTION, "*TIE, NAME=T\nLEFT, NEAR\n" + SECTION, r"\*TIE of surface NEAR, which there is not"),
 ])
 def test_refused_with_the_true_reason(decks, old, new, said):

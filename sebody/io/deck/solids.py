@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.errors import InputError
 from sebody.fem.isoparametric import SOLID_KINDS
-from sebody.fem.solids import SolidPrestress, knows
+from sebody.fem.solids import InvertedCell, SolidPrestress, knows
 from sebody.fem.stress import SolidStress
 from sebody.io.deck.materials import Section, turned_law
 from sebody.io.deck.motion import Motion
@@ -28,6 +29,7 @@ class Group(NamedTuple):
     kind: str
     nodes: NDArray      # (e, k), indices
     law: NDArray        # (6, 6) or (e, 6, 6)
+    labels: NDArray     # (e,)
 
 
 class Solids(NamedTuple):
@@ -50,11 +52,11 @@ def deck_solids(deck: Deck, index: dict[int, int], motion: Motion) -> Solids:
     section_of = {label: section for section in deck.sections
                   if section.element_set in deck.element_sets
                   for label in deck.element_sets.labels(section.element_set)}
-    sorted_out: dict[tuple[str, Section | None], list[tuple[int, ...]]] = {}
+    sorted_out: dict[tuple[str, Section | None], dict[int, tuple[int, ...]]] = {}
     for group in deck.elements:
         if group.kind not in _POINTS:
             for label, nodes in group.nodes.items():
-                sorted_out.setdefault((group.kind, section_of.get(label)), []).append(nodes)
+                sorted_out.setdefault((group.kind, section_of.get(label)), {})[label] = nodes
     found, lacks, count = [], Counter(), Counter()
     for (kind, section), elements in sorted_out.items():
         count[kind] += len(elements)
@@ -62,14 +64,15 @@ def deck_solids(deck: Deck, index: dict[int, int], motion: Motion) -> Solids:
         if lack:
             lacks[lack] += len(elements)
             continue
-        nodes = np.array([[index[label] for label in own] for own in elements])
+        nodes = np.array([[index[label] for label in own] for own in elements.values()])
         whole = motion.known[nodes].all(axis=1)
         if not whole.all():
             lacks["are at nodes that have no rows in the matrices and follow no others"] += int(
                 np.sum(~whole))
         if whole.any():
             found.append(Group(CELLS[kind], nodes[whole],
-                               _law(deck, section, motion.points[nodes[whole]].mean(axis=1))))
+                               _law(deck, section, motion.points[nodes[whole]].mean(axis=1)),
+                               np.array(list(elements))[whole]))
     total = sum(count.values())
     if not total:
         return Solids([], ["the deck has no elements"])
@@ -122,7 +125,13 @@ def deck_prestress(solids: Solids, motion: Motion, stiffness: sparse.csc_array
     unknown = [group.kind for group in solids.groups if not knows(group.kind)]
     if unknown:
         return None, f"cells of kind {unknown[0]} have no full integration here"
-    found = SolidPrestress(motion.points, solids.groups, motion.matrix, motion.rigid)
+    try:
+        found = SolidPrestress(motion.points, [group[:3] for group in solids.groups],
+                               motion.matrix, motion.rigid)
+    except InvertedCell as error:
+        label = solids.groups[error.group].labels[error.cell]
+        raise InputError(f"element {label} of the deck is turned inside out or has no volume: "
+                         "correct the order of its nodes, or their places") from error
     off = _difference(found, motion, stiffness)
     if not off < _ALIKE:
         return None, (f"the mesh and the materials of the deck have another strain energy than "
