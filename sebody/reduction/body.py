@@ -15,6 +15,7 @@ from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.loads import named_vectors
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.recovery_checks import check_recovery
 from sebody.reduction.rigid import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
 
@@ -103,6 +104,11 @@ class ReducedBody:
                             "give InertiaInvariants, as a reduction makes them")
             check_invariants(self.invariants, self.stiffness, self.mass,
                              self.rigid_modes_about(self.invariants.origin), names)
+        if self.recovery is not None:
+            inputs.instance(self.recovery, "recovery", Recovery,
+                            "give a Recovery, as a reduction makes it")
+            check_recovery(self.recovery, self.planar, len(names), len(names) - self.modes,
+                           self.invariants and self.invariants.slaved)
         loads = named_vectors(self.loads, len(names), "coordinates of the body")
         object.__setattr__(self, "loads", {n: _read_only(load) for n, load in loads.items()})
 
