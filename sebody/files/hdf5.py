@@ -1,6 +1,7 @@
 """HDF5 files likewise: what a group holds is known before its datasets are read (extra ``hdf5``).
 """
 
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.files.members import Header
 
+CHECKSUM = "checksum"       # attribute of a text
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -54,8 +56,13 @@ class Group:
 
     def read(self, name: str) -> NDArray:
         """A dataset; texts as arrays of numpy."""
-        found = self._group[name][()]
-        return np.array(found.decode()) if isinstance(found, bytes) else np.asarray(found)
+        dataset = self._group[name]
+        found = dataset[()]
+        if not isinstance(found, bytes):
+            return np.asarray(found)
+        if dataset.attrs.get(CHECKSUM, zlib.crc32(found)) != zlib.crc32(found):
+            raise ValueError(f"member {name} does not have its checksum")
+        return np.array(found.decode())
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from scipy import sparse
 
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
+from sebody.files.reading import called, existing
 from sebody.io.reading import Reading
 from sebody.io.reduced import NAMES
 
@@ -114,8 +115,5 @@ def _cells(mesh: Any, labels: np.ndarray) -> list[tuple[str, np.ndarray]]:
 
 def _called(function: Callable[[], Any], path: Path) -> Any:
     """What the reader makes of a file; whatever it raises is said of the file."""
-    try:
-        return function()
-    except Exception as error:      # of many classes, of files that are cut off or of other kinds
-        raise InputError(f"{path} is damaged or of another kind ({type(error).__name__}: {error}): "
-                         f"{_REMEDY}") from error
+    existing(path, "file", _REMEDY)
+    return called(function, path, _REMEDY)

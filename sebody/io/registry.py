@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.files.reading import existing
 from sebody.io import abaqus, ansys, calculix, matrix_market, nastran, sid
 from sebody.io.reading import Reading
 from sebody.io.text import read_text
@@ -83,10 +84,7 @@ def read_source(path: str | Path, kind: str | None = None) -> Reading:
     InputError
         An unknown kind, a package that is not installed, or files that cannot be used.
     """
-    path = inputs.path(path, "file to import")
-    if not path.exists():
-        raise InputError(f"file to import {path} does not exist: give the path of a file of an FE "
-                         "program")
+    path = existing(path, "file to import", "give the path of a file of an FE program")
     source = _guessed(path) if kind is None else _named(kind)
     if source.needs and not _installed(source.needs):
         raise InputError(f"files of {source.name} are read by {source.needs}, which is not "

@@ -28,7 +28,7 @@ def check_invariants(invariants: InertiaInvariants, stiffness: NDArray, mass: ND
     names : list of str
         Of the n coordinates.
     """
-    _check_shapes(invariants, len(names))
+    check_shapes(invariants, len(names))
     names = [*names, *(f"mode slaved {b}" for b in range(invariants.slaved))]
     scale = unit_scale(invariants.Mbar, names)
     n = len(mass)
@@ -42,7 +42,8 @@ def check_invariants(invariants: InertiaInvariants, stiffness: NDArray, mass: ND
     _check_resultants(invariants, stiffness, scale[:n])
 
 
-def _check_shapes(invariants: InertiaInvariants, n: int) -> None:
+def check_shapes(invariants: InertiaInvariants, n: int) -> None:
+    """Raise InputError unless the constants are finite and fit so many coordinates."""
     eta = invariants.slaved
     lengths = {"D": 2 if invariants.planar else 3, "r": 1 if invariants.planar else 3, "n": n,
                "N": n + eta, "slaved": eta, "resultants": invariants.resultants}
