@@ -17,7 +17,7 @@ from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen
 from sebody.analysis.redundancy import contradiction
 from sebody.analysis.row_exchanges import RowExchanges
-from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.schemes import checked, generalized_alpha
 from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
@@ -95,7 +95,7 @@ class Simulation:
         self.every = inputs.integer(output_every, "output_every", least=1,
                                     remedy="give a whole number of steps >= 1")
         if scheme is not None:
-            inputs.instance(scheme, "scheme", Scheme, "give generalized_alpha() or hht()")
+            checked(scheme)
         tolerance = given(tolerance)
         prepare([model])
         self.system, self.numbering = build(model)

@@ -47,7 +47,7 @@ REFUSED = [
     ((*BODY, "--resume", "a.npz", "--step", "0.1"), "leave out --step"),
     ((*BODY, "--resume", "none.npz"), "restart file none.npz does not exist"),
     ((*BODY, "--resume", "folder.npz"), "folder.npz is a folder"),
-    ((*BODY, "--resume", "broken.npz"), "is no restart file"),
+    ((*BODY, "--resume", "broken.npz"), "is damaged or no restart file"),
     ((*BODY, "--resume", "broken.txt"), "must end in .npz"),
     ((*BODY, "--output", "a.npz", "--save", "a.npz"), "are the same file, a.npz"),
     *(((*BODY, option, path), said) for option, end in (
