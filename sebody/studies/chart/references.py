@@ -2,22 +2,24 @@
 
 import hashlib
 import warnings
-import zlib
 from pathlib import Path
 from typing import NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.simulation import simulate
+from sebody.errors import InputError
 from sebody.files import replacing
+from sebody.files.arrays import opened
+from sebody.files.members import Member, Table
 from sebody.kernels.loader import user_directory
 from sebody.studies.chart.cases import COARSEST, SCENES, builder
 
 ELEMENTS = 24       # of the first run; the second has twice as many
 FINER = 8           # scene's own step over that of the first run; twice that in the second
+MEMBERS = {"values": Member((None, ...)), "error": Member((), least=0)}
 
 
 class Reference(NamedTuple):
@@ -55,11 +57,14 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
 
 def _read(path: Path) -> Reference | None:
     """A reference that was kept; None where there is none, or a damaged file."""
-    try:
-        with np.load(path) as data:
-            return Reference(data["values"], float(data["error"]))
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error):
+    if not path.exists():
         return None
+    try:
+        with opened(path, "reference", "remove it") as reader:
+            found = Table(f"reference {path}", "remove it", MEMBERS).read(reader)
+    except InputError:
+        return None
+    return Reference(found["values"], float(found["error"]))
 
 
 def history(scene: str, elements: int, finer: int) -> NDArray:

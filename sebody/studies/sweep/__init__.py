@@ -108,7 +108,7 @@ def _begun(path: Path | None, text: str, made: Design) -> Table:
     """The table that is there already, or an empty one."""
     if path is not None and path.exists():
         table = Table.load(path)
-        if table.design != text:
+        if table.design != text or not table.has(made.columns):
             raise InputError(f"{path} is the table of another sweep, with other scenes, parameters "
                              "or outputs: give another --output, or remove it")
         return table
