@@ -37,8 +37,9 @@ NUMBERS = Member((None,), finite=False)     # of the model's arrays
 # lengths by the names of `member_lengths`
 MEMBERS = {"rows": Member(("states", "width")), "elements": Member(("states", "forces")),
            "supports": Member(("states", "supports")),
-           "counters": Member((CONTROLS,), "i", least=0), "energies": Member(("states", "energies")),
-           "powers": Member(("states", "ports")), "constraint_residuals": Member(("states", 2))}
+           "counters": Member((CONTROLS,), "i", least=0),
+           "energies": Member(("states", "energies")), "powers": Member(("states", "ports")),
+           "constraint_residuals": Member(("states", 2))}
 
 
 def packed(recording: Recording) -> dict[str, NDArray]:

@@ -184,8 +184,10 @@ FILES = {
     "resume": Right(lambda path: resume(ball(), path), {"path": "state.npz"}, {
         "path": [*are("restart file", None, 3, "", also=": give the path"),
                  ("none.npz", "restart file none.npz does not exist"),
-                 ("folder.npz", "folder.npz is a folder"), ("broken.npz", "is damaged or no restart file"),
-                 ("histories.npz", "is damaged or no restart file"), ("x" * 300 + ".npz", "cannot be a file"),
+                 ("folder.npz", "folder.npz is a folder"),
+                 ("broken.npz", "is damaged or no restart file"),
+                 ("histories.npz", "is damaged or no restart file"),
+                 ("x" * 300 + ".npz", "cannot be a file"),
                  ("nan.npz", "holds numbers in q_old that are not finite"),
                  ("short.npz", "is of another model")]}),
     "save": Right(lambda path: Shared.run().result().save(path), {"path": "new.npz"}, {

@@ -37,8 +37,10 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
     """
     folder = folder or user_directory().parent / "references"
     path = folder / f"{scene}-{_key(scene)}.npz"
-    if (kept := _read(path)) is not None:
-        return kept
+    try:
+        return kept(path)
+    except InputError:      # none, or a damaged one
+        pass
     coarse = history(scene, ELEMENTS, FINER)
     finer_beams = history(scene, 2 * ELEMENTS, FINER)
     finer_steps = history(scene, ELEMENTS, 2 * FINER)
@@ -55,15 +57,16 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
     return found
 
 
-def _read(path: Path) -> Reference | None:
-    """A reference that was kept; None where there is none, or a damaged file."""
-    if not path.exists():
-        return None
-    try:
-        with opened(path, "reference", "remove it") as reader:
-            found = Table(f"reference {path}", "remove it", MEMBERS).read(reader)
-    except InputError:
-        return None
+def kept(path: Path) -> Reference:
+    """A reference that was kept.
+
+    Raises
+    ------
+    InputError
+        There is none, or it is damaged.
+    """
+    with opened(path, "reference", "remove it") as reader:
+        found = Table(f"reference {path}", "remove it", MEMBERS).read(reader)
     return Reference(found["values"], float(found["error"]))
 
 
