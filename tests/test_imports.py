@@ -45,7 +45,7 @@ PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "picture",
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by room, and what they may import
-OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
+OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
           "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
           "results/vtk_series": {"meshio"}, "results/film": {"PIL", "imageio"},
           "studies/places": {"distributed"}, "studies/table": {"pandas"}}

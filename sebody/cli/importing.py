@@ -44,14 +44,15 @@ def run(options: argparse.Namespace) -> int:
     from sebody.io.body_file import TARGET, write_body_file
     from sebody.io.importing import imported
     from sebody.io.interfaces import parsed
-    from sebody.io.registry import read_source
+    from sebody.io.registry import naming, read_source
 
     check_target(options.output, *TARGET)
     modes = _modes(options)
     interfaces = parsed(options.interfaces)
     file = imported(read_source(options.file, options.format), interfaces, modes, options.method,
                     options.units, options.file)
-    body = None if options.unchecked else file.body()
+    with naming(options.file):
+        body = None if options.unchecked else file.body()
     if options.lean:
         file.parts["recovery"] = None
     write_body_file(file, options.output)

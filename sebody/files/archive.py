@@ -4,6 +4,7 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tokenize import TokenError
 from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 import numpy as np
@@ -20,7 +21,7 @@ LONGEST_HEADER = 10_000     # bytes: headers of plain arrays have some hundred
 LARGE, TIMES = 2**28, 900   # bytes unpacked, times those packed: larger ones hold nothing but zeros
 # what zipfile and numpy raise of files that are damaged
 ERRORS = (BadZipFile, zlib.error, ValueError, EOFError, KeyError, IndexError, TypeError,
-          NotImplementedError, RuntimeError, OverflowError, SyntaxError)
+          NotImplementedError, RuntimeError, OverflowError, SyntaxError, TokenError)
 
 
 class Archive:

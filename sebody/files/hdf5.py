@@ -12,20 +12,42 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.files.members import Header
 
-CHECKSUM = "checksum"       # attribute of a text
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# what stands before a file of ours, in the room that HDF5 leaves to users
+GUARD, SIZE = b"sebody, HDF5 from byte 512 on, crc32 ", 512
+BLOCK = 2**20       # bytes that are read at a time
+
+
+def guarded(content: bytearray) -> bytearray:
+    """A file with a user block, in which the checksum of the rest is entered."""
+    text = GUARD + b"%08x\n" % zlib.crc32(memoryview(content)[SIZE:])
+    content[:SIZE] = text.ljust(SIZE, b"\n")
+    return content
 
 
 def is_hdf5(path: Path) -> bool:
     """Whether a file is one, whatever its name is.
 
+    The library may not end over a damaged file, so files of ours have a checksum.
+
     Raises
     ------
     OSError
         It cannot be read.
+    ValueError
+        It is one of ours, and not as it was written.
     """
     with path.open("rb") as file:
-        return file.read(len(SIGNATURE)) == SIGNATURE
+        begin = file.read(SIZE)
+        if not begin.startswith(GUARD):
+            return begin.startswith(SIGNATURE)
+        found = 0
+        while block := file.read(BLOCK):
+            found = zlib.crc32(block, found)
+    if begin[len(GUARD):len(GUARD) + 8] != b"%08x" % found:
+        raise ValueError("its checksum is not that of its content: damaged, or changed by another "
+                         "program")
+    return True
 
 
 class Group:
@@ -56,13 +78,8 @@ class Group:
 
     def read(self, name: str) -> NDArray:
         """A dataset; texts as arrays of numpy."""
-        dataset = self._group[name]
-        found = dataset[()]
-        if not isinstance(found, bytes):
-            return np.asarray(found)
-        if dataset.attrs.get(CHECKSUM, zlib.crc32(found)) != zlib.crc32(found):
-            raise ValueError(f"member {name} does not have its checksum")
-        return np.array(found.decode())
+        found = self._group[name][()]
+        return np.array(found.decode()) if isinstance(found, bytes) else np.asarray(found)
 
 
 @contextmanager
@@ -71,11 +88,15 @@ def opened(path: Path, group: str) -> Iterator[Group]:
 
     Raises
     ------
+    InputError
+        h5py is missing.
     ValueError
         The file is damaged, or has no such group.
     """
-    import h5py
-
+    try:
+        import h5py
+    except ImportError as error:
+        raise InputError('HDF5 files need h5py: pip install "sebody[hdf5]"') from error
     try:
         with h5py.File(path, "r") as file:
             yield Group(file[group])

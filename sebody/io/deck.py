@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.io.element_checks import check_elements
 from sebody.io.text import fault, read_text
 
 # meshio's names of the cells of solids, whose orders of nodes are those of CalculiX and Abaqus
@@ -82,6 +83,7 @@ def read_deck(path: Path) -> Deck:
     if not deck.nodes:
         raise InputError(f"deck {path} has no *NODE: give the deck that the matrices were "
                          "computed from")
+    check_elements(deck.path, deck.elements, deck.nodes, CELLS)
     return deck
 
 

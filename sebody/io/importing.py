@@ -15,7 +15,7 @@ from sebody.io.interfaces import Interface, boundary_items, parsed
 from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
 from sebody.io.reduced import chosen_interfaces
-from sebody.io.registry import read_source
+from sebody.io.registry import naming, read_source
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.methods import reduce
@@ -78,7 +78,8 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     if output is not None:
         check_target(output, *TARGET)
     file = imported(read_source(path, kind), parsed(interfaces), modes, method, units, path)
-    body = file.body()
+    with naming(path):
+        body = file.body()
     if output is not None:
         write_body_file(file, output)
     return body

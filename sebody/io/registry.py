@@ -1,7 +1,8 @@
 """The table of sources: kinds of files, their readers, and what must be installed for them."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -89,7 +90,19 @@ def read_source(path: str | Path, kind: str | None = None) -> Reading:
     if source.needs and not _installed(source.needs):
         raise InputError(f"files of {source.name} are read by {source.needs}, which is not "
                          f'installed: pip install "sebody[{source.extra}]"')
-    return source.read(path)
+    with naming(path):
+        return source.read(path)
+
+
+@contextmanager
+def naming(path: str | Path) -> Iterator[None]:
+    """Input errors that name the file, whose matrices know nothing of it."""
+    try:
+        yield
+    except InputError as error:
+        if Path(path).stem in str(error):
+            raise
+        raise InputError(f"{path}: {error}") from error
 
 
 def _named(kind: str) -> Source:

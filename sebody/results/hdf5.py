@@ -3,7 +3,6 @@
 Arrays are written by blocks of rows, packed. The group ``sebody`` holds what a `Result` needs.
 """
 
-import zlib
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
@@ -14,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.files.hdf5 import CHECKSUM
+from sebody.files.hdf5 import SIZE, guarded
 
 SUFFIX = ".h5"
 BLOCK = 2**16       # numbers of a block
@@ -54,19 +53,17 @@ def write(file: BinaryIO, members: Mapping[str, NDArray], units: Mapping[str, st
     import h5py
 
     memory = BytesIO()
-    # of this version on every piece of the file's structure has a checksum
-    with h5py.File(memory, "w", libver=("v110", "v110")) as made:
+    with h5py.File(memory, "w", userblock_size=SIZE) as made:
         made.attrs.update(attributes | {"program": f"sebody {_version()}"})
         for name, values in members.items():
             _write(made, name, np.asarray(values), units.get(name))
-    file.write(memory.getbuffer())
+    file.write(guarded(bytearray(memory.getbuffer())))
 
 
 def _write(file, name: str, values: NDArray, unit: str | None) -> None:
     """One dataset."""
     if values.dtype.kind == "U":
         file[name] = str(values)
-        file[name].attrs[CHECKSUM] = zlib.crc32(str(values).encode())
         return
     packed = {}
     if values.ndim and values.size > SMALL:

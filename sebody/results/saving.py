@@ -17,12 +17,10 @@ from sebody.engine.state import CONTROLS
 from sebody.errors import InputError
 from sebody.files.arrays import json_of, opened
 from sebody.files.checksums import changed, checksums
-from sebody.files.hdf5 import is_hdf5
 from sebody.files.members import Member, Table
 from sebody.files.reading import existing
 from sebody.kernels.layout import RECORD_T
 from sebody.model.mechanism import Mechanism
-from sebody.results import hdf5
 from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces
 from sebody.results.recording import EVALUATED, Recording, Start
@@ -65,8 +63,6 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
         No such file, one of another kind or version, or parts that do not fit together.
     """
     found, file = existing(path, WHAT, "give one that was saved"), f"{WHAT} {path}"
-    if is_hdf5(found):
-        hdf5.check_installed()
     with opened(found, WHAT, REMEDY, group=OWN.strip("/")) as reader:
         notes = json_of(reader, "notes")
         if notes["version"] != VERSION:
