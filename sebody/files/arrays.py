@@ -37,8 +37,10 @@ def opened(path: str | Path, what: str, remedy: str, suffixes: Sequence[str] = (
         with (hdf5.opened(found, group) if group and hdf5.is_hdf5(found) else
               archive.opened(found, group and group + "/")) as reader:
             yield reader
-    except InputError:
-        raise
+    except InputError as error:
+        if found.stem in str(error):
+            raise
+        raise InputError(f"{what} {path}: {error}") from error
     except OSError as error:
         raise unreadable(path, what, error, remedy) from error
     except (ValueError, KeyError, IndexError, TypeError, AttributeError) as error:

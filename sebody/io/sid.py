@@ -199,6 +199,11 @@ def _modal(path: Path, found: dict[str, NDArray], nodes: list[ModalNode]) -> Mod
         if node.phi is None or node.psi is None or {node.phi.shape, node.psi.shape} != {(3, nq)}:
             raise InputError(f"SID file {path}: node {node.name} has no shapes phi and psi of "
                              f"{nq} modes: {_REMEDY}")
+    for name, what in (("Me", "mass"), ("Ke", "stiffness")):
+        own = np.diag(found[name])
+        if (own < 0).any():
+            raise InputError(f"SID file {path}: mode {np.argmin(own) + 1} has the {what} "
+                             f"{own.min():g}: write the file again")
     J = found["J"]
     if J.shape == (6, 1):
         whole = np.zeros((3, 3))

@@ -25,6 +25,9 @@ from sebody.reduction.invariant_checks import check_shapes
 from sebody.reduction.recovery_checks import check_recovery
 from sebody.results.recording import record_counts
 
+NOTES = {"seconds": float, "failure": str, "warnings": list[str], "error": float | None,
+         "all_seconds": float, "start": list | None, "advice": dict[str, list[str]],
+         "checksums": dict[str, int]}
 _PLAIN = {float: (int, float), int: (int,), str: (str,), bool: (bool,)}
 
 
@@ -55,6 +58,23 @@ def check_part(part: Any, values: Mapping[str, Any]) -> None:
         _check_body(part)
 
 
+def check_notes(notes: Mapping[str, Any]) -> None:
+    """Refuse what a file says of a run, if it is of other types.
+
+    Raises
+    ------
+    ValueError
+        It is.
+    """
+    for name, hint in NOTES.items():
+        if not _fits(notes[name], hint):
+            raise ValueError(f"it has {inputs.shown(notes[name])} for its {name}")
+    start = notes["start"]
+    if start and not (len(start) == 2 and _fits(start[0], dict[str, float])
+                      and _fits(start[1], list[str])):
+        raise ValueError(f"it has {inputs.shown(start)} for its start")
+
+
 def check_tuple(kind: type, values: list) -> None:
     """The same of a named tuple.
 
@@ -82,6 +102,8 @@ def _fits(value: Any, hint: Any) -> bool:
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, UnionType):
         return any(_fits(value, one) for one in inner)
+    if isclass(hint) and hint in (list, dict):
+        return isinstance(value, hint)
     if hint in _PLAIN:
         return isinstance(value, _PLAIN[hint]) and (hint is bool or not isinstance(value, bool))
     if hint is NoneType or hint is None:

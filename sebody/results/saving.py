@@ -24,7 +24,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces
 from sebody.results.recording import EVALUATED, Recording, Start
-from sebody.results.saved_checks import member_lengths
+from sebody.results.saved_checks import check_notes, member_lengths
 
 VERSION = 2
 OWN = "sebody/"         # beginning of the names of members that are no named histories
@@ -68,12 +68,13 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
         if notes["version"] != VERSION:
             raise InputError(f"{file} is of version {notes['version']}, this program reads "
                              f"{VERSION}: numpy.load or h5py reads its named histories")
+        check_notes({"checksums": {}, **notes})     # older files have none
         text = json_of(reader, "model")
         numbers = Table(file, REPEAT, {"numbers": NUMBERS}).read(
             reader, others=set(reader.headers) - {"numbers"})
         model, numbering = restored(text, numbers["numbers"])
         members = dict(MEMBERS)
-        if _failed(notes):              # what was computed last may have overflowed
+        if notes["failure"]:            # what was computed last may have overflowed
             members |= {name: one._replace(finite=False) for name, one in MEMBERS.items()
                         if name != "rows"}
         table = Table(file, REPEAT, members, member_lengths(model, numbering))
@@ -84,10 +85,6 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
         if odd := changed(noted, notes.get("checksums")):
             raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
         return made
-
-
-def _failed(notes: dict) -> bool:
-    return bool(notes["failure"])
 
 
 def _check_times(table: Table, rows: NDArray) -> None:
