@@ -20,7 +20,7 @@ def check(wanted: float, what: str, remedy: str) -> None:
     wanted : float
         Bytes; infinity for more than can be counted.
     what : str
-        What needs them, for the message.
+        What needs them, for the message: one thing.
     remedy : str
         What to do.
 
@@ -33,8 +33,8 @@ def check(wanted: float, what: str, remedy: str) -> None:
         return
     there = available()
     if wanted > there:
-        raise InputError(f"{what} would need {size(wanted)} of memory, {size(there)} are "
-                         f"available: {remedy}")
+        raise InputError(f"{what} does not fit into memory: {remedy} ({size(wanted)} needed, "
+                         f"{size(there)} available)")
 
 
 def available() -> float:

@@ -105,10 +105,14 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     """
     inputs.instance(body, "body", ReducedBody, "give a ReducedBody")
     names = checked_names(names, len(body.keeps))
+    remedy = "give a dict of texts"
+    provenance = inputs.mapping({} if provenance is None else provenance, "provenance", remedy)
+    for text in (units, *provenance, *provenance.values()):
+        inputs.text(text, "units or provenance")
     parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
     if not inputs.flag(recovery, "recovery"):
         parts["recovery"] = None
-    return write_body_file(BodyFile(parts, names, units, provenance or {}), path)
+    return write_body_file(BodyFile(parts, names, units, provenance), path)
 
 
 def load_body(path: str | Path) -> ReducedBody:

@@ -79,6 +79,10 @@ class ReducedBody:
         keeps = tuple(inputs.items(self.keeps, "keeps", "give a text per boundary node"))
         object.__setattr__(self, "modes", inputs.integer(self.modes, "modes", least=0))
         checks.check_layout(coordinates, keeps)
+        rows = np.shape(self.stiffness)[:1]
+        if rows and self.modes > rows[0]:
+            raise inputs.refusal("modes", self.modes, f"the stiffness has {rows[0]} rows in all, "
+                                 "give fewer")
         names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
         self._store("coordinates", coordinates)
         object.__setattr__(self, "keeps", keeps)
@@ -192,7 +196,8 @@ class ReducedBody:
         if self.recovery is None:
             raise InputError("the body has no shapes of an FE model, so it knows no displacements "
                              "inside; reduce the FE model with craig_bampton")
-        field = self.recovery.all_dofs(self.with_followers(np.asarray(y, dtype=float)[None]))
+        y = inputs.vector(y, "y", len(self.mass))
+        field = self.recovery.all_dofs(self.with_followers(y[None]))
         return field.reshape(len(self.recovery.coordinates), -1)
 
     def with_followers(self, y: NDArray) -> NDArray:

@@ -73,7 +73,7 @@ def animate(result: Result, output: str | Path, *quantities: str, title: str = "
     path = check_animation(output)
     if speed is not None:
         speed = inputs.number(speed, "speed", above=0)
-    title = title or path.stem
+    title = inputs.text(title, "title") or path.stem
     if path.suffix == ".html":
         text = page(result, quantities or overview(result), title, speed)
         with replacing(path, "animation") as file:

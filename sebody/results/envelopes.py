@@ -31,6 +31,7 @@ def envelope(field: FieldStates, quantity: str, static: bool) -> Envelope:
     InputError
         Another quantity, or a body whose FE model has no stress operator.
     """
+    inputs.flag(static, "static")
     read = ENVELOPES[inputs.choice(quantity, "quantity of an envelope", ENVELOPES)]
     value, step = np.full(field.count, -np.inf), np.zeros(field.count, dtype=int)
     sign = -1.0 if quantity == "smallest_principal" else 1.0

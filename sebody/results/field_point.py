@@ -13,7 +13,8 @@ class FieldPoint:
     """Histories of one FE node of a superelement, (n, D): a row of the field for each state."""
 
     def __init__(self, field: FieldStates, node: int, axes: str, static: bool):
-        self._field, self._nodes, self._static = field, np.array([node]), static
+        self._field, self._nodes = field, np.array([node])
+        self._static = inputs.flag(static, "static")
         self._axes = inputs.choice(axes, "axes", AXES)
         self._states = np.arange(len(field.t))
 

@@ -124,7 +124,7 @@ BODY = {
         "notes", lambda said: said["body"].update({"modes": "two"}))),
     "negative modes": Packed("has -1 for its number of modes", text(
         "notes", lambda said: said["body"].update({"modes": -1}))),
-    "a million modes": Packed("the layout has", text(
+    "a million modes": Packed("modes is 1000000: the stiffness has 8 rows", text(
         "notes", lambda said: said["body"].update({"modes": 1_000_000}))),
     "a version in words": Packed("is of version one, this program reads 1", text(
         "notes", lambda said: said.update({"version": "one"}))),

@@ -70,7 +70,9 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     InputError
         Before the first run: unknown names, values that cannot be had, a table of another sweep.
     """
-    listed, sampled, fixed = dict(listed or {}), dict(sampled or {}), dict(fixed or {})
+    listed, sampled, fixed = _checked(build, outputs, listed, sampled, fixed)
+    if progress is not None:
+        inputs.function(progress, "progress", "give a function of the part that is done")
     made = (sobol.saltelli(sampled, sobol_n, seed) if sobol_n is not None
             else design(listed, sampled, runs, seed, sampler))
     if sobol_n is not None and listed:
@@ -85,7 +87,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     path = None if output is None else check_target(output, "table", (".npz",))
     table = _begun(path, _text(build, fixed, outputs, made), made)
     left = np.flatnonzero(~table.done)
-    where = (places.cluster(cluster, workers) if cluster or workers else
+    where = (places.cluster(cluster, workers) if (cluster, workers) != (None, None) else
              places.threads(processors() if threads is None else
                             inputs.integer(threads, "threads", least=1)))
     saved = time.monotonic()
@@ -102,6 +104,44 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
         if path:
             table.save(path)
     return table
+
+
+def _checked(build: Callable[..., Any], outputs: Mapping[str, Output],
+             *given: Mapping[str, Any] | None) -> list[dict[str, Any]]:
+    """Listed, sampled and fixed values as dicts of names.
+
+    Raises
+    ------
+    InputError
+        Something else, values that are no list or of which one is there twice.
+    """
+    inputs.function(build, "build", "give a function that returns a Scene")
+    inputs.mapping(outputs, "outputs", "give a dict of names and what maximum(...) and the like "
+                   "return")
+    found = [inputs.mapping({} if one is None else one, what, "give a dict of values by name")
+             for one, what in zip(given, ("listed", "sampled", "fixed"), strict=True)]
+    for one in found:
+        for name in one:
+            inputs.name(name, "name of a parameter")
+    for name, values in found[0].items():
+        found[0][name] = inputs.items(values, f"values of {name}", "give a list")
+        if not found[0][name]:
+            raise inputs.refusal(f"values of {name}", values, "give one at least")
+        if twice := first_twice(found[0][name]):
+            raise InputError(f"{name} has the value {inputs.shown(twice[0])} twice: give it once")
+    for name, one in found[1].items():
+        inputs.instance(one, f"distribution of {name}", Distribution, "give what "
+                        "sebody.studies.sweep.axes.distribution returns")
+    return found
+
+
+def first_twice(values: list) -> tuple | None:
+    """The first value that occurs again, if there is one; values may be of any kind."""
+    for k, value in enumerate(values):
+        if any(type(value) is type(other) and inputs.shown(value) == inputs.shown(other)
+               for other in values[:k]):
+            return (value,)
+    return None
 
 
 def _begun(path: Path | None, text: str, made: Design) -> Table:
