@@ -1,18 +1,18 @@
 """Right calls of what users import: any argument may be replaced by a thing of a wrong kind."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from malformed import file_cases
-from malformed.read_files import SECTION, body, mechanism
+from malformed.read_files import SECTION, ball_scene, body, mechanism
 from malformed.run_cases import pendulum
 
-from sebody import Model, Result, Simulation, simulate
+from sebody import Model, Result, Simulation, fem, io, reduction, results
 from sebody import analysis as an
-from sebody import fem, io, reduction, results
 from sebody.analysis.ensembles import Output
 from sebody.model import variants
 from sebody.studies.sweep import axes, sweep
@@ -22,21 +22,10 @@ MATERIAL = {"youngs_modulus": 1e4, "poisson_ratio": 0.25, "density": 1.5}
 
 
 class Call(NamedTuple):
-    """A call that is right.
-
-    Parameters
-    ----------
-    function : function
-        Of keyword arguments, or of a star argument by its name.
-    arguments : mapping
-        All of them, or a function that returns them.
-    right : mapping
-        By argument, which of the `JUNK` are right.
-    """
+    """A function and right arguments, all by name."""
 
     function: Callable
     arguments: Callable[[], Mapping[str, Any]]
-    right: Mapping[str, tuple[str, ...]] = {}
 
 
 class Colour:
@@ -71,6 +60,12 @@ def beam() -> fem.FEModel:
 
 
 @cache
+def beam_body() -> reduction.ReducedBody:
+    """A planar beam."""
+    return body()
+
+
+@cache
 def ensemble() -> an.Ensemble:
     """Runs of the mechanism."""
     return an.Ensemble(mechanism(), 0.05)
@@ -86,9 +81,10 @@ def shafts() -> Model:
     return model
 
 
-def _scene(mass: float = 2.0, push: float = 1.0):
-    from malformed.read_files import _scene as scene
-    return scene(mass, push)
+def _reduced(**arguments: Any) -> reduction.ReducedBody:
+    """A block of bricks with the stress operator."""
+    model = replace(file_cases.BLOCK, stress=(fem.SolidStress(**arguments),))
+    return reduction.reduce(model, {0: "translation", 3: "translation", 12: "translation"})
 
 
 # values by name, of every kind that users mix up; those too large ask for more than any memory
@@ -183,7 +179,7 @@ FEM = {
         "youngs_modulus": 1.0, "poisson_ratio": 0.2}),
     "StressModes": Call(fem.StressModes, lambda: {
         "points": np.zeros((2, 3)), "modes": np.zeros((2, 6, 4)), "nodes": [0, 1]}),
-    "SolidStress": Call(fem.SolidStress, lambda: {
+    "SolidStress": Call(_reduced, lambda: {
         "kind": "hexahedron", "nodes": file_cases.BLOCK.cells[0][1],
         "coordinates": file_cases.BLOCK.coordinates, "elasticity": np.eye(6), "strains": None}),
     "circle": Call(fem.circle, lambda: {"radius": 0.1, **MATERIAL}),
@@ -211,22 +207,22 @@ REDUCTION = {
         "modes": 1, "select": None}),
     "frame_weights": Call(reduction.frame_weights, lambda: {
         "coordinates": [X, Y], "centre_of_mass": (1.0, 0.0, 0.0)}),
-    "body_weights": Call(reduction.body_weights, lambda: {"body": body()}),
+    "body_weights": Call(reduction.body_weights, lambda: {"body": beam_body()}),
     "ReducedBody": Call(reduction.ReducedBody, lambda: {
-        name: getattr(body(), name) for name in reduction.ReducedBody.__dataclass_fields__}),
-    "damped": Call(lambda **a: body().damped(**a), lambda: {
+        name: getattr(beam_body(), name) for name in reduction.ReducedBody.__dataclass_fields__}),
+    "damped": Call(lambda **a: beam_body().damped(**a), lambda: {
         "ratio": 0.1, "mass": 0.0, "stiffness": 0.0}),
-    "rotated": Call(lambda **a: body().rotated(**a), lambda: {"rotation": np.eye(2)}),
-    "recovering": Call(lambda **a: body().recovering(**a), lambda: {"nodes": [0, 1]}),
-    "displacements": Call(lambda **a: body().displacements(**a), lambda: {"y": np.zeros(8)}),
+    "rotated": Call(lambda **a: beam_body().rotated(**a), lambda: {"rotation": np.eye(2)}),
+    "recovering": Call(lambda **a: beam_body().recovering(**a), lambda: {"nodes": [0, 1]}),
+    "displacements": Call(lambda **a: beam_body().displacements(**a), lambda: {"y": np.zeros(8)}),
 }
 IO = {
     "save_body": Call(io.save_body, lambda: {
-        "body": body(), "path": "body.npz", "names": ("a", "b", "c"), "units": "m",
+        "body": beam_body(), "path": "body.npz", "names": ("a", "b", "c"), "units": "m",
         "provenance": {"source": "here"}, "recovery": True}),
     "load_body": Call(io.load_body, lambda: {"path": "none.npz"}),
     "read_body_file": Call(io.read_body_file, lambda: {"path": "none.npz"}),
-    "write_sid": Call(io.write_sid, lambda: {"body": body(), "path": "a.sid", "names": None}),
+    "write_sid": Call(io.write_sid, lambda: {"body": beam_body(), "path": "a.sid", "names": None}),
     "import_body": Call(io.import_body, lambda: {
         "path": "none.inp", "interfaces": {"a": "1"}, "modes": 0, "method": "guyan",
         "kind": "calculix", "units": "", "output": None}),
@@ -253,10 +249,10 @@ VARIANTS = {
 }
 SWEEP = {
     "sweep": Call(sweep, lambda: {
-        "build": _scene, "outputs": {"end": an.final("ball.position")},
+        "build": ball_scene, "outputs": {"end": an.final("ball.position")},
         "listed": {"push": [1.0, 2.0]}, "sampled": None, "runs": None, "seed": 0, "sampler": "lhs",
         "sobol_n": None, "fixed": {"t_end": 0.2}, "output": None, "threads": 1, "cluster": None,
-        "workers": None, "progress": None}),
+        "progress": None}),
     "distribution": Call(axes.distribution, lambda: {
         "kind": "normal", "numbers": (1.0, 0.1), "what": "push"}),
 }

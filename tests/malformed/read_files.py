@@ -78,7 +78,8 @@ def mechanism() -> Model:
     return model
 
 
-def _scene(mass: float = 2.0, push: float = 1.0):
+def ball_scene(mass: float = 2.0, push: float = 1.0):
+    """What the file of a scene builds."""
     namespace: dict = {}
     exec(SCENE, namespace)
     return namespace["build"](mass, push)
@@ -98,7 +99,7 @@ def _restart(folder: Path) -> Path:
 
 
 def _table(folder: Path) -> Path:
-    sweep(_scene, {"end": final("ball.position")}, sampled={
+    sweep(ball_scene, {"end": final("ball.position")}, sampled={
         "push": distribution("normal", (1.0, 0.1), "push")}, runs=3, fixed={"t_end": 0.2},
         output=folder / "table.npz", threads=1)
     return folder / "table.npz"

@@ -16,6 +16,7 @@ import numpy as np
 from sebody import inputs
 from sebody.analysis.ensembles import Output
 from sebody.analysis.ensembles.work import processors
+from sebody.analysis.progress import showing
 from sebody.errors import InputError
 from sebody.files import check_target
 from sebody.studies.sweep import places, sobol
@@ -34,7 +35,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
           seed: int = 0, sampler: str = "lhs", sobol_n: int | None = None,
           fixed: Mapping[str, Any] | None = None, output: str | Path | None = None,
           threads: int | None = None, cluster: str | None = None, workers: int | None = None,
-          progress: Callable[[float], None] | None = None) -> Table:
+          progress: Callable[[float], None] | bool | None = None) -> Table:
     """Run a scene for all combinations of listed values, each with all sampled sets.
 
     Parameters are ``step``, ``t_end``, ``rho``, arguments of `build`, with which the model is built
@@ -71,8 +72,6 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
         Before the first run: unknown names, values that cannot be had, a table of another sweep.
     """
     listed, sampled, fixed = _checked(build, outputs, listed, sampled, fixed)
-    if progress is not None:
-        inputs.function(progress, "progress", "give a function of the part that is done")
     made = (sobol.saltelli(sampled, sobol_n, seed) if sobol_n is not None
             else design(listed, sampled, runs, seed, sampler))
     if sobol_n is not None and listed:
@@ -87,16 +86,16 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     path = None if output is None else check_target(output, "table", (".npz",))
     table = _begun(path, _text(build, fixed, outputs, made), made)
     left = np.flatnonzero(~table.done)
-    where = (places.cluster(cluster, workers) if (cluster, workers) != (None, None) else
+    where = (places.cluster(cluster, workers) if cluster is not None or workers is not None else
              places.threads(processors() if threads is None else
                             inputs.integer(threads, "threads", least=1)))
     saved = time.monotonic()
     try:
-        with where as run:
+        with showing(progress, None) as show, where as run:
             for answer in run(iter(tasks_of(plan, made.columns, structural, left, BATCH))):
                 table.take(answer)
-                if progress:
-                    progress(table.done.mean())
+                if show:
+                    show(table.done.mean())
                 if path and time.monotonic() - saved > SAVED:
                     table.save(path)
                     saved = time.monotonic()
