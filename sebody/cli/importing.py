@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     from sebody.io.body_file import TARGET, lean, write_body_file
     from sebody.io.importing import Wanted, imported
     from sebody.io.interfaces import parsed
-    from sebody.io.registry import read_source
+    from sebody.io.registry import naming, read_source
     from sebody.reduction.watch import Terminal
 
     check_target(options.output, *TARGET)
@@ -67,7 +67,8 @@ def run(options: argparse.Namespace) -> int:
         file = imported(read_source(options.file, options.format), wanted, options.file, watch)
     finally:
         watch.close()
-    body = None if options.unchecked else file.body()
+    with naming(options.file):
+        body = None if options.unchecked else file.body()
     if options.lean:
         file = lean(file)
     write_body_file(file, options.output)

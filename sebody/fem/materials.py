@@ -35,7 +35,8 @@ def uniform_material(youngs_modulus: float, mass: float, volume: float) -> Mater
     return Material("", float(np.sqrt(youngs_modulus * volume / mass)), mass / volume)
 
 
-def checked_materials(materials: Sequence[Material]) -> tuple[Material, ...]:
+def checked_materials(materials: Sequence[Material], what: str = "materials"
+                      ) -> tuple[Material, ...]:
     """Materials whose numbers are positive and finite.
 
     Raises
@@ -45,12 +46,12 @@ def checked_materials(materials: Sequence[Material]) -> tuple[Material, ...]:
     """
     remedy = "give Material(name, speed, density)"
     found = []
-    for one in inputs.items(materials, "materials", remedy):
-        if not isinstance(one, tuple) or len(one) not in (2, 3):
-            raise inputs.refusal("materials: one", one, remedy)
+    for one in inputs.items(materials, what, remedy):
+        if not isinstance(one, tuple | list) or len(one) not in (2, 3):
+            raise inputs.refusal(f"{what}: one", one, remedy)
         name, speed, density = (*one, None)[:3]
         if not isinstance(name, str):
-            raise inputs.refusal("materials: a name", name, remedy)
+            raise inputs.refusal(f"{what}: a name", name, remedy)
         found.append(Material(
             name, inputs.number(speed, f"speed of sound of material {name!r}", above=0),
             None if density is None else inputs.number(

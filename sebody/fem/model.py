@@ -126,6 +126,7 @@ class FEModel:
                 remedy=f"give corners (x, y, z) for each of the {lines} cells of kind line"))
         object.__setattr__(self, "materials", checked_materials(self.materials))
         object.__setattr__(self, "units", str(parsed_units(self.units) or ""))
+        inputs.text(self.source, "source of an FE model")
         remedy = "give SolidStress, as solid_stress makes them"
         object.__setattr__(self, "stress", tuple(
             inputs.instance(one, "stress", SolidStress | BeamStress, remedy)
@@ -134,7 +135,8 @@ class FEModel:
     def _check_nodes(self) -> None:
         """Coordinates, and the rows of every node."""
         layouts = f"use {SPATIAL}, {PLANAR} or {SOLID}"
-        node_dofs = tuple(inputs.items(self.node_dofs, "node_dofs", layouts))
+        node_dofs = tuple(one if isinstance(one, str) else inputs.shown(one) for one in
+                          inputs.items(self.node_dofs, "node_dofs", layouts))
         if node_dofs not in (SPATIAL, PLANAR, SOLID):
             raise InputError(f"node_dofs {node_dofs} unknown; {layouts}")
         dimension = sum(not name.startswith("r") for name in node_dofs)

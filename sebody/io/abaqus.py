@@ -70,7 +70,7 @@ def _substructure(path: Path) -> tuple[list[int], list[list[int]], dict]:
             if where in ("STIFFNESS", "MASS"):
                 matrices[where] = number, []
             elif where == "USER ELEMENT":
-                count = int(re.search(r"NODES\s*=\s*(\d+)", line)[1])
+                count = _count(path, number, line)
         elif where == "USER ELEMENT" and words:
             first, *own = _whole(path, number, words) if at else [1, *_whole(path, number, words)]
             at[first] = [k - 1 for k in own]
@@ -89,6 +89,14 @@ def _substructure(path: Path) -> tuple[list[int], list[list[int]], dict]:
                          "GENERATE writes no mass and a stiffness that is not condensed, so use "
                          f"*FREQUENCY, SOLVER=MATRIXSTORAGE; in Abaqus {_SUBSTRUCTURE}")
     return labels, directions, matrices
+
+
+def _count(path: Path, number: int, line: str) -> int:
+    """Number of nodes that *USER ELEMENT tells of; each has an entry in a list."""
+    found = re.search(r"NODES\s*=\s*(\d{1,9})\b", line)
+    if not found:
+        raise fault(path, number, "*USER ELEMENT has no number of nodes", _SUBSTRUCTURE)
+    return int(found[1])
 
 
 def _keyword(path: Path, number: int, line: str) -> str:
@@ -170,7 +178,8 @@ def _entries(path: Path) -> NDArray:
             row = []
         if len(row) != 5 or not np.isfinite(row).all():
             raise fault(path, number, "no row of node, DOF, node, DOF, value", _GENERATE)
-        if min(row[0], row[2]) < 1 or not (1 <= row[1] <= 6 and 1 <= row[3] <= 6):
+        if any(x != int(x) for x in row[:4]) or min(row[0], row[2]) < 1 or not (
+                1 <= row[1] <= 6 and 1 <= row[3] <= 6):
             raise fault(path, number, f"node {row[0]:g}, DOF {row[1]:g}, is none of a body",
                         "leave out hybrid elements, Lagrange multipliers and temperatures")
         if abs(row[4]) >= _HELD:

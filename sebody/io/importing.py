@@ -16,7 +16,7 @@ from sebody.io.interfaces import Interface, parsed, tied
 from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
 from sebody.io.reduced import chosen_interfaces
-from sebody.io.registry import read_source
+from sebody.io.registry import naming, read_source
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.methods import reduce
@@ -92,7 +92,8 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     wanted = Wanted(parsed(interfaces), modes, method, units, damping)
     watch.stage(f"reading {path}")
     file = imported(read_source(path, kind), wanted, path, watch)
-    body = file.body()
+    with naming(path):
+        body = file.body()
     if output is not None:
         write_body_file(file, output)
     return body

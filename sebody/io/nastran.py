@@ -15,8 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.files.reading import called, existing
 from sebody.io.reading import Reading
 from sebody.io.reduced import reduced_parts
+from sebody.io.text import read_text
 
 _REMEDY = "write it with EXTSEOUT(STIFFNESS, MASS, ASMBULK, DMIGOP4) or DMIGPCH"
 _CARDS = (".asm", ".pch", ".bdf", ".dat")       # that may hold GRID cards, in this order
@@ -61,7 +63,7 @@ def read_dmig(path: Path) -> Reading:
     indices = [list(frame.index) for frame in frames.values() if frame.shape == stiffness.shape]
     if indices[0] != indices[1]:
         raise InputError(f"{path}: stiffness and mass are of different DOFs: {_REMEDY}")
-    own = path.suffix == ".pch" and "GRID" in path.read_text(encoding="latin-1")
+    own = path.suffix == ".pch" and "GRID" in read_text(path, "punch file", _REMEDY)
     return _reading(stiffness, mass, indices[0], _grids(path if own else _beside(path)), path)
 
 
@@ -101,7 +103,7 @@ def _uset(cards: Path) -> Any:
     if cards.suffix != ".asm":
         return _grids(cards)
     punch = cards.with_suffix(".pch")       # its EXTRN card says which DOFs nodes keep
-    fewer = punch.exists() and "EXTRN" in punch.read_text(encoding="latin-1")
+    fewer = punch.exists() and "EXTRN" in read_text(punch, "punch file", _REMEDY)
     return _called(lambda: _nastran().asm2uset(str(cards), try_rdextrn=fewer), cards)[0]
 
 
@@ -143,14 +145,7 @@ def _pair(found: dict[str, NDArray], path: Path) -> tuple[NDArray, NDArray]:
 
 def _called(function: Callable[[], Any], path: Path) -> Any:
     """What pyyeti makes of a file; whatever it raises is said of the file."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", RuntimeWarning)      # of files that end early
-            return function()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read ({error.strerror or error}): {_REMEDY}"
-                         ) from error
-    except Exception as error:      # of many classes, of files that are cut off or of other kinds
-        raise InputError(f"{path} is damaged or of another kind ({type(error).__name__}: {error}): "
-                         f"{_REMEDY}") from error
-
+    existing(path, "file", _REMEDY)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)      # of files that end early
+        return called(function, path, _REMEDY)

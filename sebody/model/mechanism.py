@@ -107,6 +107,6 @@ class Mechanism:
                              "tell them apart")
         names = list(dict.fromkeys(e.name for e in self.elements()))
         near = get_close_matches(str(name), names)
-        raise InputError(f"element {name!r} is unknown: " + (
+        raise InputError(f"element {inputs.shown(name)} is unknown: " + (
             f"did you mean {' or '.join(map(repr, near))}?" if near else
             f"the model has {', '.join(map(repr, names)) or 'none'}"))

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
+from scipy import linalg, sparse
 
 from sebody import inputs
+from sebody.errors import InputError
 from sebody.reduction.clamped import ClampedInterior
 from sebody.reduction.component import ComponentModes
 from sebody.reduction.omission import Omission
@@ -87,8 +88,13 @@ def enough_modes(static: ComponentModes, interior: ClampedInterior,
     wanted = _FIRST
     while True:
         began = time.perf_counter()
-        known = Omission(static, interior, matrices, wanted)
-        errors = _errors(known, accuracy)
+        try:
+            known = Omission(static, interior, matrices, wanted)
+            errors = _errors(known, accuracy)
+        except linalg.LinAlgError as error:
+            raise InputError("the error of a number of modes is unknown: motions of the interfaces "
+                             "have no mass or stiffness, or a negative one; check the matrices, "
+                             "or give a number of modes") from error
         enough = np.flatnonzero(errors <= accuracy.tolerance)
         if len(enough):
             return int(enough[0]), float(errors[enough[0]])
@@ -155,8 +161,11 @@ def _rounded(seconds: float) -> str:
 def reached(static: ComponentModes, interior: ClampedInterior,
             matrices: tuple[sparse.csc_array, sparse.csc_array], modes: int) -> str:
     """What a number of modes is good for, in words."""
-    known = Omission(static, interior, matrices, modes + 4)
-    frequencies, stiffness = known.bands(min(modes, len(known.squares)), _TOLERANCES)
+    try:
+        known = Omission(static, interior, matrices, modes + 4)
+        frequencies, stiffness = known.bands(min(modes, len(known.squares)), _TOLERANCES)
+    except linalg.LinAlgError:      # coordinates of the boundary without mass and stiffness
+        return "unknown, as motions of the interfaces have neither mass nor stiffness"
     parts = []
     for what, bands in (("free frequencies", frequencies),
                         ("dynamic stiffness of the interfaces", stiffness)):

@@ -17,6 +17,7 @@ from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.loads import named_vectors
 from sebody.reduction.missing import checked_missing, lacks, sentences
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.recovery_checks import check_recovery
 from sebody.reduction.rigid import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
 from sebody.units import parsed_units
@@ -90,6 +91,10 @@ class ReducedBody:
         keeps = tuple(inputs.items(self.keeps, "keeps", "give a text per boundary node"))
         object.__setattr__(self, "modes", inputs.integer(self.modes, "modes", least=0))
         checks.check_layout(coordinates, keeps)
+        rows = np.shape(self.stiffness)[:1]
+        if rows and self.modes > rows[0]:
+            raise inputs.refusal("modes", self.modes, f"the stiffness has {rows[0]} rows in all, "
+                                 "give fewer")
         names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
         self._store("coordinates", coordinates)
         object.__setattr__(self, "keeps", keeps)
@@ -115,6 +120,11 @@ class ReducedBody:
                             "give InertiaInvariants, as a reduction makes them")
             check_invariants(self.invariants, self.stiffness, self.mass,
                              self.rigid_modes_about(self.invariants.origin), names)
+        if self.recovery is not None:
+            inputs.instance(self.recovery, "recovery", Recovery,
+                            "give a Recovery, as a reduction makes it")
+            check_recovery(self.recovery, self.planar, len(names), len(names) - self.modes,
+                           self.invariants and self.invariants.slaved)
         loads = named_vectors(self.loads, len(names), "coordinates of the body")
         object.__setattr__(self, "loads", {n: _read_only(load) for n, load in loads.items()})
         object.__setattr__(self, "missing", checked_missing(self.missing))
@@ -215,7 +225,8 @@ class ReducedBody:
         if self.recovery is None:
             raise InputError("the body has no shapes of an FE model, so it knows no displacements "
                              "inside; reduce the FE model with craig_bampton")
-        field = self.recovery.all_dofs(self.with_followers(np.asarray(y, dtype=float)[None]))
+        y = inputs.vector(y, "y", len(self.mass))
+        field = self.recovery.all_dofs(self.with_followers(y[None]))
         return field.reshape(len(self.recovery.coordinates), -1)
 
     def with_followers(self, y: NDArray) -> NDArray:

@@ -114,12 +114,8 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
                     "dynamic stiffness of the interface")
             notes.append(f"{what} within {error:.2g} up to the frequency {wanted.up_to:g}")
         component = static.with_vibrations(interior, modes, select)
-        if inputs.flag(judged, "judged") and select is None:
-            notes.append(f"accuracy: {reached(static, interior, matrices, modes)}")
     else:
         free = _FreeModes(edge, *matrices, modes, watch)
-        if judged and method == "rubin":
-            notes.append(f"accuracy: {free.accuracy()}")
         component = free.component(static, interior)
     forces = edge.ties.gather(forces)
     if residual_modes:
@@ -136,6 +132,10 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
         body = with_shapes(body, fe_model, edge, component)
     else:
         body = with_constants(body, fe_model, edge, component, interior, forces, watch)
+    if inputs.flag(judged, "judged") and select is None and method != "macneal":
+        told = (free.accuracy() if method == "rubin" else
+                reached(static, interior, matrices, modes))
+        body = replace(body, notes=(*body.notes, f"accuracy: {told}"))
     watch.close()
     return body if recover is None else body.recovering(recover)
 

@@ -64,7 +64,7 @@ def animate(result: Result, output: str | Path, *quantities: str, title: str = "
         speed = inputs.number(speed, "speed", above=0)
     if colour is not None:
         _check_colour(result, inputs.choice(colour, "colour", COLOURS))
-    title = title or path.stem
+    title = inputs.text(title, "title") or path.stem
     if path.suffix == ".html":
         text = page(result, quantities or overview(result), title, speed, colour, reference)
         with replacing(path, "animation") as file:

@@ -34,6 +34,7 @@ def envelope(field: FieldStates, quantity: str, static: bool,
         Another quantity, a reference of another one than displacements, or a body whose FE model
         has no stress operator.
     """
+    inputs.flag(static, "static")
     read = ENVELOPES[inputs.choice(quantity, "quantity of an envelope", ENVELOPES)]
     if reference is not None:
         if quantity != "displacement":

@@ -14,7 +14,8 @@ class FieldPoint:
 
     def __init__(self, field: FieldStates, node: int, axes: str, static: bool,
                  reference: str | None = None):
-        self._field, self._nodes, self._static = field, np.array([node]), static
+        self._field, self._nodes = field, np.array([node])
+        self._static = inputs.flag(static, "static")
         self._reference = reference
         self._axes = inputs.choice(axes, "axes", AXES)
         self._states = np.arange(len(field.t))

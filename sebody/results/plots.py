@@ -84,6 +84,7 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     check_picture(path)
     for node in (base, tip):
         if not isinstance(node, str) or node not in result.model.nodes:
+            node = node if isinstance(node, str) else inputs.shown(node)
             raise InputError(f"'{node}.position' is unknown: nodes are "
                              f"{', '.join(result.model.nodes)}")
     title, rates = _rates(result, base, tip)

@@ -52,7 +52,7 @@ def report(result: Result, output: str | Path, *quantities: str, title: str = ""
     """
     inputs.instance(result, "result", Result, "give the Result of a run")
     path = check_report(output)
-    title = title or path.stem
+    title = inputs.text(title, "title") or path.stem
     words = quantities or overview(result)
     drawn = panels({"the result": result}, words)
     text = filled("report.html", {

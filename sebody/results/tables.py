@@ -89,7 +89,10 @@ def _histories(recording: Recording, names: Iterable[str] | None
                ) -> Iterator[tuple[str, NDArray]]:
     wanted = saved(recording) if names is None else inputs.items(
         names, "names", "give a list of names of quantities")
+    if not wanted:
+        raise inputs.refusal("names", names, "name a quantity, or leave it out")
     for name in wanted:
+        inputs.name(name, "name of a quantity")
         if name != "t":
             yield name, np.asarray(look_up(recording, name))
 

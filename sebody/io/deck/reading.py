@@ -17,6 +17,7 @@ from sebody.io.deck.materials import (
 )
 from sebody.io.deck.sets import Sets
 from sebody.io.deck.surfaces import Solid, Surface, surface_nodes
+from sebody.io.element_checks import check_elements
 
 # meshio's names of the cells of solids, whose orders of nodes are those of CalculiX and Abaqus
 CELLS = {"C3D8": "hexahedron", "C3D8R": "hexahedron", "C3D8I": "hexahedron",
@@ -129,6 +130,7 @@ def read_deck(path: Path) -> Deck:
     if not deck.nodes:
         raise InputError(f"deck {path} has no *NODE: give the deck that the matrices were "
                          "computed from")
+    check_elements(deck.path, deck.elements, deck.nodes, CELLS)
     return deck
 
 
