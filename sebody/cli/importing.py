@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sebody.errors import InputError
-from sebody.units import parsed_units
 
 if TYPE_CHECKING:
     from sebody.reduction import Accuracy
@@ -56,6 +55,7 @@ def run(options: argparse.Namespace) -> int:
     from sebody.io.interfaces import parsed
     from sebody.io.registry import naming, read_source
     from sebody.reduction.watch import Terminal
+    from sebody.units import parsed_units
 
     check_target(options.output, *TARGET)
     wanted = Wanted(parsed(options.interfaces), _modes(options), options.method, options.units,

@@ -114,6 +114,16 @@ BODY = {
         "notes", lambda said: said.update({"names": ["a"]}))),
     "units of numbers": Packed("has 3 for its units", text(
         "notes", lambda said: said.update({"units": 3}))),
+    "units there are not": Packed("do not belong together", text(
+        "notes", lambda said: said.update({"units": "mm kg N s"}))),
+    "reasons that are a list": Packed("missing is []: give a dict of texts", text(
+        "notes", lambda said: said["body"].update({"missing": []}))),
+    "a reason of something else": Packed("missing has 'love': 'none'; give a dict of texts", text(
+        "notes", lambda said: said["body"].update({"missing": {"love": "none"}}))),
+    "materials of numbers": Packed("materials: one is 3", text(
+        "notes", lambda said: said["body"].update({"materials": [3]}))),
+    "a material of negative speed": Packed("speed of sound of material 'M' is -1.0", text(
+        "notes", lambda said: said["body"].update({"materials": [["M", -1.0, 2.0]]}))),
     "a provenance of numbers": Packed("has a provenance that is no text", text(
         "notes", lambda said: said.update({"provenance": {"source": 3}}))),
     "a provenance that is a list": Packed("has [] for its provenance", text(
