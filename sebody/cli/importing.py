@@ -72,10 +72,12 @@ def run(options: argparse.Namespace) -> int:
     if options.lean:
         file = lean(file)
     write_body_file(file, options.output)
+    summary = body.summary() if body else ""
     for name, text in file.provenance.items():
-        print(f"{name}: {text}")
+        if f"{name}: {text}" not in summary:
+            print(f"{name}: {text}")
     if body:
-        print(body.summary())
+        print(summary)
     for text in file.cautions:
         if body is None or text not in body.cautions:
             print(f"caution: {text}")

@@ -6,12 +6,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import LinAlgError, block_diag, eigh
+from scipy.linalg import block_diag
 
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.materials import Material, checked_materials
 from sebody.reduction import checks
+from sebody.reduction.damping import modal_damping
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.loads import named_vectors
@@ -277,32 +278,9 @@ class ReducedBody:
             A number that is negative or not finite, more ratios than modes, or a body with
             massless coordinates.
         """
-        mass, stiffness = (inputs.number(value, f"damping: {name}", least=0)
-                           for name, value in (("mass", mass), ("stiffness", stiffness)))
-        ratio = self._ratios(ratio)
-        try:
-            squares, shapes = eigh(self.stiffness, self.mass)
-        except LinAlgError as error:
-            raise InputError("damping: the mass is singular, so the body has motions without a "
-                             "frequency; give every coordinate inertia, or damping=, a matrix"
-                             ) from error
-        rigid = self.rigid_modes.shape[1]
-        omega, momenta = np.sqrt(squares[rigid:]), self.mass @ shapes[:, rigid:]
-        momenta[strainless_coordinates(self.keeps, self.coordinates.shape[1])] = 0.0   # to rounding
-        damping = (momenta * (2 * ratio * omega + mass + stiffness * omega**2)) @ momenta.T
-        return replace(self, damping=damping)
-
-    def _ratios(self, ratio: float | Sequence[float]) -> NDArray:
-        """Damping ratios of all free vibration modes."""
-        count = len(self.mass) - self.rigid_modes.shape[1]
-        if np.ndim(ratio) == 0:
-            return np.full(count, inputs.number(ratio, "damping: ratio", least=0))
-        found = [inputs.number(one, "damping: a ratio", least=0)
-                 for one in inputs.items(ratio, "damping: ratio", "give numbers >= 0")]
-        if not 0 < len(found) <= count:
-            raise InputError(f"damping: {len(found)} ratios, but the body has {count} free "
-                             f"vibration modes: give 1 to {count}")
-        return np.array(found + [found[-1]] * (count - len(found)))
+        return replace(self, damping=modal_damping(
+            self.stiffness, self.mass, self.rigid_modes,
+            strainless_coordinates(self.keeps, self.coordinates.shape[1]), ratio, mass, stiffness))
 
     def rotated(self, rotation: ArrayLike) -> "ReducedBody":
         """The same body rotated by `rotation` about the FE origin, in the old axes.

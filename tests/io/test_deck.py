@@ -97,11 +97,12 @@ SECTION = "*SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n"
     "*ELSET, ELSET=HALF\n1, 2\n*ELSET, ELSET=rod\nhalf, 3\n 4,\n",
     "*ELSET, ELSET=ROD\nLater, 1\n*ELSET, ELSET=LATER\nALL\n",
     "*ELSET, ELSET=\"ROD\"\nALL\n",
+    "*ELSET,ELSET=ROD\nALL,\n** the section follows\n",
 ])
 def test_sections_of_listed_elements(decks, sets):
     """As gmsh writes them: the elements in one set, the section on another that lists them."""
     path = changed(decks, "loose", ("ELSET=ALL\n1,", "ELSET=Volume1\n1,"), (
-        SECTION, sets.replace("ALL", "VOLUME1") + "*SOLID SECTION, MATERIAL=Steel ,\n ELSET=Rod\n"))
+        SECTION, sets.replace("ALL", "VOLUME1") + "*SolidSection, MATERIAL=Steel ,\n ELSET=Rod\n"))
     body = import_body(path, {"left": 800, "right": 900})
     assert body.recovery.stress and body.invariants.stiffens and not body.cautions
 

@@ -125,8 +125,9 @@ def read_deck(path: Path) -> Deck:
     deck = Deck(Path(path))
     for card in read_cards(deck.path):
         deck.places.setdefault(card.keyword, card.row)
-        if card.keyword in _READERS:
-            _READERS[card.keyword](deck, card)
+        read = _READERS.get(card.keyword.replace(" ", ""))      # blanks do not matter
+        if read:
+            read(deck, card)
     if not deck.nodes:
         raise InputError(f"deck {path} has no *NODE: give the deck that the matrices were "
                          "computed from")
@@ -248,7 +249,7 @@ def _boundary(deck: Deck, card: Card) -> None:
 
 
 _READERS = {"NODE": _node, "ELEMENT": _element, "NSET": _node_set, "ELSET": _element_set,
-            "SURFACE": _surface, "RIGID BODY": _rigid_body, "COUPLING": _coupling,
+            "SURFACE": _surface, "RIGIDBODY": _rigid_body, "COUPLING": _coupling,
             "KINEMATIC": _kinematic, "TIE": _tie, "BOUNDARY": _boundary, "MATERIAL": _material,
             "ELASTIC": _elastic, "DENSITY": _density, "ORIENTATION": _orientation,
-            "SOLID SECTION": _section}
+            "SOLIDSECTION": _section}
