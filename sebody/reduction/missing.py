@@ -72,7 +72,12 @@ def sentences(found: Mapping[str, str], stressed: bool) -> list[str]:
     """What `lacks` returns in sentences, those with one reason together."""
     reasons: dict[str, list[str]] = {}
     for what, reason in found.items():
-        reasons.setdefault(reason, []).append(
-            "stresses in some elements" if stressed and what == "stresses" else what)
-    return [f"no {' or '.join(filter(None, [', '.join(names[:-1]), names[-1]]))}: {reason}"
-            for reason, names in reasons.items()]
+        reasons.setdefault(reason, []).append(what)
+    texts = []
+    for reason, names in reasons.items():
+        whole = [name for name in names if not (stressed and name == "stresses")]
+        parts = [f"no {' or '.join(filter(None, [', '.join(whole[:-1]), whole[-1]]))}"
+                 ] if whole else []
+        parts += ["no stresses in some elements"] if len(whole) < len(names) else []
+        texts.append(f"{', and '.join(parts)}: {reason}")
+    return texts
