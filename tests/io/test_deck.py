@@ -122,7 +122,8 @@ def test_sections_of_listed_elements(decks, sets):
     (SECTION, SECTION.replace("STEEL", "STEEL, ORIENTATION=OR"), "stresses or stiffening",
      "have the orientation OR, which the deck does not have"),
     (SECTION, "*ELEMENT, TYPE=US3, ELSET=SHELL\n77, 1, 2, 3\n" + SECTION,
-     "stiffening, and no stresses in some", "1 of 5 elements are US3, which are no solids known here"),
+     "stiffening, and no stresses in some",
+     "1 of 5 elements are US3, which are no solids known here"),
     ("2.1E5, 0.3\n", "2.1E4, 0.3\n", "stiffening", "another strain energy than the stiffness, by "
                                                    r"90\.0%: .* a deck that is not that of the"),
 ])
