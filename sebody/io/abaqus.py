@@ -20,6 +20,8 @@ from sebody.io.triplets import symmetric
 _SUBSTRUCTURE = "write it with *SUBSTRUCTURE MATRIX OUTPUT, STIFFNESS=YES, MASS=YES"
 _GENERATE = ("write it with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX OUTPUT, STIFFNESS, MASS, "
              "FORMAT=LABELS")
+# selectively reduced integration, hourglass control, modified elements
+_OWN_WAYS = ("C3D8", "C3D8R", "C3D10M")
 _HELD = 1e36        # what Abaqus writes on the diagonal of a fixed DOF
 
 
@@ -161,7 +163,8 @@ def read_generated(path: Path) -> Reading:
                          "give files of one job, flattened (no parts and instances)")
     stiffness, mass = (_matrix(found, keys) for found in entries)
     dofs = [(label, direction - 1) for label, direction in keys.tolist()]
-    return deck_model(deck, list(deck.nodes), dofs, stiffness, mass, f"Abaqus {job}")
+    return deck_model(deck, list(deck.nodes), dofs, stiffness, mass, f"Abaqus {job}",
+                      _OWN_WAYS)
 
 
 def _entries(path: Path) -> NDArray:

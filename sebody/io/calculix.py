@@ -22,6 +22,7 @@ from sebody.io.triplets import read_triplets
 
 _REMEDY = ("run ccx with *FREQUENCY, SOLVER=MATRIXSTORAGE, which writes .sti, .mas and .dof beside "
            "the deck")
+_OWN_WAYS = ("C3D8R",)      # hourglass control
 # beginnings of the types of elements that CalculiX makes solids of, with nodes of its own
 _EXPANDED = ("S3", "S4", "S6", "S8", "B2", "B3", "CP", "CA", "M3D", "T2D", "T3D")
 
@@ -53,7 +54,8 @@ def read(path: Path) -> Reading:
     _check_directions(dofs, deck, path)
     nodes = [label for label in deck.nodes if label not in partners]
     source = f"CalculiX {path.with_suffix('.inp').name}"
-    return deck_model(deck, nodes, dofs, stiffness, mass, source)._replace(rotation_nodes={
+    reading = deck_model(deck, nodes, dofs, stiffness, mass, source, _OWN_WAYS)
+    return reading._replace(rotation_nodes={
         rotation: node for rotation, node in partners.items() if rotation in deck.nodes})
 
 

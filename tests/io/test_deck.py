@@ -124,8 +124,13 @@ def test_sections_of_listed_elements(decks, sets):
     (SECTION, "*ELEMENT, TYPE=US3, ELSET=SHELL\n77, 1, 2, 3\n" + SECTION,
      "stiffening, and no stresses in some",
      "1 of 5 elements are US3, which are no solids known here"),
-    ("2.1E5, 0.3\n", "2.1E4, 0.3\n", "stiffening", "another strain energy than the stiffness, by "
-                                                   r"90\.0%: .* a deck that is not that of the"),
+    ("2.1E5, 0.3\n", "2.1E4, 0.3\n", "stresses or stiffening",
+     r"another strain energy than the stiffness, by 90\.0%: the deck is not that of the matrices"),
+    ("2.1E5, 0.3\n", "1.6E5, 0.3\n", "stresses or stiffening",
+     r"another strain energy than the stiffness, by 23\.8%: the deck is not that of the matrices"),
+    (SECTION, "*ELEMENT, TYPE=SPRINGA, ELSET=SP\n77, 1, 20\n" + SECTION
+     + "*MATERIAL, NAME=STEEL\n*ELASTIC\n1.9E5, 0.3\n", "stiffening",
+     r"by 9\.5%, as SPRINGA have a stiffness of their own"),
 ])
 def test_what_is_missing_has_its_true_reason(decks, old, new, what, why):
     body = import_body(changed(decks, "loose", (old, new)), {"left": 800, "right": 900})

@@ -1,6 +1,6 @@
 """The FE model of a deck and of matrices whose rows belong to its nodes."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from scipy import sparse
@@ -18,7 +18,8 @@ _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
 def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]],
-               stiffness: sparse.csc_array, mass: sparse.csc_array, source: str) -> Reading:
+               stiffness: sparse.csc_array, mass: sparse.csc_array, source: str,
+               own_ways: Collection[str]) -> Reading:
     """The FE model.
 
     Parameters
@@ -30,6 +31,8 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
     stiffness, mass : (n_dofs, n_dofs)
     source : str
         In words.
+    own_ways : collection of str
+        Types of elements that the program integrates in a way of its own.
     """
     index = {label: k for k, label in enumerate(labels)}
     rows = np.full((len(labels), 6), -1)
@@ -38,12 +41,14 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
     motion = deck_motion(deck, index, np.array([deck.nodes[label] for label in labels]), rows,
                          len(dofs))
     solids = deck_solids(deck, index, motion)
-    geometric, note = deck_prestress(solids, motion, stiffness)
+    geometric, note, related = deck_prestress(deck, solids, motion, stiffness, own_ways)
     present = rows[:, 0] >= 0
     field = tied_mass_field(mass, motion.points[present], rows[present])
     missing = {} if geometric else {"stiffening": f"{note}; {_REMEDY}"}
     if solids.lacks:
         missing["stresses"] = f"{', '.join(solids.lacks)}; {_REMEDY}"
+    if not related:
+        missing["stresses"] = missing["stiffening"]
     if field is None:
         missing["exact inertia"] = ("the mass matrix is not that of solids whose nodes are free, "
                                     "tied or follow a rigid body; use solids alone")
@@ -53,7 +58,7 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
         dof_map=[(index[label], _NAMES[direction]) for label, direction in dofs],
         labels=np.array(labels), node_sets=_node_sets(deck, index), cells=_cells(deck, index),
         mass_field=field, geometric_stiffness=geometric,
-        stress=deck_stress(solids, motion.points), source=source,
+        stress=deck_stress(solids, motion.points) if related else (), source=source,
         followers=motion.matrix.multiply(np.repeat(follows, 3)[:, None]), missing=missing,
         materials=_materials(deck))
     return Reading(model, notes={"geometric stiffness": note} if geometric else {})
