@@ -52,14 +52,16 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
     if field is None:
         missing["exact inertia"] = ("the mass matrix is not that of solids whose nodes are free, "
                                     "tied or follow a rigid body; use solids alone")
-    follows = motion.known & ~present
+    follows = np.repeat(motion.known & ~present, 3)
+    followers = (sparse.csr_array(sparse.diags_array(follows.astype(float)) @ motion.matrix)
+                 if follows.any() else None)
     model = FEModel(
         stiffness, mass, motion.points,
         dof_map=[(index[label], _NAMES[direction]) for label, direction in dofs],
         labels=np.array(labels), node_sets=_node_sets(deck, index), cells=_cells(deck, index),
         mass_field=field, geometric_stiffness=geometric,
         stress=deck_stress(solids, motion.points) if related else (), source=source,
-        followers=motion.matrix.multiply(np.repeat(follows, 3)[:, None]), missing=missing,
+        followers=followers, missing=missing,
         materials=_materials(deck))
     return Reading(model, notes={"geometric stiffness": note} if geometric else {})
 
