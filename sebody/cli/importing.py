@@ -19,7 +19,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         dest="interfaces",
                         help="a boundary node, may be repeated: a node's label, two of them 1/2 "
                              "where rotations have a node of their own, rbe2:SET or rbe3:SET of a "
-                             "node set or surface, cylinder:x,y,z;axis;radius of a hole")
+                             "node set or surface, 'cylinder:x,y,z;axis;radius' of a hole")
     parser.add_argument("--modes", type=int, metavar="N",
                         help="number of internal modes (default 0)")
     parser.add_argument("--accuracy", type=float, metavar="E",
