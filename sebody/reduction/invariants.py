@@ -15,6 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 
+# of the arrays: D axes of translation, r of rotation, n coordinates, N with the slaved ones
+LENGTHS = {"c0": ("D",), "S1": ("D", "N"), "J0": ("r", "r"), "g": ("r", "N"), "h": ("r", "r", "N"),
+           "K": ("r", "N", "N"), "J2": ("r", "r", "N", "N"), "Mbar": ("N", "N"),
+           "Q": ("slaved", "n", "n"), "lam": ("resultants",), "E": ("n", "resultants"),
+           "Ghat": ("resultants", "n", "n"), "origin": ("D",)}
+
 
 @dataclass(frozen=True, eq=False)
 class InertiaInvariants:

@@ -116,6 +116,15 @@ def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
         assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
 
 
+def test_modes_by_frequencies_are_the_least(capsys):
+    bench = imported("bench_modes")
+    bench.main(["--json", "--frequencies"], bodies=3)
+    for row in json.loads(capsys.readouterr().out):
+        assert row["modes"] == row["least"] < row["stiffness"]
+        assert row["true"] <= bench.TOLERANCE and row["rubin_true"] < 1e-7
+        assert abs(row["estimate"] / row["true"] - 1) < 0.03
+
+
 def test_beams_are_compared_by_method():
     rows = imported("bench_modes").beam_table((0, 1))
     free = {(row["method"], row["modes"]): row["free-free"] for row in rows}

@@ -5,11 +5,13 @@ from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from typing import Any
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.studies.sweep.batches import Answer, Batch, run_task
 
 AHEAD = 4               # tasks that wait for each worker: more would only fill the scheduler
 RETRIES = 5             # of a task whose worker is lost
+MOST_WORKERS = 1024     # processes of one machine
 PATIENCE = 10           # seconds to find a scheduler
 
 Task = list[Batch]
@@ -55,6 +57,12 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Run]:
     InputError
         No Dask, no scheduler at the address, or workers with another version of this package.
     """
+    if workers is not None:
+        workers = inputs.integer(workers, "workers", least=1, most=MOST_WORKERS)
+    if address is not None:
+        inputs.name(address, "address of a scheduler")
+        if workers is not None:
+            raise InputError("--cluster has workers of its own: leave out --workers")
     try:
         from distributed import Client, LocalCluster
     except ImportError as error:
