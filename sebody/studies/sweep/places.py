@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from logging import CRITICAL, getLogger
 from typing import Any
 
 from sebody import inputs
@@ -73,11 +74,16 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Run]:
         if address is None:
             own = LocalCluster(n_workers=workers, threads_per_worker=1, processes=True,
                                dashboard_address=None)
+        log = getLogger("distributed")
+        level = log.level
+        log.setLevel(CRITICAL + 1)      # its own account of a scheduler that is not there is long
         try:
             client = Client(own or address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError) as error:
             raise InputError(f"there is no scheduler at {address} ({error}): start one with "
                              "'dask scheduler', and workers with 'dask worker ADDRESS'") from error
+        finally:
+            log.setLevel(level)
         with client:
             _check_versions(client, address)
             yield lambda tasks: _on_workers(client, tasks)
