@@ -132,7 +132,7 @@ REFUSED = [
         (("--vary", "modes=0,1", "--workers", "-2"), "workers is -2: give a whole number >= 1"),
         (("--vary", "modes=0,1", "--workers", "99999"), "workers is 99999: give a whole number"),
         (("--vary", "modes=0,1", "--threads", "0"), "threads is 0: give a whole number >= 1"),
-        (("--vary", "modes=0,1", "--cluster", "a", "--workers", "2"), "leave out --workers"),
+        (("--vary", "modes=0,1", "--cluster", "a:1", "--workers", "2"), "leave out --workers"),
         (("--vary", "modes=1:0"), "with HIGH above LOW"),
         (("--vary", "modes=0:nan"), "with HIGH above LOW"),
         (("--vary", "colour=1,2"), "parameter 'colour' is unknown"),
@@ -149,16 +149,16 @@ REFUSED = [
      "that is inf steps of 1e-09"),
     *((("sweep", file, "--vary", "n=1,2"), said) for file, said in (
         ("fails.py", "build(n=2) raised ValueError: too many; correct the scene"),
-        ("none.py", "return Scene(name"), ("loops.py", "RecursionError: maximum recursion"),
+        ("nothing.py", "return Scene(name"), ("loops.py", "RecursionError: maximum recursion"),
         ("exits.py", "SystemExit: 3"), ("pipe.py", "is a pipe or a device"))),
     *((("run", file), said) for file, said in (
-        ("none.py", "return Scene(name"), ("loops.py", "RecursionError: maximum recursion"),
+        ("nothing.py", "return Scene(name"), ("loops.py", "RecursionError: maximum recursion"),
         ("exits.py", "SystemExit: 3"), ("pipe.py", "is a pipe or a device"))),
     *(((*BEAM, *given), said) for given, said in (
         (("--step", "1e6"), "cannot run to t_end = 30 from t = 0: the step is 1e+06"),
         (("--step", "1e9"), "cannot run to t_end = 30 from t = 0: the step is 1e+09"),
         (("--every", "1000000000000000000000"), "output_every is 1000000000000000000000"),
-        (("--t-end", "1e9"), "a record of 100000000001 states does not fit into memory: keep"),
+        (("--t-end", "1e9"), "a record of 100000000000 states does not fit into memory: keep"),
         (("--resume", "pipe.npz"), "pipe.npz is a pipe or a device: give the path of a file"),
         (("--set", "modes={[]:1}"), "parameter modes is '{[]:1}': give a value of type int"),
         (("--set", "modes=" + "[" * 5000), "give a value of type int"),
@@ -206,7 +206,7 @@ def folder(tmp_path_factory):
         (found / name).write_text("not zip")
     (found / "broken.py").write_text("def build(:\n")
     (found / "empty.py").write_text("build = 3\n")
-    (found / "none.py").write_text("def build(n=1):\n    return None\n")
+    (found / "nothing.py").write_text("def build(n=1):\n    return None\n")
     (found / "loops.py").write_text("def build(n=1):\n    return build(n)\n")
     (found / "exits.py").write_text("import sys\ndef build(n=1):\n    sys.exit(3)\n")
     (found / "fails.py").write_text(FAILS)

@@ -139,10 +139,11 @@ def _checked(build: Callable[..., Any], outputs: Mapping[str, Output],
 
 def first_twice(values: list) -> tuple | None:
     """The first value that occurs again, if there is one; values may be of any kind."""
-    for k, value in enumerate(values):
-        if any(type(value) is type(other) and inputs.shown(value) == inputs.shown(other)
-               for other in values[:k]):
+    seen = set()
+    for value in values:
+        if (type(value), repr(value)) in seen:
             return (value,)
+        seen.add((type(value), repr(value)))
     return None
 
 

@@ -1,5 +1,6 @@
 """Where the tasks of a sweep run: threads here, processes here, or the workers of a cluster."""
 
+import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import contextmanager
@@ -61,7 +62,9 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Run]:
     if workers is not None:
         workers = inputs.integer(workers, "workers", least=1, most=MOST_WORKERS)
     if address is not None:
-        inputs.name(address, "address of a scheduler")
+        if not re.search(r":\d{1,5}$", inputs.name(address, "address of a scheduler")):
+            raise inputs.refusal("address of a scheduler", address, "give host and port, such as "
+                                 "tcp://10.0.0.1:8786")
         if workers is not None:
             raise InputError("--cluster has workers of its own: leave out --workers")
     try:
