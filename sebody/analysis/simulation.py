@@ -92,7 +92,7 @@ class Simulation:
                  output_every: int = 1, tolerance: Tolerance | None = None):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
-        self.every = inputs.integer(output_every, "output_every", least=1,
+        self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
                                     remedy="give a whole number of steps >= 1")
         if scheme is not None:
             checked(scheme)

@@ -5,7 +5,7 @@
 
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -126,6 +126,9 @@ def _checked(build: Callable[..., Any], outputs: Mapping[str, Output],
         found[0][name] = inputs.items(values, f"values of {name}", "give a list")
         if not found[0][name]:
             raise inputs.refusal(f"values of {name}", values, "give one at least")
+        for value in found[0][name]:
+            if not isinstance(value, Hashable):
+                raise inputs.refusal(f"a value of {name}", value, "give a number or a text")
         if twice := first_twice(found[0][name]):
             raise InputError(f"{name} has the value {inputs.shown(twice[0])} twice: give it once")
     for name, one in found[1].items():
@@ -136,10 +139,11 @@ def _checked(build: Callable[..., Any], outputs: Mapping[str, Output],
 
 def first_twice(values: list) -> tuple | None:
     """The first value that occurs again, if there is one; values may be of any kind."""
-    for k, value in enumerate(values):
-        if any(type(value) is type(other) and inputs.shown(value) == inputs.shown(other)
-               for other in values[:k]):
+    seen = set()
+    for value in values:
+        if (type(value), repr(value)) in seen:
             return (value,)
+        seen.add((type(value), repr(value)))
     return None
 
 

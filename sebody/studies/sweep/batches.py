@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.analysis.ensembles import Ensemble, Output
 from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.simulation import MOST_STEPS
 from sebody.errors import InputError, SebodyError
 
 KEPT = 32               # ensembles that a process keeps
@@ -85,6 +86,9 @@ def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble
     scheme = generalized_alpha(of_run["rho"]) if "rho" in of_run else None
     h = inputs.number(of_run.get("step", scene.h), "the time step", above=0)
     t_end = inputs.number(of_run.get("t_end", scene.t_end), "t_end", least=0)
+    if not t_end / h <= MOST_STEPS:
+        raise InputError(f"t_end is {t_end:g}: that is {t_end / h:.3g} steps of {h:g}, give an "
+                         "earlier time or a longer step")
     steps = round(t_end / h)
     return Ensemble(scene.model, h, scheme), steps * h
 
