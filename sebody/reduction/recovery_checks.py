@@ -40,7 +40,7 @@ def check_recovery(recovery: Recovery, planar: bool, n: int, held: int,
                          f"coordinates: {_REMEDY}")
     if recovery.static is not None:
         _check("static", recovery.static, (rows, None))
-        least = held + r * (r + 1) // 2
+        least = held
         if recovery.static.shape[1] < least:
             raise InputError(f"recovery.static has {recovery.static.shape[1]} columns, of {held} "
                              f"coordinates of the boundary and spin there are {least}: {_REMEDY}")
