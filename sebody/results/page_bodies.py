@@ -14,6 +14,7 @@ from sebody.results.references import Welded, together
 from sebody.results.result import Result
 from sebody.results.scenery import Scenery
 
+COLOUR = 12             # bits of a stress
 SEEN = 1e-5             # of the model's extent: smaller steps of a place are not seen
 
 
@@ -63,7 +64,7 @@ def _body(blocks: Blocks, body: DrawnBody, measure: Measure, stress: float,
                   "position": held.position, "rotation": held.rotation, "full": held.full}
                  for held in body.nodes],
         "reference": None if body.reference is None else number[body.reference],
-        "stress": None if body.stress is None else blocks.values(body.stress / stress),
+        "stress": None if body.stress is None else blocks.values(body.stress / stress, bits=COLOUR),
         "stride": body.stride}
 
 

@@ -13,6 +13,7 @@ from sebody.results.units import unit_of_curves
 
 NUMBERS = 400_000       # of all histories together, beyond which they have fewer samples
 FEWEST = 201            # samples
+BITS = 14               # of a number: a plot is a few hundred pixels high
 # quantities that are kept before others where there is not room for all
 FIRST = ("position", "rotation", "velocity", "angular_velocity", "force", "moment", "torque",
          "thrust", "modes", "reaction", "reaction_moment", "power", "acceleration",
@@ -67,4 +68,4 @@ def _plot(blocks: Blocks, owner: str, one: Values, states: np.ndarray) -> dict:
     return {"owner": owner, "name": one.name, "labels": one.labels,
             "unit": unit_of_curves(one.name),
             "range": [float(one.numbers.min()), float(one.numbers.max())],
-            "values": blocks.values(one.numbers[states])}
+            "values": blocks.values(one.numbers[states], bits=BITS)}

@@ -43,7 +43,7 @@ def test_every_quantity_of_the_result_can_be_plotted(arm, page):
         assert tuple(plot["labels"]) == exact.labels
         span = np.ptp(exact.numbers, axis=0)
         # half a step of each column, and rounding of its range
-        assert (np.abs(page.values(plot["values"]) - exact.numbers) <= 0.51 * STEP * span
+        assert (np.abs(page.values(plot["values"]) - exact.numbers) <= 0.51 / 16383 * span
                 + 1e-11 * np.abs(exact.numbers).max(axis=0)).all(), name
     owners = {plot["name"]: plot["owner"] for plot in plots["all"]}
     assert owners["energy.kinetic"] == owners["momentum"] == "model"
