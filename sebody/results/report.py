@@ -107,7 +107,7 @@ def _drift(result: Result) -> Panel:
     """Energy that the run has gained or lost."""
     total = sum(result[f"energy.{name}"] for name in ("kinetic", "strain", "potential"))
     balance = total - result["energy.external_work"]
-    return Panel("energy gained by the run", "time", "energy", [
+    return Panel("energy drift: all energies less the work of loads", "time", "energy", [
         Curve("", result.t, balance - balance[0])])
 
 
