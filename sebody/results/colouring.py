@@ -46,7 +46,7 @@ def values_of(body: DrawnBody, name: str, frame: int) -> NDArray | None:
             return None
         row = min(round(frame / body.stride), len(body.stress) - 1)
         return np.maximum(body.surface.weights @ body.stress[row], 0.0)
-    if body.labels is None:
+    if body.rigid:
         return None
     return np.linalg.norm(body.surface.weights @ _moved(body, [frame])[0], axis=1)
 
@@ -59,7 +59,7 @@ def _peak(body: DrawnBody, name: str) -> tuple[float, int, int]:
         row, station = np.unravel_index(body.stress.argmax(), body.stress.shape)
         return float(body.stress[row, station]), int(row) * body.stride, int(station)
     found = 0.0, 0, 0
-    if body.labels is None:
+    if body.rigid:
         return found
     count, stations = body.amplitudes.shape[1], len(body.surface.points)
     frames = np.arange(len(body.amplitudes))

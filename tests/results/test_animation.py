@@ -431,14 +431,18 @@ def test_other_models(make, folder, chrome):
 
 
 @chromium
-def test_without_webgl(beam, folder, chrome):
+@pytest.mark.parametrize("known, said", [
+    ('getContext("webgl2"', "this browser offers no WebGL 2, which draws the model"),
+    ("window.DecompressionStream", "this browser is too old to unpack the data")])
+def test_browsers_that_cannot_show_it(known, said, beam, folder, chrome):
     path = animate(beam, folder / "beam.html")
-    path.write_text(path.read_text().replace('getContext("webgl2"', 'getContext("webgl9"'))
+    text = path.read_text()
+    assert known in text
+    path.write_text(text.replace(known, known.replace("2", "9").replace("Stream", "River")))
     chrome.call("Page.navigate", url=path.as_uri())
     chrome.wait("document.getElementById('failure')?.hidden === false")
-    said = chrome.value("document.getElementById('failure').textContent")
-    assert said == ("The animation cannot be shown: this browser offers no WebGL 2, which draws "
-                    "the model.")
+    shown = chrome.value("document.getElementById('failure').textContent")
+    assert shown == f"The animation cannot be shown: {said}."
     chrome.errors.clear()
 
 
