@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, simulate
 from sebody.fem import rectangle
-from sebody.results import animate, page_plots
+from sebody.results import animate, drawn_bodies, page_plots
 from sebody.results.curves import values
 from sebody.results.quantities import names
 
@@ -136,6 +136,28 @@ def test_where_values_are_largest(arm, page):
         assert label == found[body].node
     stress = page.values(drawn[peak["body"]]["stress"])
     assert stress.max() == pytest.approx(1.0)
+
+
+def test_stresses_of_large_bodies_are_of_some_frames(arm, folder, monkeypatch):
+    """Every so many frames, those of the field; the largest one is among them."""
+    monkeypatch.setattr(drawn_bodies, "STRESSES", 60)
+    page = PageData(animate(arm, folder / "few.html").read_text())
+    field = next(one for one in page.header["fields"] if one["name"] == "von_mises")
+    largest = {}
+    for body in page.header["bodies"][:4]:
+        stress = field["largest"] * page.values(body["stress"])
+        stride, labels = body["stride"], page.indices(body["labels"])
+        assert stride == -(-101 * arm.field(body["name"]).count // 60)
+        exact = [arm.field(body["name"]).von_mises(k) for k in range(0, 101, stride)]
+        assert len(stress) == len(exact)
+        for one, other in zip(stress, exact, strict=True):
+            assert_allclose(one[labels > 0], other[labels[labels > 0] - 1],
+                            atol=field["largest"] / 4000)
+        rows = np.max(exact, axis=1)
+        largest[rows.max()] = body["name"], stride * int(rows.argmax())
+    peak = field["peak"]
+    assert peak["value"] == pytest.approx(max(largest), rel=1e-6)
+    assert (page.header["bodies"][peak["body"]]["name"], peak["frame"]) == largest[max(largest)]
 
 
 def test_loads_are_arrows(arm, page):
