@@ -1,8 +1,9 @@
 """Arrays as blocks of whole numbers in one stretch of bytes, which the page of an animation reads.
 
-Each column of an array is stored in steps of its own range, 16 bits a number; 32 bits where steps
-of 16 bits would be seen. Columns that do not change are not stored. The numbers of a column are
-stored as their differences, all low bytes of a block before all high ones: so they compress well.
+Each column of an array is stored in steps of its own range, of 16 bits or fewer a number; of 32
+bits where such steps would be seen. Columns that do not change are not stored. The numbers of a
+column are stored as their differences, all low bytes of a block before all high ones: so they
+compress well.
 """
 
 import zlib
@@ -21,21 +22,24 @@ class Blocks:
         self._length = 0
         self._known: dict[bytes, dict] = {}
 
-    def values(self, array: NDArray, seen: float = np.inf) -> dict:
+    def values(self, array: NDArray, seen: float = np.inf, bits: int = 16) -> dict:
         """A block of (rows, columns) of numbers.
 
         Parameters
         ----------
         seen : float
             Smallest difference that is seen: steps are not larger.
+        bits : int
+            Of a number, unless `seen` asks for more; fewer than 16 compress better.
         """
         array = np.asarray(array, dtype=float)
         low, high = (array.min(axis=0), array.max(axis=0)) if len(array) else (
             np.zeros(array.shape[1]),) * 2
         low = np.array([float(f"{value:.{DIGITS}g}") for value in low])
         varying = np.flatnonzero(high > low)
-        wide = np.any((high - low) / 0xFFFF > seen)
-        most, kind = (0xFFFFFFFF, "<u4") if wide else (0xFFFF, "<u2")
+        most, kind = (1 << bits) - 1, "<u2"
+        if np.any((high - low) / most > seen):
+            most, kind = 0xFFFFFFFF, "<u4"
         step = np.array([float(f"{value:.{DIGITS}g}") for value in (high - low)[varying] / most])
         # ranges of denormal numbers have no step: they are constant
         varying, step = varying[step > 0], step[step > 0]

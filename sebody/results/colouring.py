@@ -10,6 +10,7 @@ from sebody.results.units import unit
 from sebody.units import Units
 
 TITLES = {"displacement": "displacement", "von_mises": "von Mises stress"}
+MOST = 1_000_000_000    # products of amplitudes, stations and frames in a search, a second or two
 ROUNDING = 1e-12        # of the largest body: smaller displacements are none
 AT_ONCE = 200_000       # values of stations that are computed together
 
@@ -47,27 +48,30 @@ def values_of(body: DrawnBody, name: str, frame: int) -> NDArray | None:
             return None
         row = min(round(frame / body.stride), len(body.stress) - 1)
         return np.maximum(body.surface.weights @ body.stress[row], 0.0)
-    if body.labels is None:
+    if body.rigid:
         return None
     return np.linalg.norm(body.surface.weights @ _moved(body, [frame])[0], axis=1)
 
 
 def _peak(body: DrawnBody, name: str) -> tuple[float, int, int]:
-    """The largest value of a body, its frame and its station."""
+    """The largest value of a body, its frame and its station; of large bodies in some frames."""
     if name == "von_mises":
         if body.stress is None:
             return 0.0, 0, 0
         row, station = np.unravel_index(body.stress.argmax(), body.stress.shape)
         return float(body.stress[row, station]), int(row) * body.stride, int(station)
     found = 0.0, 0, 0
-    if body.labels is None:
+    if body.rigid:
         return found
-    frames, at_once = len(body.amplitudes), max(1, AT_ONCE // len(body.surface.points))
-    for first in range(0, frames, at_once):
-        lengths = np.linalg.norm(_moved(body, np.arange(first, min(first + at_once, frames))),
-                                 axis=2)
-        frame, station = np.unravel_index(lengths.argmax(), lengths.shape)
-        found = max(found, (float(lengths[frame, station]), first + int(frame), int(station)))
+    count, stations = body.amplitudes.shape[1], len(body.surface.points)
+    frames = np.arange(len(body.amplitudes))
+    frames = frames[::-(-len(frames) * stations * count // MOST) or 1]
+    at_once = max(1, AT_ONCE // stations)
+    for first in range(0, len(frames), at_once):
+        some = frames[first:first + at_once]
+        lengths = np.linalg.norm(_moved(body, some), axis=2)
+        row, station = np.unravel_index(lengths.argmax(), lengths.shape)
+        found = max(found, (float(lengths[row, station]), int(some[row]), int(station)))
     return found
 
 

@@ -77,12 +77,12 @@ def plot(results: Result | Mapping[str, Result] | Sequence[Result], *quantities:
 
 def overview(result: Result) -> list[str]:
     """What is drawn when nothing is named: motion, energies and a force or amplitudes."""
-    moving = _largest(result, "position")
-    turning = _largest(result, "angular_velocity")
+    known = set(names(result))
+    moving = _largest(result, "position", known)
+    turning = _largest(result, "angular_velocity", known)
     found = [f"{moving}.position"] if moving else []
     found += [f"{turning}.angular_velocity"] if turning else []
     found += ["energy"]
-    known = names(result)
     for quantity in ("force", "reaction", "modes"):
         joints = [joint.name for joint in result.model.joints]
         owners = {"force": joints, "reaction": result.model.nodes, "modes": result.model.bodies}
@@ -92,10 +92,10 @@ def overview(result: Result) -> list[str]:
     return found
 
 
-def _largest(result: Result, quantity: str) -> str | None:
+def _largest(result: Result, quantity: str, known: set[str]) -> str | None:
     """The node whose quantity varies most."""
     ranges = {node: np.linalg.norm(np.ptp(values(result, f"{node}.{quantity}").numbers, axis=0))
-              for node in result.model.nodes if f"{node}.{quantity}" in names(result)}
+              for node in result.model.nodes if f"{node}.{quantity}" in known}
     best = max(ranges, key=ranges.get, default=None)
     return best if best is not None and ranges[best] > 0 else None
 

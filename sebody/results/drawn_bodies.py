@@ -49,6 +49,11 @@ class DrawnBody(NamedTuple):
     stride: int = 1                     # frames from one of these to the next
     labels: NDArray | None = None       # (stations,) of FE nodes, plus 1; 0 between two of them
 
+    @property
+    def rigid(self) -> bool:
+        """Whether it has no FE nodes, and so no displacements of its own."""
+        return self.labels is None
+
 
 def vertices(body: DrawnBody, frame: int, scale: float = 1.0) -> NDArray:
     """Vertices of a body in a frame, (vertices, 3), deformed `scale` times as much as it is."""

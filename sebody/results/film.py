@@ -185,4 +185,4 @@ class _Bodies:
                 self.most = max(self.most, float(values.max()))
                 colours = colours_of(values[triangles].mean(axis=1), 0.0, self._field.largest)
         return Solid(vertices(body, frame), triangles, colours, body.surface.features,
-                     CLEAR if body.labels is None else 1.0)
+                     CLEAR if body.rigid else 1.0)

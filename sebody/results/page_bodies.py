@@ -14,6 +14,7 @@ from sebody.results.references import Welded, together
 from sebody.results.result import Result
 from sebody.results.scenery import Scenery
 
+COLOUR = 12             # bits of a stress
 SEEN = 1e-5             # of the model's extent: smaller steps of a place are not seen
 
 
@@ -52,18 +53,18 @@ def _body(blocks: Blocks, body: DrawnBody, measure: Measure, stress: float,
         "triangles": blocks.indices(surface.triangles),
         "edges": blocks.indices(surface.edges),
         "features": blocks.indices(surface.features),
-        "labels": None if body.labels is None else blocks.indices(body.labels),
+        "labels": None if body.rigid else blocks.indices(body.labels),
         "origin": blocks.values(measure.places(body.origin), SEEN),
         "rotation": blocks.values(body.rotation),
         "amplitudes": blocks.values(body.amplitudes),
         "thickness": 0.0 if skin else 2 * float(
             np.median(np.linalg.norm(surface.offsets, axis=1))) / size,
-        "rigid": body.labels is None, "start": measure.places(body.start).tolist(),
+        "rigid": body.rigid, "start": measure.places(body.start).tolist(),
         "held": [{"node": number[held.name], "point": (held.point / size).tolist(),
                   "position": held.position, "rotation": held.rotation, "full": held.full}
                  for held in body.nodes],
         "reference": None if body.reference is None else number[body.reference],
-        "stress": None if body.stress is None else blocks.values(body.stress / stress),
+        "stress": None if body.stress is None else blocks.values(body.stress / stress, bits=COLOUR),
         "stride": body.stride}
 
 

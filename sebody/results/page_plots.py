@@ -13,6 +13,7 @@ from sebody.results.units import unit_of_curves
 
 NUMBERS = 400_000       # of all histories together, beyond which they have fewer samples
 FEWEST = 201            # samples
+BITS = 14               # of a number: a plot is a few hundred pixels high
 # quantities that are kept before others where there is not room for all
 FIRST = ("position", "rotation", "velocity", "angular_velocity", "force", "moment", "torque",
          "thrust", "modes", "reaction", "reaction_moment", "power", "acceleration",
@@ -28,43 +29,44 @@ def plots(blocks: Blocks, result: Result, drawn: Scenery, chosen: Sequence[str])
     InputError
         A chosen quantity there is not.
     """
-    found, columns, left = [], 0, 0
-    for owner, one in (*_chosen(result, chosen), *_all(result)):
-        if columns + one.numbers.shape[1] > NUMBERS // FEWEST:
-            left += 1
-        elif np.isfinite(one.numbers).all():
+    found = [(OVERVIEW, one) for one in _chosen(result, chosen)]
+    columns, most = sum(one.numbers.shape[1] for _, one in found), NUMBERS // FEWEST
+    known, left = _names(result), 0
+    for at, name in enumerate(known):
+        one = values(result, name)
+        if columns + one.numbers.shape[1] > most:
+            left = len(known) - at
+            break
+        if np.isfinite(one.numbers).all():
             columns += one.numbers.shape[1]
-            found.append((owner, one))
+            found.append((_owner(name), one))
     frames = thinned(len(drawn.t), max(FEWEST, NUMBERS // max(columns, 1)))
     return {"frames": blocks.indices(frames), "left": left,
             "all": [_plot(blocks, owner, one, drawn, drawn.states[frames]) for owner, one in found]}
 
 
-def _chosen(result: Result, words: Sequence[str]) -> Iterator[tuple[str, Values]]:
+def _chosen(result: Result, words: Sequence[str]) -> Iterator[Values]:
     for panel in panels({"the result": result}, words):
         if panel.kind == "history":
-            yield OVERVIEW, Values(panel.title, tuple(curve.label for curve in panel.curves),
-                                   np.column_stack([curve.y for curve in panel.curves]))
+            yield Values(panel.title, tuple(curve.label for curve in panel.curves),
+                         np.column_stack([curve.y for curve in panel.curves]))
 
 
-def _all(result: Result) -> Iterator[tuple[str, Values]]:
-    """Quantities of the model, then of its parts; positions before others, see `FIRST`."""
-    for name in GROUPS:
-        yield MODEL, values(result, name)
+def _names(result: Result) -> list[str]:
+    """Quantities of the model, then of its parts: positions before others, see `FIRST`."""
     rank = {quantity: k for k, quantity in enumerate(FIRST)}
-    named = [name for name in names(result) if name != "t"]
-    for name in sorted(named, key=lambda name: rank.get(name.rpartition(".")[2], len(FIRST))
-                       if _owner(name) != MODEL else -1):
-        yield _owner(name), values(result, name)
+    named = [*GROUPS, *(name for name in names(result) if name != "t")]
+    return sorted(named, key=lambda name: -1 if _owner(name) == MODEL else
+                  rank.get(name.rpartition(".")[2], len(FIRST)))
 
 
 def _owner(name: str) -> str:
     owner = name.rpartition(".")[0]
-    return MODEL if owner in ("", *GROUPS) else owner
+    return MODEL if owner in ("", *GROUPS) or name in GROUPS else owner
 
 
 def _plot(blocks: Blocks, owner: str, one: Values, drawn: Scenery, states: np.ndarray) -> dict:
     return {"owner": owner, "name": one.name, "labels": one.labels,
             "unit": unit_of_curves(one.name, drawn.units),
             "range": [float(one.numbers.min()), float(one.numbers.max())],
-            "values": blocks.values(one.numbers[states])}
+            "values": blocks.values(one.numbers[states], bits=BITS)}

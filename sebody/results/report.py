@@ -111,7 +111,7 @@ def _drift(result: Result) -> Panel:
     balance = total - result["energy.external_work"]
     labels = (with_unit(label, name, result.units) for label, name in (("time", "t"),
                                                                        ("energy", "energy")))
-    return Panel("energy gained by the run", *labels, [
+    return Panel("energy drift: all energies less the work of loads", *labels, [
         Curve("", result.t, balance - balance[0])])
 
 

@@ -7,8 +7,9 @@ function ticks(low, high, parts) {
   const rough = (high - low) / parts, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((one) => one >= rough * 0.999);
   const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) {
-    found.push(k * step);
+  const first = Math.ceil(low / step - 1e-9);
+  for (let k = 0; k <= 2 * parts && (first + k) * step <= high + 1e-9 * step; k++) {
+    found.push((first + k) * step);
   }
   return found;
 }

@@ -50,7 +50,7 @@ def half_turn() -> Finding:
     """How far one end of a body can be rotated against the other, and what its frame does."""
     finding = Finding(
         "relative rotations near 180 degrees",
-        "a mean frame follows half the rotation; beyond 180 degrees it would flip",
+        "a mean frame follows half the rotation, up to 180 degrees",
         "The local rotation is a logarithm, which jumps at half a turn, and with it a frame in "
         f"the middle. It is refused before, from {LIMIT:.1f} degrees on, between the ends of a "
         "body of two nodes, whatever its frame.",
@@ -75,7 +75,7 @@ def collinear() -> Finding:
     """Frame by positions whose nodes nearly lie on a line."""
     finding = Finding(
         "nearly collinear nodes",
-        "the closer the nodes to a line, the more a deflection rotates the frame",
+        "nodes close to a line: deflections rotate the frame more",
         "A frame of best fit turns about the line of its nodes by the deflection of the one beside "
         "it, divided by its distance: with the distance going to zero any deflection becomes a "
         "rotation.",
@@ -179,7 +179,7 @@ def negative_weights() -> Finding:
     """A body whose centre of mass lies outside its nodes."""
     finding = Finding(
         "negative weights of the frame",
-        "the energy drift is of second order in the step, as with any weights",
+        "the energy drift is of second order in the step",
         "Nodes at 1/4 and 1/2 of a beam give the weights 0 and 1, at 0 and 1/4 the weights -1 and "
         "2: the frame is extrapolated, and one end turns twice as far against it as the ends "
         "against each other. Energy is kept to second order as with any weights.",

@@ -24,7 +24,7 @@ def impulses() -> Finding:
     """Energy that a beam on a spherical joint takes from an impulse at its tip."""
     finding = Finding(
         "strong impulses, options A, B and C",
-        "energy given by a blow at the tip, compared with nonlinear beam elements",
+        "energy given by a blow, compared with nonlinear beams",
         "A and B drop the velocity that the frame's rotation gives to the deformation. The energy "
         "an impulse gives is too low by a share that grows with it, with A several times that "
         "with B: the rest is spurious spin about the beam's axis. C drops nothing.",

@@ -34,7 +34,7 @@ def spurious_divergence() -> Finding:
     """Spin at which a cantilever in its plane diverges; a beam never does."""
     finding = Finding(
         "loss of stability at high spin, option B",
-        "critical spin of a cantilever; with geometric stiffening there is none",
+        "critical spin; with geometric stiffening there is none",
         "A beam stiffens as it turns and never diverges in its plane. A linear body does not: it "
         "diverges where W^2 times its inertia exceeds its stiffness. The limit grows with the "
         "number of bodies; one body that stiffens has none.",
@@ -60,7 +60,7 @@ def frequencies() -> Finding:
     """The first frequency in the plane of a cantilever that turns, of one body."""
     finding = Finding(
         "one rotating body",
-        "first in-plane frequency of a rotating cantilever, four modes",
+        "first in-plane frequency of a cantilever, four modes",
         "A beam's first frequency in the plane of the spin grows, from 3.516 to 5.427 at 12. One "
         "body that stiffens follows it; exact inertia without stiffening and option B have none "
         "from 6 on.",
@@ -96,7 +96,7 @@ def spin_up_outcomes() -> Finding:
     """The spin-up of two flexible arms: bounded or not, and how deep the tip bends."""
     finding = Finding(
         "spin-up of a flexible arm, option B",
-        "too few bodies of option B bend too far; one body with stiffening is enough",
+        "too few bodies of option B bend too far",
         "One body with its frame at the root diverges when the speed passes its first frequency. "
         "Kane's arm at 4 rad/s survives with two, Simo's at 6 rad/s does not; with four and eight "
         "the deflection tends to that of the beam, -0.534 and -0.574. One body that stiffens and "
@@ -154,7 +154,7 @@ def buckling() -> Finding:
     """Dead load along a cantilever."""
     finding = Finding(
         "Euler buckling load, option B",
-        "without geometric stiffening the buckling load of a cantilever is too high",
+        "without geometric stiffening the buckling load is too high",
         "Bodies that are linear in their frames buckle where the frames turn: not at all with one "
         "body and the frame at its root, at 3 EI/L^2 with a chord, and at pi^2/4 in the limit. One "
         "body that stiffens buckles at pi^2/4.",
@@ -172,7 +172,7 @@ def flutter() -> Finding:
     """A load that follows the tip of a cantilever."""
     finding = Finding(
         "flutter load of Beck's column, option B",
-        "without geometric stiffening the flutter load of a cantilever is too high",
+        "without geometric stiffening the flutter load is too high",
         "A beam flutters at 20.05 EI/L^2. One linear body does not flutter below 80, two at 24 "
         "(chord) to 39 (node); the load converges from above with the square of their number. One "
         "body that stiffens flutters at 20.05.",

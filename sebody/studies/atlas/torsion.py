@@ -34,7 +34,7 @@ def soft_torsion() -> Finding:
     """Spin at which a blade of one body diverges in torsion; none does."""
     finding = Finding(
         "torsion of a rotating blade, option B",
-        "a straight blade of option B becomes unstable in torsion; a real one does not",
+        "a straight blade of option B becomes unstable in torsion",
         "Option B takes angular velocities in the axes of the nodes, which turn as the blade "
         "twists, and momenta of bending work on that: a straight blade diverges in torsion, at W "
         "= 8.94 sqrt(G J / m L^4) with the mean frame, 4.10 with a node's. A real one does not.",
