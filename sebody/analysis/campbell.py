@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import linear_sum_assignment
 
 from sebody import inputs
 from sebody.analysis.linearization import Modes, modes
@@ -98,6 +97,8 @@ def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, cou
 
 def _followed(last: Modes, own: NDArray, now: Modes) -> NDArray:
     """The modes most like those of the last speed, by shape and by value."""
+    from scipy.optimize import linear_sum_assignment  # takes 0.1 s to import
+
     likeness = np.abs(last.shapes[:, own].conj().T @ now.shapes)**2
     scale = np.abs(last.values[own]).max()
     change = np.abs(last.values[own][:, None] - now.values[None]) / max(scale, 1e-300)

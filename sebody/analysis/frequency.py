@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody import inputs
 from sebody.analysis.evaluation import evaluate
@@ -24,6 +23,7 @@ from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.errors import InputError
 from sebody.kernels.layout import RECORD_T, RESIDUAL
 from sebody.model.parts import Element
+from sebody.results import rotations
 from sebody.results.frequency_pictures import save_response
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
@@ -192,7 +192,7 @@ def _moved_states(run: Simulation | Result, spin: Spin, X: NDArray, omega: NDArr
             for number, own in rotated.items():
                 first = parts["R"].start + 9 * number
                 R = row[first:first + 9].reshape(3, 3)
-                row[first:first + 9] = (R @ Rotation.from_rotvec(step[0][own]).as_matrix()).ravel()
+                row[first:first + 9] = (R @ rotations.matrices(step[0][own])).ravel()
             rows.append(row)
     return Result(run.model, numbering, run.system, state, np.array(rows), 0.0), scale
 

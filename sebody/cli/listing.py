@@ -7,8 +7,6 @@ import textwrap
 from collections.abc import Callable
 
 from sebody.cli.inputs import described, parameters, source
-from sebody.kernels.names import ELEMENT
-from sebody.studies.catalogue import kernels, scenes
 
 RESULTS = ".npz", ".h5"         # files of results
 
@@ -64,6 +62,9 @@ def meanings_of(build: Callable) -> dict[str, str]:
 
 
 def _list_all() -> None:
+    from sebody.kernels.names import ELEMENT
+    from sebody.studies.catalogue import kernels, scenes
+
     print("scenes")
     for name, summary in scenes().items():
         print(f"  {name:24} {summary}")

@@ -7,7 +7,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from sebody import inputs
 from sebody.errors import InputError
 
 MODULE = "sebody_scene_file"        # name of the module that a file becomes
@@ -27,6 +26,8 @@ def load(path: str) -> ModuleType:
     InputError
         The file cannot be read, is no Python, raises an error, or has no function `build`.
     """
+    from sebody import inputs
+
     file = inputs.path(path, "scene file", (".py",)).resolve()
     try:
         source = file.read_bytes()

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.results import rotations
 from sebody.results.result import Result
 
 AXES = "xyz"
@@ -125,7 +125,7 @@ def _component(whole: Values, component: str) -> Values:
 
 def rotation_vectors(matrices: NDArray) -> NDArray:
     """Rotation vectors (n, 3) of matrices (n, 3, 3), continued through full turns."""
-    vectors = Rotation.from_matrix(matrices).as_rotvec()
+    vectors = rotations.vectors(matrices)
     angles = np.linalg.norm(vectors, axis=1)
     known = angles > SMALL_ANGLE
     if not known.any():

@@ -4,7 +4,6 @@ Arrays are written by blocks of rows, packed. The group ``sebody`` holds what a 
 """
 
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.version import __version__
 
 SUFFIX = ".h5"
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -55,7 +55,7 @@ def write(file: BinaryIO, members: Mapping[str, NDArray], units: Mapping[str, st
 
     memory = BytesIO()
     with h5py.File(memory, "w") as made:
-        made.attrs.update(attributes | {"program": f"sebody {_version()}"})
+        made.attrs.update(attributes | {"program": f"sebody {__version__}"})
         for name, values in members.items():
             _write(made, name, np.asarray(values), units.get(name))
     file.write(memory.getbuffer())
@@ -97,10 +97,3 @@ def _write(file, name: str, values: NDArray, unit: str | None) -> None:
             made[first:first + rows] = values[first:first + rows]
     if unit is not None:
         made.attrs["units"] = unit
-
-
-def _version() -> str:
-    try:
-        return version("sebody")
-    except PackageNotFoundError:
-        return "of a checkout"

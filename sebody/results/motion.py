@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody.assembly.numbering import stretch
 from sebody.errors import InputError
 from sebody.model.frames import FRAMES
 from sebody.model.parts import Superelement
+from sebody.results import rotations
 from sebody.results.recording import Recording
 
 ITERATIONS = 30
@@ -162,7 +162,7 @@ class _Spatial:
         for _ in range(1 if traits.incremental else ITERATIONS):
             step = (self._mean_step(body) if traits.needs_rotations else
                     self._fit_step(X, arms @ self.rotation))
-            self.rotation = self.rotation @ Rotation.from_rotvec(step).as_matrix()
+            self.rotation = self.rotation @ rotations.matrices(step)
             if not np.abs(step).max(initial=0.0) > DONE:
                 break
         else:
@@ -176,8 +176,7 @@ class _Spatial:
         relative = self.rotation[:, None].transpose(0, 1, 3, 2) @ self._nodes
         if not relative.size:
             return np.zeros((len(relative), 0, 3))
-        return Rotation.from_matrix(relative.reshape(-1, 3, 3)).as_rotvec().reshape(
-            len(relative), -1, 3)
+        return rotations.vectors(relative.reshape(-1, 3, 3)).reshape(len(relative), -1, 3)
 
     def _mean_step(self, body: Superelement) -> NDArray:
         """Newton's step to ``sum alpha_j psi_j = 0``; the increment itself if it is averaged."""
@@ -209,7 +208,7 @@ class _Spatial:
         else:
             matrix = _weighted_inverse(alpha, psi)
             self.spin = _solved(matrix, alpha @ _inverse_tangent(psi, angular))
-        back = Rotation.from_rotvec(-psi.reshape(-1, 3)).as_matrix().reshape(*psi.shape, 3)
+        back = rotations.matrices(-psi.reshape(-1, 3)).reshape(*psi.shape, 3)
         carried = np.einsum("njkl,nl->njk", back, self.spin)        # exp(-psi) Omega_0
         w = angular - carried
         self.psi_rate = _inverse_tangent(psi, w)

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
 from sebody.fem.stress import von_mises
@@ -96,6 +95,8 @@ def vertices(body: DrawnBody, frame: int, scale: float = 1.0) -> NDArray:
     surface, amplitudes = body.surface, scale * body.amplitudes[frame]
     points = surface.points + np.tensordot(amplitudes, surface.moves, 1)
     turns = np.tensordot(amplitudes, surface.turns, 1)[surface.stations]
+    from scipy.spatial.transform import Rotation
+
     local = points[surface.stations] + Rotation.from_rotvec(turns).apply(surface.offsets)
     return body.origin[frame] + Rotation.from_quat(body.rotation[frame]).apply(local)
 
@@ -129,6 +130,8 @@ def _node(result: Result, node: Node, states: NDArray) -> DrawnNode | None:
 
 def quaternions(rotations: NDArray) -> NDArray:
     """Quaternions (n, 4), the real part last, of matrices (n, 3, 3) or (n, 2, 2), or of angles."""
+    from scipy.spatial.transform import Rotation
+
     if rotations.ndim == 3 and rotations.shape[1] == 2:
         rotations = np.arctan2(rotations[:, 1, 0], rotations[:, 0, 0])
     if rotations.ndim == 1:
