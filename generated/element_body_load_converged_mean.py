@@ -43,7 +43,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 9
 OPERATIONS = {"residual": (200, 21, 96, 0),
               "column": (15, 9, 134, 0)}
-ROOM = "e28d8b4063b2"     # hash of sebody/kernels, which this file was made for
+ROOM = "60783b5d6a12"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

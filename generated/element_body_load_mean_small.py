@@ -42,7 +42,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 12
 OPERATIONS = {"residual": (310, 21, 129, 0),
               "column": (44, 9, 125, 0)}
-ROOM = "e28d8b4063b2"     # hash of sebody/kernels, which this file was made for
+ROOM = "60783b5d6a12"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

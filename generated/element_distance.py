@@ -35,7 +35,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (32, 0, 0, 0),
               "column": (32, 0, 0, 0)}
-ROOM = "e28d8b4063b2"     # hash of sebody/kernels, which this file was made for
+ROOM = "60783b5d6a12"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

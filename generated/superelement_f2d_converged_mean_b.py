@@ -54,7 +54,7 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (300, 157, 329, 4),
               "column": (81, 205, 1036, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "e28d8b4063b2"     # hash of sebody/kernels, which this file was made for
+ROOM = "60783b5d6a12"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

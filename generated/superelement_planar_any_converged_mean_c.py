@@ -82,7 +82,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "e28d8b4063b2"     # hash of sebody/kernels, which this file was made for
+ROOM = "60783b5d6a12"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

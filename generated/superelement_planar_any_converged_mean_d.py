@@ -68,7 +68,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "e28d8b4063b2"     # hash of sebody/kernels, which this file was made for
+ROOM = "60783b5d6a12"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -53,7 +53,7 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (212, 72, 6, 4),
               "column": (13, 85, 8, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
-ROOM = "e28d8b4063b2"     # hash of sebody/kernels, which this file was made for
+ROOM = "60783b5d6a12"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

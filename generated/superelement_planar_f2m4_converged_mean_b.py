@@ -50,7 +50,7 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (212, 61, 5, 3),
               "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "e28d8b4063b2"     # hash of sebody/kernels, which this file was made for
+ROOM = "60783b5d6a12"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function

@@ -84,7 +84,8 @@ class Simulation:
     Raises
     ------
     InputError
-        Bad step or tolerance, singular mass, contradicting constraints, an initial state that
+        Bad step or tolerance, functions that read what has changed since they were compiled,
+        singular mass, contradicting constraints, an initial state that
         violates them, or variable steps with constraints of index 3.
     """
 
@@ -97,6 +98,7 @@ class Simulation:
         if scheme is not None:
             inputs.instance(scheme, "scheme", Scheme, "give generalized_alpha() or hht()")
         tolerance = given(tolerance)
+        user_faults.refuse_changed(model)
         prepare([model])
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
@@ -142,12 +144,16 @@ class Simulation:
 
         Raises
         ------
+        InputError
+            A time that is past, or a function of a load or drive that reads a value which has
+            changed since it was compiled.
         SimulationError
             When a step does not converge however small; what was computed is kept, also in the
             error's `result`.
         Interrupted
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
+        user_faults.refuse_changed(self.model)
         last = self._last_step(t_end)
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "

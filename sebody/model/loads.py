@@ -8,9 +8,8 @@ from numpy.typing import ArrayLike
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.names import body_load_kind
-from sebody.kernels.user_functions import compile_force
 from sebody.model.frames import FRAMES
-from sebody.model.functions import with_compiled_helpers
+from sebody.model.functions import compiled_force
 from sebody.model.histories import History, clock, history
 from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
@@ -130,7 +129,7 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
         triplet(place.node, "position")
     if not places:
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")
-    compiled = compile_force(name, with_compiled_helpers(function), model.dimension * len(places))
+    compiled = compiled_force(function, name, model.dimension * len(places))
     name = chosen_name(model, name, "user force")
     return _add(model, Element(name, "user_force", places, {}, history=clock(),
                                function=compiled))

@@ -16,6 +16,7 @@ from sebody.analysis.ensembles.outcome import Outcome
 from sebody.analysis.ensembles.outputs import Output, outputs_of
 from sebody.analysis.ensembles.work import Work, processors
 from sebody.analysis.simulation import Simulation
+from sebody.analysis.user_faults import refuse_changed
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.model.model import Model
@@ -94,6 +95,7 @@ class Ensemble:
             Before the first run: unknown names, arrays of different lengths, values that a body
             cannot have, an unknown quantity, a time that is no multiple of the step.
         """
+        refuse_changed(self.model)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
         found, runs, last, kept = self._checked(parameters, t_end, outputs)
         kinematic, shapes = kinematic_quantities(self._template, kept)
