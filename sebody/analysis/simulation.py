@@ -244,9 +244,8 @@ class Simulation:
         """The results computed so far."""
         found = Result(self.model, self.numbering, self.system, self.state,
                        np.concatenate(self.rows), self.seconds, self.failure, self.start)
-        if found.steps:
-            self.watch.judge(found)
-        found.warnings = tuple(self.watch.messages)
+        found.warnings = (self.watch.judge(found) if found.steps else
+                          tuple(self.watch.messages))
         return found
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:

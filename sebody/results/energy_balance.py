@@ -1,8 +1,9 @@
-"""How well a run keeps its energy."""
+"""How well a run keeps its energy: the one judgement of summaries, reports and warnings."""
 
 import numpy as np
 from numpy.typing import NDArray
 
+LIMIT = 0.05            # share of the energy exchanged: speeds are off by half of it
 ROUNDING = 1e-12        # of the energies, left by the sums of many numbers
 
 
@@ -23,3 +24,12 @@ def energy_balance(kinetic: NDArray, strain: NDArray, potential: NDArray, work: 
     drift = max(np.abs(total - total[0]).max() - rounding, 0.0)
     exchanged = max(inner.max() - strain.min(), np.ptp(potential), np.ptp(work))
     return float(drift / max(exchanged, rounding, 1e-300))
+
+
+def warning(balance: float) -> str:
+    """What a run with such a balance warns of; nothing if it is within the limit."""
+    if balance <= LIMIT:
+        return ""
+    return (f"energy balance {balance:.2g} of the energy exchanged (limit {LIMIT:g}): the step is "
+            "too long, or numerical damping takes energy that matters; take a smaller step, a "
+            "larger rho, or simulate_within")

@@ -12,6 +12,7 @@ from sebody.engine.system import System
 from sebody.kernels.layout import ENERGIES, RECORD
 from sebody.model.mechanism import Mechanism
 from sebody.results.balance import Balance
+from sebody.results.energy_balance import energy_balance
 from sebody.results.postprocessing import (
     Forces,
     constraint_residuals,
@@ -58,6 +59,16 @@ class Recording:
     def energies(self) -> NDArray:
         """Energies and momenta of every recorded state, rows of `layout.ENERGIES`."""
         return energies(self.system, self.state, self.rows)
+
+    def energy_balance(self) -> float:
+        """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
+
+        Of all recorded states, see `sebody.results.energy_balance`.
+        """
+        columns = ENERGIES.slices(record_counts(self.numbering))
+        kinetic, strain, potential = (self.energies[:, columns[name]][:, 0]
+                                      for name in ("kinetic", "strain", "potential"))
+        return energy_balance(kinetic, strain, potential, self.recorded("works").sum(axis=1))
 
     @cached_property
     def forces(self) -> Forces:

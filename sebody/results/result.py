@@ -13,7 +13,6 @@ from sebody.files import check_target, replacing
 from sebody.model.tables import table
 from sebody.results import hdf5, tables
 from sebody.results.advice import kernels_that_pay
-from sebody.results.energy_balance import energy_balance
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
 from sebody.results.quantities import look_up, saved
@@ -109,14 +108,6 @@ class Result(Recording):
         """
         inputs.name(name, "name of a superelement")
         return field_of(self, name)
-
-    def energy_balance(self) -> float:
-        """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
-
-        See `sebody.results.energy_balance`.
-        """
-        return energy_balance(*(self[f"energy.{name}"] for name in
-                                ("kinetic", "strain", "potential", "external_work")))
 
     @cached_property
     def advice(self) -> dict[str, list[str]]:
