@@ -12,12 +12,13 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
            "examples": "sebody.scenes"}
 # every room, lowest first, and which others its files may import; those in OPEN are open to all
-OPEN = {"errors", "inputs", "files", "lazy", "version"}
+OPEN = {"errors", "inputs", "files", "lazy", "spelling", "version"}
 ROOMS = {
     "errors": set(),
     "inputs": set(),
     "files": set(),
     "lazy": set(),
+    "spelling": set(),
     "version": set(),
     "kernels": set(),
     "generated": {"kernels"},
@@ -38,7 +39,7 @@ ROOMS = {
 }
 RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
-            "lazy": set(), "version": set(),
+            "lazy": set(), "spelling": set(), "version": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib

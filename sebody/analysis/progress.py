@@ -68,9 +68,14 @@ class Progress:
 
 
 @contextmanager
-def showing(progress: Callable[[float], None] | bool | None, t_end: float
+def showing(progress: Callable[[float], None] | bool | None, t_end: float | None = None
             ) -> Iterator[Callable[[float], None] | None]:
     """What is called during a run: a function, or a bar for True.
+
+    Parameters
+    ----------
+    t_end : float, optional
+        As of `Progress`.
 
     Raises
     ------

@@ -34,7 +34,8 @@ def remarks(run: Recording) -> dict[str, str]:
         run.energies = energies(run.system, scratch, run.rows)
     except InputError:          # the last state of a run that failed
         return _steps(run)
-    message = energy_balance.warning(run.energy_balance())
+    message = energy_balance.warning(run.energy_balance(),
+                                     bool(run.state.control[ADAPTIVE]))
     found = ({"balance": message} if message else {}) | _steps(run)
     if run.failure or run.state.control[ADAPTIVE]:
         return found

@@ -12,12 +12,14 @@ from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
 from sebody.analysis.first_run import prepare
 from sebody.analysis.initial_state import acceleration_rates, start
+from sebody.analysis.initial_velocities import refuse_contradicted
 from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen
 from sebody.analysis.redundancy import contradiction
 from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.start_remarks import start_remarks
 from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
@@ -112,6 +114,9 @@ class Simulation:
         self.exchanges = RowExchanges(self.system, self.state)
         user_faults.forget(model)
         self.start: Start = start(model, self.system, self.numbering, self.state)
+        refuse_contradicted(model, self.numbering, self.state)
+        for key, message in start_remarks(model, self.numbering, self.state).items():
+            self.watch.say(key, message)
         self.tolerance = tolerance
         if tolerance is not None:
             self._choose_steps(tolerance)

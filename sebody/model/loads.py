@@ -1,7 +1,6 @@
 """Loads of a model: forces and torques, each with a name and its work, and gravity."""
 
 from collections.abc import Callable, Iterable
-from difflib import get_close_matches
 
 from numpy.typing import ArrayLike
 
@@ -14,6 +13,7 @@ from sebody.model.histories import History, clock, history
 from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
+from sebody.spelling import offered, unknown
 
 
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,
@@ -96,7 +96,7 @@ def body_load(model: Mechanism, body: str, load: str,
     loads = placed.body.loads
     if not isinstance(load, str) or load not in loads:
         raise InputError(f"superelement {body!r} has no load {load!r}: "
-                         + _others(str(load), loads, "it has", "it was reduced without loads, give "
+                         + offered(load, loads, "it has", "it was reduced without loads, give "
                                    "craig_bampton loads={...}"))
     kind = body_load_kind(FRAMES[placed.frame].kernel, model.planar)
     course = history(amplitude)
@@ -154,18 +154,8 @@ def gravity(model: Mechanism, field: ArrayLike) -> None:
 def _body(model: Mechanism, name: str) -> Superelement:
     """A superelement by its name."""
     if not isinstance(name, str) or name not in model.bodies:
-        raise InputError(f"superelement {name!r} is unknown: "
-                         + _others(str(name), model.bodies, "the model has", "the model has none"))
+        raise unknown("superelement", name, model.bodies, "the model has", "the model has none")
     return model.bodies[name]
-
-
-def _others(name: str, known: Iterable[str], have: str, without: str) -> str:
-    """Names that are near, or all there are."""
-    known = list(known)
-    near = get_close_matches(name, known)
-    if near:
-        return f"did you mean {' or '.join(map(repr, near))}?"
-    return f"{have} {', '.join(known)}" if known else without
 
 
 def _add(model: Mechanism, load: Element) -> Element:

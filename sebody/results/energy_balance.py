@@ -26,10 +26,17 @@ def energy_balance(kinetic: NDArray, strain: NDArray, potential: NDArray, work: 
     return float(drift / max(exchanged, rounding, 1e-300))
 
 
-def warning(balance: float) -> str:
-    """What a run with such a balance warns of; nothing if it is within the limit."""
+def warning(balance: float, adaptive: bool = False) -> str:
+    """What a run with such a balance warns of; nothing if it is within the limit.
+
+    Parameters
+    ----------
+    adaptive : bool
+        Whether a tolerance has chosen the steps.
+    """
     if balance <= LIMIT:
         return ""
-    return (f"energy balance {balance:.2g} of the energy exchanged (limit {LIMIT:g}): the step is "
-            "too long, or numerical damping takes energy that matters; take a smaller step, a "
-            "larger rho, or simulate_within")
+    reason = ("steps within the tolerance do not keep it; take a smaller tolerance, or a larger rho"
+              if adaptive else "the step is too long, or numerical damping takes energy that "
+              "matters; take a smaller step, a larger rho, or simulate_within")
+    return f"energy balance {balance:.2g} of the energy exchanged (limit {LIMIT:g}): {reason}"

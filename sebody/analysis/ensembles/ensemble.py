@@ -15,6 +15,7 @@ from sebody.analysis.ensembles.member import kinematic_quantities
 from sebody.analysis.ensembles.outcome import Outcome
 from sebody.analysis.ensembles.outputs import Output, outputs_of
 from sebody.analysis.ensembles.work import Work, processors
+from sebody.analysis.progress import showing
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.user_faults import refuse_changed
 from sebody.engine.state import Scheme
@@ -68,7 +69,7 @@ class Ensemble:
 
     def run(self, parameters: Mapping[str, Values], t_end: float,
             outputs: Mapping[str, Output | str], threads: int | None = None,
-            progress: Callable[[float], None] | None = None) -> Outcome:
+            progress: Callable[[float], None] | bool | None = None) -> Outcome:
         """Run the model once for each set of values.
 
         Results do not depend on the number of threads, bit for bit, nor on which runs are asked for
@@ -86,8 +87,8 @@ class Ensemble:
             `maximum`, `minimum`, `rms`, `integral`, `final` or `at_time` return.
         threads : int, optional
             By default one for each processor.
-        progress : callable, optional
-            Called with the part of the runs that is done.
+        progress : callable or bool, optional
+            Called with the part of the runs that is done; True shows a bar, as of `simulate`.
 
         Raises
         ------
@@ -104,7 +105,8 @@ class Ensemble:
         began = time.perf_counter()
         work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
                     self._lock)
-        work.go(min(threads, max(runs, 1)), progress)
+        with showing(progress) as show:
+            work.go(min(threads, max(runs, 1)), show)
         outcome.seconds = time.perf_counter() - began
         return outcome
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.spelling import unknown
 
 
 @dataclass
@@ -44,7 +44,7 @@ class Outcome:
             No output has this name.
         """
         if name not in self.values:
-            raise InputError(f"output {name!r} is unknown: there are {', '.join(self.values)}")
+            raise unknown("output", name, self.values)
         return self.values[name]
 
     @property

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody.errors import InputError
 from sebody.kernels.names import body_load_kind
 from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.reduction import ReducedBody
+from sebody.spelling import unknown
 
 
 class Variant(NamedTuple):
@@ -59,8 +59,7 @@ def placed(model: Mechanism, name: str) -> Superelement:
         There is none of this name.
     """
     if not isinstance(name, str) or name not in model.bodies:
-        raise InputError(f"superelement {name!r} is unknown: the model has "
-                         f"{', '.join(model.bodies) or 'none'}")
+        raise unknown("superelement", name, model.bodies, "the model has", "the model has none")
     return model.bodies[name]
 
 
