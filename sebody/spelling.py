@@ -34,17 +34,17 @@ def offered(name: object, known: Iterable[str], have: str = "there are",
         return f"did you mean {' or '.join(map(repr, near))}?"
     if not known:
         return none
-    listed = known if all(one.replace("-", "_").isidentifier() for one in known) else [
+    listed = known if not any(set(one) & set(" ,'") for one in known) else [
         repr(one) for one in known]
     more = len(known) - MOST
     return f"{have} {', '.join(listed[:MOST])}" + (f" and {more} more" if more > 0 else "")
 
 
-def alike(name: object, known: Iterable[str], most: int = 3) -> list[str]:
+def alike(name: object, known: Iterable[str], most: int = 3, cutoff: float = ALIKE) -> list[str]:
     """Names that are like another one, the most alike first, in whatever case."""
     if not isinstance(name, str):
         return []
     by_lower: dict[str, str] = {}
     for one in known:
         by_lower.setdefault(one.lower(), one)
-    return [by_lower[one] for one in get_close_matches(name.lower(), by_lower, most, ALIKE)]
+    return [by_lower[one] for one in get_close_matches(name.lower(), by_lower, most, cutoff)]

@@ -32,10 +32,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list_quantities(path: str) -> None:
-    from sebody.results.quantities import names
     from sebody.results.result import Result
 
-    print("\n".join(names(Result.load(path))))
+    print("\n".join(Result.load(path).names()))
 
 
 def _list_parameters(scene: str) -> None:

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.files import replacing
+from sebody.results.naming import component_names
 from sebody.results.plots import ACCENT, INK, PALE, STYLE, check_picture
-from sebody.results.tables import component_names
 
 COLOURS = INK, ACCENT, "#2a7f62", "#8a6fb0", "#b8862f", "#4f8fba"
 VANISHES = 1e-9         # amplitude of a component, of the largest, that is not drawn
@@ -32,7 +32,7 @@ def save_response(path: str | Path, load: str, omega: NDArray, answers: Mapping[
         for axis, (name, values) in zip(axes[:-1], answers.items(), strict=True):
             flat = values.reshape(len(omega), -1)
             size = np.abs(flat).max(initial=0.0)
-            for label, part in zip(component_names(values, 3), flat.T, strict=True):
+            for label, part in zip(component_names(values, name), flat.T, strict=True):
                 if np.abs(part).max() <= VANISHES * size:
                     continue
                 full = f"{name}.{label}" if label else name

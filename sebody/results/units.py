@@ -18,6 +18,12 @@ OF_MODEL = {
 
 def unit(name: str) -> str:
     """Unit of a quantity by its full name, in words; empty if it has none that is known."""
-    if name.startswith("energy."):
+    whole, _, last = name.rpartition(".")
+    if name == "energy" or whole == "energy":
         return "force length"
-    return OF_MODEL.get(name) or OF_QUANTITY.get(name.rpartition(".")[2], "")
+    known = OF_MODEL.get(name) or OF_QUANTITY.get(last)
+    if known is not None or not whole:
+        return known or ""
+    if whole.endswith(".rotation") and last in ("x", "y", "z", "norm"):
+        return "rad"            # of the rotation vector
+    return unit(whole)          # of a component that of the quantity
