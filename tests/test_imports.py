@@ -12,13 +12,14 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
            "examples": "sebody.scenes"}
 # every room, lowest first, and which others its files may import; those in OPEN are open to all
-OPEN = {"errors", "inputs", "files", "lazy", "spelling", "version"}
+OPEN = {"errors", "inputs", "files", "lazy", "spelling", "tabular", "version"}
 ROOMS = {
     "errors": set(),
     "inputs": set(),
     "files": set(),
     "lazy": set(),
     "spelling": set(),
+    "tabular": set(),
     "version": set(),
     "kernels": set(),
     "generated": {"kernels"},
@@ -38,7 +39,7 @@ ROOMS = {
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}
-PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
+PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "files": set(),
             "lazy": set(), "spelling": set(), "version": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}

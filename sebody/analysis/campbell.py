@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
+from sebody import inputs, tabular
 from sebody.analysis.linearization import Modes, modes
 from sebody.analysis.statics import equilibrium
 from sebody.errors import InputError
@@ -31,6 +31,23 @@ class Campbell:
     speeds: NDArray
     omega: NDArray
     growth: NDArray
+
+    def __repr__(self) -> str:
+        return tabular.text(*self._table())
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return tabular.titled(*self._table())
+
+    def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
+        first, last = (f"{speed:.6g}" for speed in (self.speeds[0], self.speeds[-1]))
+        title = (f"{self.omega.shape[1]} modes at {len(self.speeds)} speeds from {first} to {last} "
+                 "rad/s")
+        heads = "mode", f"[Hz] at {first} rad/s", f"[Hz] at {last} rad/s", "largest real part [1/s]"
+        hertz = self.omega / (2 * np.pi)
+        return title, heads, [
+            (str(k + 1), f"{hertz[0, k]:.6g}", f"{hertz[-1, k]:.6g}", f"{growth.max():.4g}")
+            for k, growth in enumerate(self.growth.T)]
 
     def save_picture(self, path: str | Path) -> Path:
         """Draw frequencies and rates of growth over the speed: png, pdf or svg (extra ``plot``).

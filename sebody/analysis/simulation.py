@@ -50,6 +50,7 @@ from sebody.engine.state import (
 from sebody.engine.step import write_record
 from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.model.model import Model
+from sebody.model.tables import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 
@@ -130,6 +131,10 @@ class Simulation:
         self.rows.append(first.rows)
         # no steps yet: the loop is compiled, or read from the cache, before time is measured
         advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
+
+    def __repr__(self) -> str:
+        return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
+                f"{self.h:.6g}, t = {self.time:.6g}>")
 
     @property
     def time(self) -> float:

@@ -14,6 +14,7 @@ from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SOLID, SPATIAL, equal_rows, mapped_rows
 from sebody.fem.mass_field import MassField, nodal_field
 from sebody.fem.stress import SolidStress
+from sebody.tabular import brief
 
 SYMMETRY_LIMIT = 1e-8   # difference of entries across the diagonal, relative to its own entries
 
@@ -77,6 +78,8 @@ class FEModel:
     outlines: NDArray | None = None
     stress: Sequence[SolidStress | BeamStress] = ()
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         self._check_nodes()

@@ -19,6 +19,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem import mesh
 from sebody.fem.isoparametric import SOLID_KINDS, element_kind
+from sebody.tabular import brief
 
 FLAT = 1e-10        # volume of an element, of its size cubed, that is none
 
@@ -47,6 +48,8 @@ class SolidStress:
     coordinates: NDArray
     elasticity: NDArray
     strains: NDArray | None = None
+
+    __repr__ = brief
 
     @property
     def points_per_element(self) -> int:
@@ -137,6 +140,8 @@ class StressModes:
     points: NDArray
     modes: NDArray
     nodes: NDArray
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         points = inputs.array(self.points, "points of stress modes", (None, 3))

@@ -24,6 +24,7 @@ from sebody.files import check_target, replacing
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
+from sebody.tabular import brief
 
 FORMAT, VERSION = "sebody body", 1
 TARGET = "body file", (".npz",)     # see `files.check_target`
@@ -52,6 +53,8 @@ class BodyFile:
     names: tuple[str, ...]
     units: str = ""
     provenance: Mapping[str, str] = field(default_factory=dict)
+
+    __repr__ = brief
 
     @property
     def mesh(self) -> tuple[NDArray, tuple[tuple[str, NDArray], ...]] | None:

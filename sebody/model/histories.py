@@ -87,6 +87,17 @@ class History:
             found += A * np.array([s, w * c, -w * w * s])
         return found
 
+    def described(self) -> str:
+        """What it is, in a few words."""
+        if self.functions:
+            return f"function {getattr(self.functions[0].function, '__name__', '')}".rstrip()
+        if len(self.pieces) == 1 and not self.waves and not any(self.pieces[0][1:]):
+            return f"constant {self.pieces[0][0]:.6g}"
+        return f"{len(self.pieces)} pieces, t = {self.times[0]:.6g} to {self.times[-1]:.6g}"
+
+    def __repr__(self) -> str:
+        return f"<History: {self.described()}>"
+
     def _summands(self, k: int, t: float) -> NDArray:
         """Sums of the sizes of what is added up in `of_piece`: they may cancel but for rounding."""
         x, polynomial = abs(t - self.times[k]), np.polynomial.Polynomial(np.abs(self.pieces[k]))

@@ -23,7 +23,7 @@ from sebody.model.plane import Plane
 from sebody.spelling import unknown
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Mechanism:
     """A mechanism: nodes, superelements, rigid bodies, joints and forces.
 

@@ -17,6 +17,7 @@ from sebody.reduction.loads import named_vectors
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.rigid import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
+from sebody.tabular import counted
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -155,6 +156,11 @@ class ReducedBody:
         skew = (moment - moment.T) / 2
         moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
         return _read_only(middle + moments / self.total_mass)
+
+    def __repr__(self) -> str:
+        nodes = ", ".join(self.keeps)
+        return (f"<ReducedBody: mass {self.total_mass:.6g}, nodes {nodes}, "
+                f"{counted(self.modes, 'mode')}>")
 
     def summary(self) -> str:
         """Order, mass, frequencies and effective masses of the internal modes, and the notes."""

@@ -11,6 +11,7 @@ from scipy.linalg import block_diag
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.reduction.clamped import ClampedInterior
+from sebody.tabular import brief
 
 _ROUNDING = 1e-11  # ratio of stiffness to its summands below which stiffness is rounding error
 
@@ -39,6 +40,8 @@ class ComponentModes:
     omega_squared: NDArray
     on_means: NDArray
     strainless: NDArray = field(default_factory=lambda: np.zeros(0, dtype=int))
+
+    __repr__ = brief
 
     @property
     def basis(self) -> NDArray:

@@ -11,6 +11,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.faces import surface_mass
 from sebody.fem.model import FEModel
+from sebody.tabular import brief
 
 _LINE = 1e-6  # spread beside a line, relative to that along it, that does not hold a rotation
 
@@ -34,6 +35,8 @@ class RigidFace:
 
     point: NDArray
     nodes: tuple[int, ...]
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         point = inputs.vector(self.point, "point of a rigid face")
@@ -68,6 +71,8 @@ class MeanFace:
     nodes: tuple[int, ...]
     point: NDArray | None = None
     weights: str | NDArray = "area"
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "nodes", _nodes(self.nodes, "a mean face", "it is the mean of"))

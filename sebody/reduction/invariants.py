@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
+from sebody.tabular import brief
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +72,8 @@ class InertiaInvariants:
     E: NDArray
     Ghat: NDArray
     origin: NDArray | None = None
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         if self.origin is None:

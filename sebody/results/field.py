@@ -37,6 +37,9 @@ class Field(FieldStates):
         No such superelement, or one without the shapes of an FE model.
     """
 
+    def __repr__(self) -> str:
+        return f"<Field of {self.name!r}: {self.count} FE nodes, {len(self.t)} states>"
+
     def position(self, step: int | None = None, t: float | None = None,
                  axes: str = "global") -> NDArray:
         """Places of all FE nodes, (nodes, D); in body axes from the origin of the frame."""

@@ -11,6 +11,7 @@ from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.layout import ENERGIES, RECORD
 from sebody.model.mechanism import Mechanism
+from sebody.model.tables import summary
 from sebody.results.balance import Balance
 from sebody.results.energy_balance import energy_balance
 from sebody.results.postprocessing import (
@@ -29,7 +30,7 @@ class Start(NamedTuple):
     redundant: tuple[str, ...]      # joints with constraints that others contain
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Recording:
     """A model, its arrays, and the states a run has recorded."""
 
@@ -45,6 +46,12 @@ class Recording:
     error: float | None = None      # estimate over allowed error: see sebody.analysis.accuracy
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
     fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far
+
+    def __repr__(self) -> str:
+        t, kind = self.recorded("t")[:, 0], type(self).__name__
+        end = f"t = {t[0]:.6g} to {t[-1]:.6g}" if len(t) else "no states"
+        return (f"<{kind} of a {summary(self.model)}: {len(t)} states, {end}"
+                + f"; {self.failure}" * bool(self.failure) + ">")
 
     def recorded(self, name: str) -> NDArray:
         """History of one of the parts of `layout.RECORD`, (n, size)."""

@@ -21,6 +21,7 @@ from sebody.analysis.user_faults import refuse_changed
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.model.model import Model
+from sebody.model.tables import summary
 from sebody.reduction import ReducedBody
 
 Values = ArrayLike | Sequence[ReducedBody]
@@ -61,6 +62,9 @@ class Ensemble:
         self.h, self.every = self._template.h, self._template.every
         self._lock = Lock()         # the model is changed for moments
         self._images: dict[tuple[str, ...], Image] = {}
+
+    def __repr__(self) -> str:
+        return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}>"
 
     @property
     def parameters(self) -> list[str]:

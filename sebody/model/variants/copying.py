@@ -11,6 +11,7 @@ from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
+from sebody.model.tables import unknowns
 from sebody.reduction import ReducedBody
 from sebody.spelling import unknown
 
@@ -37,16 +38,9 @@ def copied(model: Mechanism) -> Mechanism:
     return deepcopy(model, {id(one): one for one in constant})
 
 
-def unknowns(model: Mechanism) -> int:
-    """How many unknowns a model has, multipliers included."""
-    return (sum(t.start.size for t in model.triplets() if t.solved)
-            + sum(body.body.modes for body in model.bodies.values())
-            + sum(joint.multipliers for joint in model.joints))
-
-
 def fewer(model: Mechanism, made: Mechanism) -> str:
     """How many unknowns a changed model saves, in words."""
-    saved = unknowns(model) - unknowns(made)
+    saved = sum(unknowns(model)) - sum(unknowns(made))
     return f"{saved} unknown{'s' * (saved != 1)} fewer"
 
 

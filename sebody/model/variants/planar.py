@@ -67,7 +67,7 @@ def planar(model: Mechanism) -> Variant:
                 f"to {place(plane.normal)}, so its motion leaves it: {error}")
         else:
             made = _built(model, flat_model)
-            before, after = unknowns(model), unknowns(made)
+            before, after = sum(unknowns(model)), sum(unknowns(made))
             return Variant(made, f"the model is planar, normal to {place(plane.normal)}: {after} "
                                  f"instead of {before} unknowns{_of_bushings(model)}")
     raise refused
