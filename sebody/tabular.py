@@ -63,7 +63,9 @@ def _short(value: object) -> str:
         return "{" + ", ".join(f"{key}: {_short(one)}" for key, one in value.items()) + "}"
     if isinstance(value, tuple | list) and len(value) > MOST_SHOWN:
         return f"of {len(value)}"
-    return repr(value)
+    shown = repr(value)
+    opaque = "array(" in shown or " object at " in shown
+    return f"of class {type(value).__name__}" if opaque else shown
 
 
 def counted(count: int, what: str) -> str:

@@ -1,5 +1,7 @@
 """Frequencies and rates of growth of small motion over the speed of a steady rotation."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -6,6 +6,8 @@ the forces by the load's amplitude. A quantity follows from its values in states
 along X, in positions, velocities, accelerations and load: whatever has a history has an answer.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path

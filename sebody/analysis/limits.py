@@ -3,6 +3,8 @@
 Only few of the recorded states are checked, after the compiled loop, which is not slowed down.
 """
 
+from __future__ import annotations
+
 import warnings
 from typing import NamedTuple
 

@@ -1,5 +1,7 @@
 """Small motion about a state, at rest or in steady rotation: exact matrices and eigenvalues."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

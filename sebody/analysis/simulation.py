@@ -1,5 +1,7 @@
 """Simulations: a consistent initial state, then calls of the compiled loop."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable
 from functools import cache
@@ -142,7 +144,7 @@ class Simulation:
         return float(self.state.clock[TIME])
 
     def run_to(self, t_end: float,
-               progress: Callable[[float], None] | bool | None = None) -> "Simulation":
+               progress: Callable[[float], None] | bool | None = None) -> Simulation:
         """Advance to the grid step nearest to `t_end`.
 
         Parameters

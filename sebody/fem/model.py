@@ -1,5 +1,7 @@
 """What an FE program hands over: matrices, node coordinates and the meaning of the DOFs."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -14,7 +16,6 @@ from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SOLID, SPATIAL, equal_rows, mapped_rows
 from sebody.fem.mass_field import MassField, nodal_field
 from sebody.fem.stress import SolidStress
-from sebody.tabular import brief
 
 SYMMETRY_LIMIT = 1e-8   # difference of entries across the diagonal, relative to its own entries
 
@@ -79,7 +80,12 @@ class FEModel:
     stress: Sequence[SolidStress | BeamStress] = ()
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        known = {"mass field": self.mass_field, "geometric stiffness": self.geometric_stiffness,
+                 "cells": self.cells, "stress": self.stress, "node sets": self.node_sets}
+        has = ", ".join(name for name, value in known.items() if value)
+        return (f"<FEModel: {len(self.coordinates)} nodes, {self.stiffness.shape[0]} DOFs"
+                + f"; {has}" * bool(has) + ">")
 
     def __post_init__(self) -> None:
         self._check_nodes()

@@ -8,6 +8,8 @@ the tensor's. Those of solids are along the axes of the FE model, those of beams
 the section.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -101,7 +103,7 @@ class SolidStress:
         n, g, c, s = values.shape
         return (to_nodes @ values.reshape(n, g, c * s)).reshape(n, -1, c, s)
 
-    def restricted(self, place: NDArray, coordinates: NDArray) -> "SolidStress":
+    def restricted(self, place: NDArray, coordinates: NDArray) -> SolidStress:
         """Of the elements whose nodes are kept: `place` has their new numbers, -1 for others."""
         kept = np.all(place[self.nodes] >= 0, axis=1)
         law = self.elasticity if self.elasticity.ndim == 2 else self.elasticity[kept]
@@ -150,7 +152,7 @@ class StressModes:
         for name, value in (("points", points), ("modes", modes), ("nodes", nodes)):
             object.__setattr__(self, name, value)
 
-    def restricted(self, place: NDArray, coordinates: NDArray) -> "StressModes":
+    def restricted(self, place: NDArray, coordinates: NDArray) -> StressModes:
         """Of the points that belong to kept nodes."""
         own = np.where(self.nodes < 0, -1, place[self.nodes])
         return StressModes(self.points[own >= 0], self.modes[own >= 0], own[own >= 0])

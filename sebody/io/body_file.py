@@ -5,6 +5,8 @@ Arrays are members by name (``stiffness``, ``mass``, ``coordinates``, ``invarian
 format and version, layout, names of the boundary nodes, units, provenance.
 """
 
+from __future__ import annotations
+
 import json
 import zlib
 from collections.abc import Mapping

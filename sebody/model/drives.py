@@ -1,5 +1,7 @@
 """Drives: prescribed motions of nodes, and of joints by an equation."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -4,6 +4,8 @@ A history of pieces is on each of its intervals a polynomial of degree five at m
 see `History`. Loads need the value alone, drives its first two derivatives, too.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
@@ -124,11 +126,11 @@ class History:
                 found.append((t, np.where(jump, before, after), after))
         return found
 
-    def with_corners(self) -> "History":
+    def with_corners(self) -> History:
         """This history of pieces, its corners where its value or a rate jumps."""
         return replace(self, corners=tuple(t for t, *_ in self.jumps()))
 
-    def from_zero(self) -> "History":
+    def from_zero(self) -> History:
         """The same less its value at t = 0."""
         value = self.at(0.0)[0]
         if value == 0.0 or not np.isfinite(value):

@@ -6,6 +6,8 @@ and its moment are those on `node`, the first of its arguments, from `to` or the
 `sebody.Result`; a joint with an axis has axes whose first direction is this axis.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import NamedTuple
 

@@ -1,5 +1,7 @@
 """Loads of a model: forces and torques, each with a name and its work, and gravity."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable
 
 from numpy.typing import ArrayLike

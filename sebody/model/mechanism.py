@@ -1,5 +1,7 @@
 """The data of a model, and how its parts are found by name."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -1,5 +1,7 @@
 """Nodes of a model: positions, shared triplets, rigid links and initial velocities."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Springs and dampers of a model: between two points, about an axis, along and about all axes."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -22,6 +22,8 @@ Estimates for the same purpose: S.-H. Boo, J.-G. Kim and P.-S. Lee, Int. J. Nume
 modes neither an expansion in the unknown frequency nor samples are needed.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

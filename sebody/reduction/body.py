@@ -1,5 +1,7 @@
 """The superelement in the form the multibody code takes: reduced matrices and their layout."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -201,7 +203,7 @@ class ReducedBody:
             return y
         return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
 
-    def recovering(self, nodes: Iterable[int]) -> "ReducedBody":
+    def recovering(self, nodes: Iterable[int]) -> ReducedBody:
         """The same body with the shapes of some FE nodes alone.
 
         Parameters
@@ -225,7 +227,7 @@ class ReducedBody:
         return replace(self, recovery=self.recovery.restricted(np.array(found)))
 
     def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
-               stiffness: float = 0.0) -> "ReducedBody":
+               stiffness: float = 0.0) -> ReducedBody:
         """The same body with structural damping of its deformation.
 
         Parameters
@@ -255,7 +257,7 @@ class ReducedBody:
         damping = (momenta * (2 * ratio * omega + mass + stiffness * omega**2)) @ momenta.T
         return replace(self, damping=damping)
 
-    def rotated(self, rotation: ArrayLike) -> "ReducedBody":
+    def rotated(self, rotation: ArrayLike) -> ReducedBody:
         """The same body rotated by `rotation` about the FE origin, in the old axes.
 
         Parameters

@@ -1,5 +1,7 @@
 """Shapes of a reduction: of unit boundary coordinates, and internal ones that leave these 0."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -64,7 +66,7 @@ class ComponentModes:
         ])
         return block_diag(boundary, np.diag(self.omega_squared)), reduced_mass
 
-    def with_rigid(self, rigid: NDArray, values: NDArray, strainless: NDArray) -> "ComponentModes":
+    def with_rigid(self, rigid: NDArray, values: NDArray, strainless: NDArray) -> ComponentModes:
         """Constraint modes that make rigid motions (n_dofs, r) of their boundary values (n_b, r).
 
         They are that but for rounding, which is large where parts of the body hang softly. Those
@@ -77,7 +79,7 @@ class ComponentModes:
             np.linalg.pinv(values / unit) / unit.T))
 
     def with_vibrations(self, interior: ClampedInterior, modes: int,
-                        select: Sequence[int] | None = None) -> "ComponentModes":
+                        select: Sequence[int] | None = None) -> ComponentModes:
         """The same boundary with the lowest modes of its interior, or with those selected of them.
 
         Raises

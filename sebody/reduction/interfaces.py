@@ -1,5 +1,7 @@
 """Interfaces that are sets of FE nodes: tied rigidly to a boundary node, or their mean motion."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

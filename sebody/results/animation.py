@@ -1,5 +1,7 @@
 """Animations: one page of HTML that needs nothing else, or a film."""
 
+from __future__ import annotations
+
 import base64
 import html
 import json

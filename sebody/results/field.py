@@ -1,5 +1,7 @@
 """Fields inside a superelement: what its FE nodes do in the recorded states."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """The data of a run, from which all results are read."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple

@@ -1,5 +1,7 @@
 """Results of a run by name: histories of nodes and bodies, energies, the output file."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
@@ -187,7 +189,7 @@ class Result(Recording):
         """
         return save_vtk(self, path, every)
 
-    def to_pandas(self, names: Iterable[str] | None = None) -> "tables.DataFrame":
+    def to_pandas(self, names: Iterable[str] | None = None) -> tables.DataFrame:
         """Histories as columns, ``tip.position.x``, indexed by time (extra ``tables``).
 
         Parameters
@@ -202,12 +204,12 @@ class Result(Recording):
         """
         return tables.to_pandas(self, names)
 
-    def to_xarray(self, names: Iterable[str] | None = None) -> "tables.Dataset":
+    def to_xarray(self, names: Iterable[str] | None = None) -> tables.Dataset:
         """Histories as variables with their units in words (extra ``tables``); see `to_pandas`."""
         return tables.to_xarray(self, names)
 
     @classmethod
-    def load(cls, path: str | Path) -> "Result":
+    def load(cls, path: str | Path) -> Result:
         """A result that `save` has written: it can be asked for all that the saved one could be.
 
         Its `model` is a description: compiled functions are left out, so it cannot be run.

@@ -1,5 +1,7 @@
 """Many runs of one model with other numbers, in threads."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Mapping, Sequence
 from threading import Lock

@@ -1,5 +1,7 @@
 """What many runs gave."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 
 import numpy as np

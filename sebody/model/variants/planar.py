@@ -1,5 +1,7 @@
 """A planar model in the place of a spatial one that is symmetric about a plane."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -121,7 +123,7 @@ class _Flat(NamedTuple):
     loads: dict[int, list[Element]]     # of each load but those on bodies, by its id
 
     @classmethod
-    def of(cls, model: Mechanism, flat: Flattening) -> "_Flat":
+    def of(cls, model: Mechanism, flat: Flattening) -> _Flat:
         """All of a model.
 
         Raises
