@@ -1,7 +1,5 @@
 """Animations: one page of HTML that needs nothing else, or a film."""
 
-from __future__ import annotations
-
 import base64
 import html
 import json
@@ -18,6 +16,7 @@ from sebody.results import film
 from sebody.results.blocks import Blocks
 from sebody.results.curves import Panel, panels
 from sebody.results.drawing import overview
+from sebody.results.notebook import Page, ShownFile
 from sebody.results.result import Result
 from sebody.results.scenery import DrawnBody, Scenery, extent, scenery
 from sebody.results.templates import filled
@@ -36,9 +35,9 @@ SECONDS = 10.0          # that the others take
 LONGEST = 30.0          # seconds of a film without a speed
 
 
-def animate(result: Result, output: str | Path, *quantities: str, title: str = "",
-            speed: float | None = None) -> Path:
-    """Write an animation of a result.
+def animate(result: Result, output: str | Path | None = None, *quantities: str, title: str = "",
+            speed: float | None = None) -> ShownFile | Page:
+    """An animation of a result, which a notebook shows, written to a file if one is given.
 
     A page shows the model from any side, at any speed, with deformations to scale or enlarged,
     coloured by displacement, with paths of nodes and plots; it needs no network and no other file.
@@ -48,8 +47,9 @@ def animate(result: Result, output: str | Path, *quantities: str, title: str = "
     Parameters
     ----------
     result : Result
-    output : str or Path
-        File to write: html, or a film, gif (extra ``plot``) or mp4 (extra ``film``).
+    output : str or Path, optional
+        File to write: html, or a film, gif (extra ``plot``) or mp4 (extra ``film``). Without one
+        a page is returned.
     *quantities : str
         What the plots of a page show, by names as for `sebody.results.plot`; an overview by
         default.
@@ -60,8 +60,8 @@ def animate(result: Result, output: str | Path, *quantities: str, title: str = "
 
     Returns
     -------
-    Path
-        The file written.
+    ShownFile or Page
+        The path of the file written; without one the page, with a method `save`.
 
     Raises
     ------
@@ -72,9 +72,11 @@ def animate(result: Result, output: str | Path, *quantities: str, title: str = "
         Writing fails; an older file is unchanged.
     """
     inputs.instance(result, "result", Result, "give the Result of a run")
-    path = check_animation(output)
     if speed is not None:
         speed = inputs.number(speed, "speed", above=0)
+    if output is None:
+        return Page(page(result, quantities or overview(result), title or "animation", speed))
+    path = ShownFile(check_animation(output))
     title = title or path.stem
     if path.suffix == ".html":
         text = page(result, quantities or overview(result), title, speed)
