@@ -21,7 +21,7 @@ from sebody.spelling import offered, unknown
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,
           amplitude: ArrayLike | Callable[[float], float] | History | None = None,
           follower: bool = False, name: str | None = None) -> Element:
-    """Force on a node: `direction` times a history.
+    """Force on a node: `direction` times a number, a table, a function of time or a profile.
 
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
@@ -41,7 +41,9 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
 def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
            amplitude: ArrayLike | Callable[[float], float] | History | None = None,
            follower: bool = False, name: str | None = None) -> Element:
-    """Torque on a node: `direction` (a number in a plane) times a history.
+    """Torque on a node: `direction` times a number, a table, a function of time or a profile.
+
+    In a plane the direction is a number.
 
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
