@@ -21,7 +21,7 @@ def alike(value, right):
     for kinds in (bool, NUMBERS, str, LISTS):
         if isinstance(right, kinds) or isinstance(value, bool):
             return isinstance(value, kinds) and isinstance(right, kinds)
-    if isinstance(value, Result) and isinstance(right, Simulation):
+    if isinstance(value, Result) and isinstance(right, Simulation | list):     # it lists its names
         return True
     return isinstance(value, type(right)) or callable(right) and callable(value)
 
