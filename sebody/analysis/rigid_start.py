@@ -90,12 +90,20 @@ class _Deformation(NamedTuple):
     def of(cls, body: Superelement, numbering: Numbering) -> "_Deformation":
         """That of a superelement."""
         reduced = body.body
-        if reduced not in _energies:
-            _energies[reduced] = STIFF * _deformation(reduced)
         first = numbering.modes[body.name]
         own = [c for t in (*body.positions, *body.rotations) for c in coordinates(numbering, t)]
         own += range(first, first + reduced.modes)
-        return cls(_energies[reduced], np.array(own), *_by_unknowns(body, numbering))
+        return cls(STIFF * deformation(reduced), np.array(own), *_by_unknowns(body, numbering))
+
+
+def deformation(reduced: ReducedBody) -> NDArray:
+    """Matrix D of a body, ``v^T D v / 2`` being the kinetic energy of its deformation.
+
+    That of the velocities v less that of the rigid motion with the same momenta.
+    """
+    if reduced not in _energies:
+        _energies[reduced] = _deformation(reduced)
+    return _energies[reduced]
 
 
 def _deformation(reduced: ReducedBody) -> NDArray:

@@ -1,5 +1,7 @@
 """Simulations: a consistent initial state, then calls of the compiled loop."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable
 from functools import cache
@@ -7,17 +9,19 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
 from sebody.analysis.first_run import prepare
 from sebody.analysis.initial_state import acceleration_rates, start
+from sebody.analysis.initial_velocities import refuse_contradicted
 from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen
 from sebody.analysis.redundancy import contradiction
 from sebody.analysis.row_exchanges import RowExchanges
-from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.schemes import checked, generalized_alpha
+from sebody.analysis.start_remarks import start_remarks
 from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
@@ -48,6 +52,7 @@ from sebody.engine.state import (
 from sebody.engine.step import write_record
 from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.model.model import Model
+from sebody.model.tables import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 
@@ -84,7 +89,8 @@ class Simulation:
     Raises
     ------
     InputError
-        Bad step or tolerance, singular mass, contradicting constraints, an initial state that
+        Bad step or tolerance, functions that read what has changed since they were compiled,
+        singular mass, contradicting constraints, an initial state that
         violates them, or variable steps with constraints of index 3.
     """
 
@@ -92,11 +98,12 @@ class Simulation:
                  output_every: int = 1, tolerance: Tolerance | None = None):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
-        self.every = inputs.integer(output_every, "output_every", least=1,
+        self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
                                     remedy="give a whole number of steps >= 1")
         if scheme is not None:
-            inputs.instance(scheme, "scheme", Scheme, "give generalized_alpha() or hht()")
+            checked(scheme)
         tolerance = given(tolerance)
+        user_faults.refuse_changed(model)
         prepare([model])
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
@@ -110,6 +117,9 @@ class Simulation:
         self.exchanges = RowExchanges(self.system, self.state)
         user_faults.forget(model)
         self.start: Start = start(model, self.system, self.numbering, self.state)
+        refuse_contradicted(model, self.numbering, self.state)
+        for key, message in start_remarks(model, self.numbering, self.state).items():
+            self.watch.say(key, message)
         self.tolerance = tolerance
         if tolerance is not None:
             self._choose_steps(tolerance)
@@ -124,13 +134,17 @@ class Simulation:
         # no steps yet: the loop is compiled, or read from the cache, before time is measured
         advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
 
+    def __repr__(self) -> str:
+        return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
+                f"{self.h:.6g}, t = {self.time:.6g}>")
+
     @property
     def time(self) -> float:
         """Time reached."""
         return float(self.state.clock[TIME])
 
     def run_to(self, t_end: float,
-               progress: Callable[[float], None] | bool | None = None) -> "Simulation":
+               progress: Callable[[float], None] | bool | None = None) -> Simulation:
         """Advance to the grid step nearest to `t_end`.
 
         Parameters
@@ -142,12 +156,16 @@ class Simulation:
 
         Raises
         ------
+        InputError
+            A time that is past, or a function of a load or drive that reads a value which has
+            changed since it was compiled.
         SimulationError
             When a step does not converge however small; what was computed is kept, also in the
             error's `result`.
         Interrupted
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
+        user_faults.refuse_changed(self.model)
         last = self._last_step(t_end)
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
@@ -191,7 +209,8 @@ class Simulation:
                              "an earlier time or a longer step")
         if round(steps) < self.state.control[GRID]:
             raise InputError(past)
-        if round(steps) == self.state.control[GRID] and abs(steps - round(steps)) > OFF_GRID:
+        there = abs(t_end - self.time) <= OFF_GRID * min(self.h, max(t_end, self.time))
+        if round(steps) == self.state.control[GRID] and not there:
             raise InputError(f"cannot run to t_end = {t_end:g} from t = {self.time:g}: the step is "
                              f"{self.h:g}; give a later time or a smaller step (the step comes "
                              "first)")
@@ -200,11 +219,9 @@ class Simulation:
     def _room(self, last: int) -> Record:
         """An empty record for the states up to a step of the grid."""
         count = last // self.every - int(self.state.control[GRID]) // self.every
-        try:
-            return Record.of(self.state, count, self.every)
-        except (MemoryError, ValueError) as error:      # ValueError: more than any array can hold
-            raise InputError(f"{count} recorded states do not fit into memory: keep fewer with "
-                             "output_every, or give an earlier t_end") from error
+        memory.check(8.0 * count * self.state.now.size, f"a record of {count} states",
+                     "keep fewer with output_every, or give an earlier t_end")
+        return Record.of(self.state, count, self.every)
 
     def _advance(self, record: Record, last: int, t_end: float,
                  progress: Callable[[float], None] | None) -> int:
@@ -238,9 +255,8 @@ class Simulation:
         """The results computed so far."""
         found = Result(self.model, self.numbering, self.system, self.state,
                        np.concatenate(self.rows), self.seconds, self.failure, self.start)
-        if found.steps:
-            self.watch.judge(found)
-        found.warnings = tuple(self.watch.messages)
+        found.warnings = (self.watch.judge(found) if found.steps else
+                          tuple(self.watch.messages))
         return found
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:

@@ -1,9 +1,11 @@
 """Static equilibrium under loads applied in steps, also in a steadily rotating frame."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.analysis import user_faults
 from sebody.analysis.folding import Tensions
 from sebody.analysis.settling import balance, settle
@@ -52,6 +54,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     t = inputs.number(t, "t")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     run = Simulation(model, 1.0)
+    memory.check(8.0 * steps * run.state.now.size, f"steps is {steps}: the record of all",
+                 "give fewer")
     state, field = run.state, run.state.coefficients[FIELD:].copy()
     steady = Spin.of(run, spin)
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0

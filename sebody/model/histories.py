@@ -4,10 +4,13 @@ A history of pieces is on each of its intervals a polynomial of degree five at m
 see `History`. Loads need the value alone, drives its first two derivatives, too.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from math import cos, sin
+from numbers import Number
 
 import numpy as np
 from numba import njit
@@ -17,7 +20,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.user_functions import UserFunction, compile_history
 from sebody.model.derivatives import rates_of
-from sebody.model.functions import OF_TIME, with_bound_defaults, with_compiled_helpers
+from sebody.model.functions import compilable, compiled_history
 
 LOAD, MOTION = "load history", "motion of a drive"
 SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
@@ -86,6 +89,17 @@ class History:
             found += A * np.array([s, w * c, -w * w * s])
         return found
 
+    def described(self) -> str:
+        """What it is, in a few words."""
+        if self.functions:
+            return f"function {getattr(self.functions[0].function, '__name__', '')}".rstrip()
+        if len(self.pieces) == 1 and not self.waves and not any(self.pieces[0][1:]):
+            return f"constant {self.pieces[0][0]:.6g}"
+        return f"{len(self.pieces)} pieces, t = {self.times[0]:.6g} to {self.times[-1]:.6g}"
+
+    def __repr__(self) -> str:
+        return f"<History: {self.described()}>"
+
     def _summands(self, k: int, t: float) -> NDArray:
         """Sums of the sizes of what is added up in `of_piece`: they may cancel but for rounding."""
         x, polynomial = abs(t - self.times[k]), np.polynomial.Polynomial(np.abs(self.pieces[k]))
@@ -112,23 +126,23 @@ class History:
                 found.append((t, np.where(jump, before, after), after))
         return found
 
-    def with_corners(self) -> "History":
+    def with_corners(self) -> History:
         """This history of pieces, its corners where its value or a rate jumps."""
         return replace(self, corners=tuple(t for t, *_ in self.jumps()))
 
-    def from_zero(self) -> "History":
+    def from_zero(self) -> History:
         """The same less its value at t = 0."""
         value = self.at(0.0)[0]
         if value == 0.0 or not np.isfinite(value):
             return self
         if self.functions:
-            return replace(self, functions=(_less(self.functions[0].function, value),
+            return replace(self, functions=(_less(self.functions[0], value),
                                             *self.functions[1:]))
         return replace(self, pieces=tuple((c[0] - value, *c[1:]) for c in self.pieces))
 
 
 def history(source: Source) -> History:
-    """A load history from None (constant 1), a table, a function of time or a ready profile.
+    """A load history from None (1), a number, a table, a function of time or a ready profile.
 
     A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; a
     function is compiled, of a tuple of a function and its rates the function.
@@ -141,12 +155,14 @@ def history(source: Source) -> History:
     """
     if source is None:
         return History()
+    if isinstance(source, Number):
+        return History(pieces=((inputs.number(source, LOAD),),))
     if isinstance(source, History):
         return source
     if _is_function_with_rates(source):
         source = source[0]
     if callable(source):
-        return History(functions=(_compiled(source, LOAD),))
+        return History(functions=(compiled_history(source, LOAD),))
     times, values = table(source, LOAD)
     slopes = np.append(np.diff(values) / np.diff(times), 0.0)
     bends = np.diff(slopes, prepend=0.0) != 0.0
@@ -165,7 +181,7 @@ def with_corners(function: Callable[[float], float], corners: Sequence[float]) -
     remedy = f"corners are {inputs.shown(corners)}: give a list of times"
     times = np.unique(inputs.vector(corners, "corners", remedy=remedy))
     inputs.function(function, "function", "give a function of time")
-    return History(functions=(_compiled(function, LOAD),), corners=tuple(times.tolist()))
+    return History(functions=(compiled_history(function, LOAD),), corners=tuple(times.tolist()))
 
 
 def clock() -> History:
@@ -192,16 +208,19 @@ def motion(source: Source) -> History:
     if isinstance(source, History):
         if len(source.functions) == 1:
             value = source.functions[0]
-            rates = (_compiled(f, MOTION) for f in rates_of(value.function, MOTION))
+            rates = (compiled_history(f, MOTION) for f in rates_of(value.function, MOTION))
             source = replace(source, functions=(value, *rates))
         _refuse_jumps(source)
         return source.from_zero()
     if callable(source):
         source = (source, *rates_of(source, MOTION))
     if _is_function_with_rates(source):
-        functions = tuple(_compiled(f, MOTION) for f in source)
+        functions = tuple(compiled_history(f, MOTION) for f in source)
         _check_rates(functions)
         return History(functions=functions).from_zero()
+    if isinstance(source, Number):
+        raise InputError(f"motion of a drive is {inputs.shown(source)}, always the same: give a "
+                         "table, a function of time or a ready profile, or fix the node")
     times, values = table(source, MOTION)
     if len(times) < 2:
         raise InputError("the motion of a drive has one row: give at least two rows (t, value), "
@@ -255,18 +274,14 @@ def _is_function_with_rates(source: object) -> bool:
     return isinstance(source, tuple) and len(source) == 3 and all(map(callable, source))
 
 
-def _compiled(function: Callable[[float], float], what: str) -> UserFunction:
-    bound = with_bound_defaults(with_compiled_helpers(function), OF_TIME, what)
-    return compile_history(bound, what)
-
-
-def _less(function: Callable[[float], float], value: float) -> UserFunction:
-    inner = njit(function)
+def _less(function: UserFunction, value: float) -> UserFunction:
+    inner = njit(compilable(function.function))
 
     def less(t):
         return inner(t) - value
-    less.__name__ = getattr(function, "__name__", "function")
-    return compile_history(less, MOTION)
+    made = compile_history(less, MOTION)
+    made.function, made.read = function.function, function.read
+    return made
 
 
 def _refuse_jumps(given: History) -> None:
