@@ -11,7 +11,7 @@ from sebody import inputs
 from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
 from sebody.analysis.first_run import prepare
-from sebody.analysis.initial_state import acceleration_rates, start
+from sebody.analysis.initial_state import start
 from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen
@@ -22,12 +22,12 @@ from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import rotational
 from sebody.engine.loop import advance
-from sebody.engine.routines import refactorize_address
+from sebody.engine.routines import addresses
 from sebody.engine.state import (
     ADAPTIVE,
-    AUX_STEP,
     CHOSEN,
     CHUNK,
+    CURRENT_STEP,
     DONE,
     FACTORED,
     FAILED,
@@ -35,6 +35,8 @@ from sebody.engine.state import (
     GAP,
     GRID,
     LARGEST_ERROR,
+    MATRICES,
+    NO_START,
     PHASE,
     PROJECTED,
     REASON,
@@ -111,18 +113,13 @@ class Simulation:
         user_faults.forget(model)
         self.start: Start = start(model, self.system, self.numbering, self.state)
         self.tolerance = tolerance
+        self._accelerate()
         if tolerance is not None:
             self._choose_steps(tolerance)
-        if self.scheme.stabilized:
-            self._offset_accelerations()
-        self.state.aux_old[:] = self.state.aux
-        self.system.routines[0] = refactorize_address(self.system, self.state)
         first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
         write_record(self.state, first)
         self.rows.append(first.rows)
-        # no steps yet: the loop is compiled, or read from the cache, before time is measured
-        advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
 
     @property
     def time(self) -> float:
@@ -263,16 +260,25 @@ class Simulation:
         state.clock[LARGEST_ERROR] = 0.0
         state.control[ADAPTIVE] = 1
 
-    def _offset_accelerations(self) -> None:
-        """Set auxiliary accelerations to those of the later time they belong to.
+    def _accelerate(self) -> None:
+        """Solve for the accelerations and multipliers of the start, by the loop without a step.
 
-        Multipliers of the first steps would show the difference.
+        So the loop is compiled, or read from the cache, before time is measured.
         """
-        scheme, state = self.scheme, self.state
-        h = state.clock[CHOSEN] if self.tolerance else self.h
-        state.clock[AUX_STEP] = h
-        state.aux[:] += (scheme.alpha_m - scheme.alpha_f) * h * acceleration_rates(
-            self.system, self.numbering, state, 1e-3 * h)
+        state, code = self.state, CHUNK
+        self.system.routines[:] = addresses(self.system, state)
+        if self.tolerance is not None:
+            state.clock[CURRENT_STEP] = FIRST_STEP * self.h     # so far ahead it looks
+        none = Record.of(state, 0, self.every)
+        while code not in (DONE, FAILED):
+            self._serve()
+            code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
+        if code == FAILED:
+            raise InputError("the initial state has no accelerations: "
+                             f"{REASONS[int(state.control[REASON])]}; check the loads and the "
+                             "joints at t = 0")
+        state.control[MATRICES] = 0
+        state.aux_old[:] = state.aux
 
     def _explain(self) -> str:
         if fault := user_faults.fault(self.model, self.time):
@@ -282,6 +288,9 @@ class Simulation:
                     f"{contradiction(self.system, self.state, self.numbering)}; results up to "
                     "there are kept")
         reason = REASONS[int(self.state.control[REASON])]
+        if self.state.control[REASON] == NO_START:
+            return (f"stopped at t = {self.time:.6g}, where loads jump: {reason}; results up to "
+                    "there are kept. Check the loads and the joints there")
         shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
         remedy = "a larger tolerance" if self.tolerance else "a smaller step"
         return (f"stopped at t = {self.time:.6g}: {reason}, even with the step cut to "

@@ -41,12 +41,12 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
         index=np.array([i for batch in batches.all for row in batch.rows for i in row]),
         constants=batches.constants, rotation_at=_rotation_starts(numbering),
-        routines=np.zeros(1, dtype=np.int64),
+        routines=np.zeros(2, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
-        **port_arrays(numbering.histories, numbering.prescribed),
-        relaxed=np.zeros(1, dtype=np.int64),
+        **port_arrays(numbering.histories, numbering.prescribed, numbering.jumps),
+        relaxed=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
         damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()

@@ -31,6 +31,7 @@ class Numbering(NamedTuple):
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
+    jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
 
 
 def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
@@ -89,8 +90,10 @@ def number(model: Mechanism) -> Numbering:
         order.place(triplet)
     matrices = [] if model.planar else [t for t in used if t.rotational]
     rotations = {id(t): k for k, t in enumerate(matrices)}
+    ports = number_ports(model, order.at)
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
-                     order.names, dependent, *number_ports(model, order.at), np.array(groups))
+                     order.names, dependent, ports.of, ports.names, ports.histories,
+                     ports.prescribed, np.array(groups), jumps=ports.jumps)
 
 
 class _Order:

@@ -72,6 +72,7 @@ class System(Arrays):
     table_pieces        (times, PIECE) see `sebody.engine.tables`
     functions           (p, 3) addresses of a compiled history and its rates, 0 for a table
     corners             times at which a history has a corner, ascending
+    jumps               1 for those of them at which accelerations jump
     prescribed          (k, 3) coordinate, port, 1 for rotations
     prescribed_factor   (k,) motion of the coordinate by that of the port
     ------------------  ----------------------------------------------------------------------------
@@ -79,8 +80,10 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     links               rigid links
     relaxed             (1,) 1 where constraints are redundant or something without mass can move
+    massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
+                        accelerations
     damped              (1,) 1 where a superelement has structural damping
-    routines            (1,) address of `refactorize`, see `sebody.engine.routines`
+    routines            (2,) addresses of `refactorize` and `restart`, see `sebody.engine.routines`
     ==================  ============================================================================
     """
 
@@ -122,10 +125,12 @@ class System(Arrays):
     table_times: NDArray
     table_pieces: NDArray
     corners: NDArray
+    jumps: NDArray
     functions: NDArray
     prescribed: NDArray
     prescribed_factor: NDArray
     links: Links
     relaxed: NDArray
+    massless: NDArray
     damped: NDArray
     routines: NDArray
