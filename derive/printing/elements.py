@@ -66,14 +66,15 @@ def _names(element: Element) -> set[str]:
 
 
 def _tasks(element: Element) -> list[str]:
-    """Constraints differentiated in time, energies, power."""
+    """Constraints differentiated in time; energies, power, and the forces that have this power."""
     constraints = [f"g[{element.coordinates + k}] = " for k in range(len(element.multipliers))]
     sums = [f"energies[{offset(*SUMS[name])}] += " for name in element.sums]
     power = [] if element.power is None else [element.power]
     return [*_task("VELOCITY", element.velocity, constraints),
             *_task("ACCELERATION", element.second, constraints),
             *_task("ENERGY", list(element.sums.values()), sums),
-            *_task("ENERGY", power, ["energies[POWERS + index[first + AT_PORT]] = "])]
+            *_task("ENERGY", power, ["energies[POWERS + index[first + AT_PORT]] = "]),
+            *_task("ENERGY", element.losses, [f"g[{i}] = " for i in range(len(element.losses))])]
 
 
 def _part(constant: Constant) -> Part:
