@@ -315,6 +315,94 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t941*(2*t932 + 2*t933 + 2*t934)) - Omb_z*(t913*(2*t908 + 2*t909 + 2*t910) +
                 t927*(2*t922 + 2*t923 + 2*t924) + t941*(2*t936 + 2*t937 + 2*t938)) + t963*va_x -
                 t963*vb_x + t964*va_y - t964*vb_y + t965*va_z - t965*vb_z)
+        if task == ENERGY:
+            t900 = -va_x + vb_x
+            t901 = -va_y + vb_y
+            t902 = -va_z + vb_z
+            t903 = -xa_x + xb_x
+            t904 = Ra_xy*t903
+            t905 = -xa_y + xb_y
+            t906 = Ra_yy*t905
+            t907 = -xa_z + xb_z
+            t908 = Ra_zy*t907
+            t909 = t904 + t906 + t908
+            t910 = Ra_xz*t903
+            t911 = Ra_yz*t905
+            t912 = Ra_zz*t907
+            t913 = t910 + t911 + t912
+            t914 = c_x*(-Oma_y*t913 + Oma_z*t909 + Ra_xx*t900 + Ra_yx*t901 + Ra_zx*t902)
+            t915 = Ra_xx*t903
+            t916 = Ra_yx*t905
+            t917 = Ra_zx*t907
+            t918 = t915 + t916 + t917
+            t919 = c_y*(Oma_x*t913 - Oma_z*t918 + Ra_xy*t900 + Ra_yy*t901 + Ra_zy*t902)
+            t920 = c_z*(-Oma_x*t909 + Oma_y*t918 + Ra_xz*t900 + Ra_yz*t901 + Ra_zz*t902)
+            t921 = Ra_xx*t914 + Ra_xy*t919 + Ra_xz*t920
+            t922 = Ra_yx*t914 + Ra_yy*t919 + Ra_yz*t920
+            t923 = Ra_zx*t914 + Ra_zy*t919 + Ra_zz*t920
+            t924 = Ra_xx*Rb_xx
+            t925 = Ra_yx*Rb_yx
+            t926 = Ra_zx*Rb_zx
+            t927 = Omb_x*(t924 + t925 + t926)
+            t928 = Ra_xx*Rb_xy
+            t929 = Ra_yx*Rb_yy
+            t930 = Ra_zx*Rb_zy
+            t931 = Omb_y*(t928 + t929 + t930)
+            t932 = Ra_xx*Rb_xz
+            t933 = Ra_yx*Rb_yz
+            t934 = Ra_zx*Rb_zz
+            t935 = Omb_z*(t932 + t933 + t934)
+            t936 = (0.5)*ct_x
+            t937 = 2*t910 + 2*t911 + 2*t912
+            t938 = (0.5)*t919
+            t939 = 2*t904 + 2*t906 + 2*t908
+            t940 = (0.5)*t920
+            t941 = Ra_xy*Rb_xx
+            t942 = Ra_yy*Rb_yx
+            t943 = Ra_zy*Rb_zx
+            t944 = Omb_x*(t941 + t942 + t943)
+            t945 = Ra_xy*Rb_xy
+            t946 = Ra_yy*Rb_yy
+            t947 = Ra_zy*Rb_zy
+            t948 = Omb_y*(t945 + t946 + t947)
+            t949 = Ra_xy*Rb_xz
+            t950 = Ra_yy*Rb_yz
+            t951 = Ra_zy*Rb_zz
+            t952 = Omb_z*(t949 + t950 + t951)
+            t953 = (0.5)*ct_y
+            t954 = (0.5)*t914
+            t955 = 2*t915 + 2*t916 + 2*t917
+            t956 = Ra_xz*Rb_xx
+            t957 = Ra_yz*Rb_yx
+            t958 = Ra_zz*Rb_zx
+            t959 = Omb_x*(t956 + t957 + t958)
+            t960 = Ra_xz*Rb_xy
+            t961 = Ra_yz*Rb_yy
+            t962 = Ra_zz*Rb_zy
+            t963 = Omb_y*(t960 + t961 + t962)
+            t964 = Ra_xz*Rb_xz
+            t965 = Ra_yz*Rb_yz
+            t966 = Ra_zz*Rb_zz
+            t967 = Omb_z*(t964 + t965 + t966)
+            t968 = (0.5)*ct_z
+            t969 = t936*(-Oma_x + t927 + t931 + t935)
+            t970 = t953*(-Oma_y + t944 + t948 + t952)
+            t971 = t968*(-Oma_z + t959 + t963 + t967)
+            g[0] = -t921
+            g[1] = -t922
+            g[2] = -t923
+            g[3] = t921
+            g[4] = t922
+            g[5] = t923
+            g[6] = t936*(2*Oma_x - 2*t927 - 2*t931 - 2*t935) + t937*t938 - t939*t940
+            g[7] = -t937*t954 + t940*t955 + t953*(2*Oma_y - 2*t944 - 2*t948 - 2*t952)
+            g[8] = -t938*t955 + t939*t954 + t968*(2*Oma_z - 2*t959 - 2*t963 - 2*t967)
+            g[9] = (t969*(2*t924 + 2*t925 + 2*t926) + t970*(2*t941 + 2*t942 + 2*t943) +
+                t971*(2*t956 + 2*t957 + 2*t958))
+            g[10] = (t969*(2*t928 + 2*t929 + 2*t930) + t970*(2*t945 + 2*t946 + 2*t947) +
+                t971*(2*t960 + 2*t961 + 2*t962))
+            g[11] = (t969*(2*t932 + 2*t933 + 2*t934) + t970*(2*t949 + 2*t950 + 2*t951) +
+                t971*(2*t964 + 2*t965 + 2*t966))
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]

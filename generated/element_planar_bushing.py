@@ -127,6 +127,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             energies[POWERS + index[first + AT_PORT]] = (-Oma_z*(t900*t901 + (0.5)*t908*(2*t905 -
                 2*t907) + (0.5)*t912*(-2*t909 - 2*t910)) + Omb_z*t900*t901 + t913*va_y - t913*vb_y
                 + t914*va_x - t914*vb_x)
+        if task == ENERGY:
+            t900 = -va_x + vb_x
+            t901 = -va_y + vb_y
+            t902 = -xa_y + xb_y
+            t903 = Ra_cos*t902
+            t904 = -xa_x + xb_x
+            t905 = Ra_sin*t904
+            t906 = c_x*(Oma_z*(t903 - t905) + Ra_cos*t900 + Ra_sin*t901)
+            t907 = Ra_cos*t904
+            t908 = Ra_sin*t902
+            t909 = -Oma_z*(t907 + t908) + Ra_cos*t901 - Ra_sin*t900
+            t910 = Ra_cos*t906 - Ra_sin*c_y*t909
+            t911 = c_y*t909
+            t912 = Ra_cos*t911 + Ra_sin*t906
+            t913 = 2*Oma_z - 2*Omb_z
+            t914 = (0.5)*ct_z
+            g[0] = -t910
+            g[1] = -t912
+            g[2] = t910
+            g[3] = t912
+            g[4] = (0.5)*t906*(2*t903 - 2*t905) + (0.5)*t911*(-2*t907 - 2*t908) + t913*t914
+            g[5] = -t913*t914
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]
