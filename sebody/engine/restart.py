@@ -37,6 +37,7 @@ from sebody.engine.state import (
     FACTOR,
     FACTORED,
     FAILED,
+    FLOOR,
     FRESH,
     ITERATE,
     ITERATION,
@@ -75,6 +76,7 @@ ACCURATE = 1e-10        # correction, relative to accelerations and multipliers,
 ROUNDED = 1e-6          # the same that may be left where new matrices do not help
 POOR = 0.3              # a contraction rate above this asks for a new matrix
 HARDLY = 0.5            # and above this rounding is all that is left, if little is
+SUMMANDS = 10.0         # roundings in what velocities make of accelerations
 CONTRADICTION = 1e-7    # residual, relative to the solution, of constraints that contradict others
 SHORT = 1e-3            # of a step: how far to look ahead
 
@@ -199,7 +201,7 @@ def _correct(system, state):
     control[ITERATION] += 1
     if not np.isfinite(norm):
         return FAILED
-    if norm <= ACCURATE * size or (rate > HARDLY and norm <= ROUNDED * size):
+    if norm <= max(ACCURATE * size, _rounding(system, state)) or (rate > HARDLY and norm <= ROUNDED * size):
         # what the corrections of a regularized matrix leave is a contradiction
         gap = control[RELAXED] == 1 and np.sqrt(left) > n * norm + CONTRADICTION * size
         return FAILED if gap else DONE
@@ -208,6 +210,20 @@ def _correct(system, state):
     ended = control[ITERATION] >= MOST_CORRECTIONS or (rate > POOR
                                                        and control[FRESH] >= MOST_MATRICES)
     return FAILED if ended else SOLVE
+
+
+@compiled
+def _rounding(system, state):
+    """Norm of accelerations that are rounding.
+
+    They move positions by less than their rounding in a step, or are rounding of what the
+    velocities make.
+    """
+    speed, h = 0.0, state.clock[CURRENT_STEP]
+    for i in range(state.v.size):
+        if system.magnitude[i] > 0.0:
+            speed = max(speed, abs(state.v[i]) / system.magnitude[i])
+    return state.clock[FLOOR] * (1.0 / (h * h) + SUMMANDS * speed * speed)
 
 
 @compiled

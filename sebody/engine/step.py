@@ -45,7 +45,7 @@ from sebody.engine.state import (
     UNIT,
     WANTED,
 )
-from sebody.engine.step_control import NEAR, SHORTEST, go_on, set_end
+from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, go_on, set_end
 from sebody.engine.vectors import copy
 from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
@@ -152,9 +152,14 @@ def accept(system, state, record):
 
 @compiled(forceinline=True)
 def go_on_grid(state, record):
-    """Write output, set time and length of the next step; steps are parts of grid steps."""
+    """Write output, set time and length of the next step; steps are parts of grid steps.
+
+    What a jump leaves of a step may be very short: accelerations of constraints of index 3 that
+    have not settled in it would spoil the next step.
+    """
     clock, control = state.clock, state.control
-    if control[MEETS] == JUMP:
+    short = clock[STEP] / (1 << control[LEVEL]) > LONGEST * clock[CURRENT_STEP]
+    if control[MEETS] == JUMP or (control[INSIDE] == 1 and short):
         control[RESTART] = ASKED
     if control[SPLIT] == 1:
         clock[TIME], control[INSIDE] = clock[END], 1
@@ -169,7 +174,7 @@ def go_on_grid(state, record):
     clock[TIME] = (control[GRID] + control[UNIT] / FINEST) * clock[STEP]
     if control[MEETS] == JUMP:
         clock[TIME] = clock[END]
-    elif control[DUE] == 1:
+    if control[DUE] == 1 and control[RESTART] == 0:
         write_record(state, record)
     while control[LEVEL] > 0 and control[UNIT] % (FINEST >> (control[LEVEL] - 1)) == 0:
         control[LEVEL] -= 1                 # try the longer step again
