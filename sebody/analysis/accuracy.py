@@ -9,9 +9,10 @@ from sebody import inputs
 from sebody.analysis.progress import showing
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance, given
-from sebody.assembly.numbering import rotational
+from sebody.assembly.numbering import placed, rotational
 from sebody.engine.state import Scheme
 from sebody.errors import Interrupted, LimitWarning, SimulationError
+from sebody.model.extent import extent
 from sebody.model.model import Model
 from sebody.results.result import Result
 
@@ -57,8 +58,7 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     """
     inputs.instance(model, "model", Model, "give a sebody.Model")
     wanted = given(tolerance) or Tolerance()
-    points = [np.abs(node.point).max() for node in model.nodes.values()]
-    wanted.check_reachable(max(points, default=0.0))
+    wanted.check_reachable(extent(model))
     with showing(progress, t_end) as show:
         return _refined(model, h, t_end, wanted, scheme, show)
 
@@ -103,11 +103,12 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
 
 def difference(one: Result, other: Result, allowed: Tolerance) -> float:
     """Largest root mean square difference of two runs on one grid, relative to the allowed one."""
-    size, rotations = one.system.magnitude, rotational(one.model, one.numbering)
+    own, rotations = placed(one.model, one.numbering), rotational(one.model, one.numbering)
     if not one.model.planar:
-        size = np.where(rotations, 0.0, size)       # rotations are compared by their matrices
-    q = one.recorded("q") - other.recorded("q")
-    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, rotations)
+        own &= ~rotations       # these are compared by their matrices
+    q = (one.recorded("q") - other.recorded("q"))[:, own]
+    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(one.system.magnitude[own],
+                                                           rotations[own])
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
-    return float(max(found.max(), (angles / allowed.allowed(1.0, True)).max(initial=0.0)))
+    return float(max(found.max(initial=0.0), (angles / allowed.allowed(1.0, True)).max(initial=0.0)))

@@ -45,8 +45,8 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     if did := fault(model, 0.0):
         raise InputError(f"{WHAT} cannot be evaluated: {did}")
     residuals = state.residual[multipliers]
-    _check(residuals, np.abs(state.q).max(), "position", multipliers, numbering,
-           "start from a state the joints allow")
+    _check(residuals, _lengths(model, system, numbering, state)[multipliers], "position",
+           multipliers, numbering, "start from a state the joints allow")
     system.inertias[:numbering.free] = part_sizes(masses, system)
     solver = Solver(masses, system, numbering)
     changed = follow_drives(model, system, numbering, state, masses,
@@ -77,11 +77,22 @@ def _masses(system: System, state: State) -> csc_matrix:
     return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0)
 
 
-def _check(values: NDArray, size: float, what: str, multipliers: NDArray, numbering: Numbering,
+def _lengths(model: Mechanism, system: System, numbering: Numbering, state: State) -> NDArray:
+    """What residuals of constraints are compared with: sizes of positions, or one radian."""
+    found = np.full(numbering.total, max(np.abs(state.q).max(), system.magnitude.max()))
+    for equation in model.constraints:
+        if all(triplet.rotational for triplet in equation.triplets):
+            first = numbering.multipliers[id(equation)]
+            found[first:first + equation.multipliers] = 1.0
+    return found
+
+
+def _check(values: NDArray, size: NDArray | float, what: str, multipliers: NDArray, numbering: Numbering,
            remedy: str) -> None:
     if values.size:
-        worst = int(np.argmax(np.abs(values)))
-        if not abs(values[worst]) <= SMALL * max(size, 1e-300):
+        excess = np.abs(values) / np.maximum(size, 1e-300)
+        worst = int(np.argmax(excess))
+        if not excess[worst] <= SMALL:
             raise InputError(f"the initial {what} violates "
                              f"{numbering.names[multipliers[worst]]} by {abs(values[worst]):.3g}: "
                              f"{remedy}")

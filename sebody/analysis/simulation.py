@@ -20,7 +20,7 @@ from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
-from sebody.assembly.numbering import rotational
+from sebody.assembly.numbering import placed, rotational
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import (
@@ -253,8 +253,9 @@ class Simulation:
     def _choose_steps(self, tolerance: Tolerance) -> None:
         """Switch on variable steps; the first step is short against the accelerations."""
         n, state = self.numbering.free, self.state
-        rotations = rotational(self.model, self.numbering)[:n]
-        state.error_weights[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], rotations)
+        own = np.flatnonzero(placed(self.model, self.numbering)[:n])
+        state.error_weights[own] = 1.0 / tolerance.allowed(
+            self.system.magnitude[own], rotational(self.model, self.numbering)[own])
         bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
         state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock[LARGEST_ERROR] = 0.0

@@ -50,17 +50,27 @@ class Tolerance(NamedTuple):
             Positions or rotations are allowed less than `FINEST`.
         """
         sizes, rotational = np.array([extent, 1.0]), np.array([False, True])
-        found = (self.allowed(sizes, rotational) / np.maximum(sizes, 1e-300)).min()
+        found = (self.allowed(sizes, rotational) / sizes)[sizes > 0.0].min()
         if found < FINEST:
             raise InputError(f"the tolerance allows errors of {found:.3g}, relative to the model's "
                              f"extent or in radians: give at least {FINEST:g}, below which shorter "
                              "steps do not help")
 
     def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
-        """Allowed error of coordinates of a magnitude; infinite where that is zero."""
+        """Allowed error of positions and rotations of a magnitude.
+
+        Raises
+        ------
+        InputError
+            None at all: of positions in a model in which nothing has a length.
+        """
         absolute = np.where(rotational, self.rotation, self.position)
-        size = np.asarray(magnitude)
-        return np.where(size > 0.0, absolute + self.relative * size, np.inf)
+        found = absolute + self.relative * np.asarray(magnitude)
+        if np.any(found == 0.0):
+            raise InputError("nothing in the model has a length, so a relative tolerance says "
+                             "nothing about positions: give an absolute one, too, such as "
+                             "Tolerance(1e-3, position=1e-6)")
+        return found
 
 
 def given(tolerance: "Tolerance | None") -> "Tolerance | None":

@@ -14,6 +14,7 @@ from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.kernels.layout import scratch_size
 from sebody.kernels.loader import element_kernel, load
+from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
 
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
@@ -101,10 +102,10 @@ def _rotation_starts(numbering: Numbering) -> NDArray:
 
 def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
     """Magnitudes of coordinates: the model's extent for positions, one radian for rotations."""
-    extent = np.abs([n.point for n in model.nodes.values()]).max()
+    length = extent(model)
     size = np.zeros(numbering.total)
     for node in model.nodes.values():
-        for triplet, magnitude in ((node.position, extent), (node.rotation, 1.0)):
+        for triplet, magnitude in ((node.position, length), (node.rotation, 1.0)):
             if triplet is not None and id(triplet) in numbering.triplets:
                 size[stretch(numbering, triplet)] = magnitude
     return size

@@ -55,6 +55,17 @@ def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
     return found
 
 
+def placed(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Which coordinates belong to positions or rotations, (total,) of bool: no modes, multipliers.
+    """
+    found = np.zeros(numbering.total, dtype=bool)
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                found[coordinates(numbering, triplet)] = True
+    return found
+
+
 def number(model: Mechanism) -> Numbering:
     """Number the unknowns body by body; a triplet that bodies share belongs to the last of them.
 
