@@ -111,4 +111,5 @@ def difference(one: Result, other: Result, allowed: Tolerance) -> float:
                                                            rotations[own])
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
-    return float(max(found.max(initial=0.0), (angles / allowed.allowed(1.0, True)).max(initial=0.0)))
+    found = np.append(found, angles / allowed.allowed(1.0, True))
+    return float(found.max(initial=0.0))

@@ -87,8 +87,8 @@ def _lengths(model: Mechanism, system: System, numbering: Numbering, state: Stat
     return found
 
 
-def _check(values: NDArray, size: NDArray | float, what: str, multipliers: NDArray, numbering: Numbering,
-           remedy: str) -> None:
+def _check(values: NDArray, size: NDArray | float, what: str, multipliers: NDArray,
+           numbering: Numbering, remedy: str) -> None:
     if values.size:
         excess = np.abs(values) / np.maximum(size, 1e-300)
         worst = int(np.argmax(excess))

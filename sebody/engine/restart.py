@@ -125,7 +125,7 @@ def restart(system, state, lead, dense):
         if verdict == DONE:
             if lead == 0.0:
                 copy(state.a, state.aux)
-                state.clock[AUX_STEP] = np.inf
+                state.clock[AUX_STEP] = state.clock[CURRENT_STEP]
                 return _end(system, state)
             _look_ahead(system, state)
 
@@ -201,7 +201,8 @@ def _correct(system, state):
     control[ITERATION] += 1
     if not np.isfinite(norm):
         return FAILED
-    if norm <= max(ACCURATE * size, _rounding(system, state)) or (rate > HARDLY and norm <= ROUNDED * size):
+    none = max(ACCURATE, ROUNDED if rate > HARDLY else 0.0) * size + _rounding(system, state)
+    if norm <= none:
         # what the corrections of a regularized matrix leave is a contradiction
         gap = control[RELAXED] == 1 and np.sqrt(left) > n * norm + CONTRADICTION * size
         return FAILED if gap else DONE
