@@ -26,7 +26,8 @@ HOPELESS = 0.5      # two refinements must reduce the difference of runs by this
 
 def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance | None = None,
                     scheme: Scheme | None = None,
-                    progress: Callable[[float], None] | bool | None = None) -> Result:
+                    progress: Callable[[float], None] | bool | None = None,
+                    start: Result | None = None) -> Result:
     """Run a model so that its error in time is within a tolerance; steps are chosen.
 
     The run is repeated with a finer local tolerance until the difference of the last two runs shows
@@ -40,7 +41,7 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
         Output grid [time].
     tolerance : Tolerance
         Allowed error of the run, by default 1e-3 of the extent and 1e-3 rad.
-    scheme, progress
+    scheme, progress, start
         As for `Simulation` and its `run_to`; a bar counts the runs.
 
     Returns
@@ -60,11 +61,11 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     wanted = given(tolerance) or Tolerance()
     wanted.check_reachable(extent(model))
     with showing(progress, t_end) as show:
-        return _refined(model, h, t_end, wanted, scheme, show)
+        return _refined(model, h, t_end, wanted, scheme, show, start)
 
 
 def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Scheme | None,
-             progress: Callable[[float], None] | None) -> Result:
+             progress: Callable[[float], None] | None, start: Result | None) -> Result:
     """The run that is within the tolerance `wanted`, after coarser ones."""
     share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
     before: Result | None = None
@@ -74,7 +75,8 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
         try:
             with warnings.catch_warnings():     # what is wrong with a coarse run need not stay
                 warnings.simplefilter("ignore", LimitWarning)
-                now = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
+                run = Simulation(model, h, scheme, tolerance=local, start=start)
+                now = run.run_to(t_end, progress).result()
         except KeyboardInterrupt as stop:
             if before is None:
                 raise

@@ -25,7 +25,7 @@ SMALL = 1e-8            # largest residual of constraints, relative to positions
 HEAVY = 1e10            # added mass, relative, that keeps velocities the user gave
 
 
-def start(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
+def begin(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
     """Fit the velocities to the constraints, and ask for accelerations and multipliers.
 
     The time loop solves for these before its first step, see `sebody.engine.restart`.

@@ -16,9 +16,10 @@ from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.model.model import Model
 
-VERSION = 2
+VERSION = 3
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
+OF_START = "relaxed", "massless", "inertias", "thin"    # of the system, found at the start
 FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old")
 
 
@@ -38,8 +39,8 @@ def save_state(run: Simulation, path: str | Path) -> Path:
                 "model": fingerprint(run)}
     arrays = {field.name: getattr(run.state, field.name) for field in fields(State)}
     with replacing(path, TARGET[0]) as file:
-        np.savez(file, settings=json.dumps(settings), relaxed=run.system.relaxed,
-                 rows=np.concatenate(run.rows), **arrays)
+        np.savez(file, settings=json.dumps(settings), rows=np.concatenate(run.rows), **arrays,
+                 **{name: getattr(run.system, name) for name in OF_START})
     return path
 
 
@@ -68,7 +69,8 @@ def resume(model: Model, path: str | Path) -> Simulation:
                              "run the model again")
     for name, array in fits.items():
         array[...] = arrays[name]
-    run.system.relaxed[:] = arrays["relaxed"]
+    for name in OF_START:
+        getattr(run.system, name)[:] = arrays[name]
     run.rows = [arrays["rows"]]
     run.seconds = settings["seconds"]
     if run.state.control[PIVOTED]:
@@ -93,7 +95,7 @@ def _read(path: Path) -> tuple[dict, dict]:
     if version != VERSION:
         raise InputError(f"restart file {path} is of version {version}, this program writes "
                          f"{VERSION}: run the model again")
-    wanted = {"settings", "relaxed", "rows", *(field.name for field in fields(State))}
+    wanted = {"settings", "rows", *OF_START, *(field.name for field in fields(State))}
     differing = missing | set(arrays) ^ wanted
     if differing:
         raise InputError(f"restart file {path} was written by another version of sebody (it "

@@ -11,7 +11,7 @@ from sebody.analysis.redundancy import least
 from sebody.analysis.sparse import SINGULAR, Scaled, factors
 from sebody.engine.matrix import sum_matrices
 from sebody.engine.relaxation import PROJECTIONS, RELAXATION, relax
-from sebody.engine.state import RELAXED, RESTART, State
+from sebody.engine.state import FACTORED, PHASE, PROJECTED, RELAXED, RESTART, SOLVED, State
 from sebody.engine.system import System
 
 THRESHOLD = 0.01        # pivots on the diagonal are kept down to this share of the largest
@@ -24,6 +24,14 @@ class RowExchanges:
         self.system, self.state = system, state
         self._factors = None
         self._solver: Callable[[NDArray], NDArray] | None = None    # of a restart
+
+    def serve(self) -> None:
+        """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
+        phase = self.state.control[PHASE]
+        if phase == FACTORED:
+            self.factorize()
+        elif phase in (PROJECTED, SOLVED):
+            self.solve()
 
     def factorize(self) -> None:
         """Factorize the sum in `State.matrix`."""

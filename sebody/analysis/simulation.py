@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
+from sebody.analysis.failures import explained
 from sebody.analysis.first_run import prepare
-from sebody.analysis.initial_state import start
+from sebody.analysis.given_start import take
+from sebody.analysis.initial_state import begin
 from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen
-from sebody.analysis.redundancy import contradiction
 from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance, given
@@ -29,20 +30,13 @@ from sebody.engine.state import (
     CHUNK,
     CURRENT_STEP,
     DONE,
-    FACTORED,
     FAILED,
-    FINEST,
-    GAP,
     GRID,
     LARGEST_ERROR,
     MATRICES,
-    NO_START,
-    PHASE,
-    PROJECTED,
     REASON,
     REASONS,
     RECORDED,
-    SOLVED,
     TIME,
     Record,
     Scheme,
@@ -77,6 +71,9 @@ class Simulation:
         Allowed error of a step. With a tolerance, step lengths are chosen, steps end at corners of
         load tables, and `h` is only the output grid, on which the state is interpolated. Errors of
         many steps add up: see `simulate_within` for the error of the whole run.
+    start : Result, optional
+        State to start from in place of the model as built: of an `equilibrium`, at which nothing
+        rings, or the end of a run. Initial velocities that the model gives stay.
 
     Attributes
     ----------
@@ -91,7 +88,8 @@ class Simulation:
     """
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
-                 output_every: int = 1, tolerance: Tolerance | None = None):
+                 output_every: int = 1, tolerance: Tolerance | None = None,
+                 start: Result | None = None):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
         self.every = inputs.integer(output_every, "output_every", least=1,
@@ -111,7 +109,9 @@ class Simulation:
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
         user_faults.forget(model)
-        self.start: Start = start(model, self.system, self.numbering, self.state)
+        if start is not None:
+            take(model, self.numbering, self.state, start)
+        self.start: Start = begin(model, self.system, self.numbering, self.state)
         self.tolerance = tolerance
         self._accelerate()
         if tolerance is not None:
@@ -164,7 +164,7 @@ class Simulation:
             self.rows.append(record.rows[:self.state.control[RECORDED]])
         self.watch.look(self.model, self.numbering, self.rows[-1])
         if code == FAILED:
-            self.failure = self._explain()
+            self.failure = explained(self)
             raise SimulationError(self.failure, self.result())
         if code != DONE:
             result = self.result()
@@ -209,7 +209,7 @@ class Simulation:
         code, chunk, looked = CHUNK, FIRST_CHUNK, time.perf_counter()
         while code not in (DONE, FAILED):
             began = time.perf_counter()
-            self._serve()
+            self.exchanges.serve()
             code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
             now = time.perf_counter()
             self.seconds += now - began
@@ -222,14 +222,6 @@ class Simulation:
             elif waited > LOOK:         # steps that Python helps with are not counted: stop at
                 chunk = 0               # the beginning of the next one
         return code
-
-    def _serve(self) -> None:
-        """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
-        phase = self.state.control[PHASE]
-        if phase == FACTORED:
-            self.exchanges.factorize()
-        elif phase in (PROJECTED, SOLVED):
-            self.exchanges.solve()
 
     def result(self) -> Result:
         """The results computed so far."""
@@ -272,7 +264,7 @@ class Simulation:
             state.clock[CURRENT_STEP] = FIRST_STEP * self.h     # so far ahead it looks
         none = Record.of(state, 0, self.every)
         while code not in (DONE, FAILED):
-            self._serve()
+            self.exchanges.serve()
             code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
@@ -280,23 +272,6 @@ class Simulation:
                              "joints at t = 0")
         state.control[MATRICES] = 0
         state.aux_old[:] = state.aux
-
-    def _explain(self) -> str:
-        if fault := user_faults.fault(self.model, self.time):
-            return f"stopped at t = {self.time:.6g}: {fault}; results up to there are kept"
-        if self.state.control[REASON] == GAP:
-            return (f"stopped at t = {self.time:.6g}: "
-                    f"{contradiction(self.system, self.state, self.numbering)}; results up to "
-                    "there are kept")
-        reason = REASONS[int(self.state.control[REASON])]
-        if self.state.control[REASON] == NO_START:
-            return (f"stopped at t = {self.time:.6g}, where loads jump: {reason}; results up to "
-                    "there are kept. Check the loads and the joints there")
-        shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
-        remedy = "a larger tolerance" if self.tolerance else "a smaller step"
-        return (f"stopped at t = {self.time:.6g}: {reason}, even with the step cut to "
-                f"{shortest:.3g}; results up to there are kept. Use {remedy}, "
-                "check the loads, or split the body into more superelements")
 
 
 @cache
@@ -307,6 +282,7 @@ def _default(index: int) -> Scheme:
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
-             tolerance: Tolerance | None = None) -> Result:
+             tolerance: Tolerance | None = None, start: Result | None = None) -> Result:
     """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
-    return Simulation(model, h, scheme, output_every, tolerance).run_to(t_end, progress).result()
+    run = Simulation(model, h, scheme, output_every, tolerance, start)
+    return run.run_to(t_end, progress).result()

@@ -20,7 +20,9 @@ from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.model.model import Model
 from sebody.reduction import ReducedBody
+from sebody.results.result import Result
 
+PLACING = ".position", ".rotation"      # parameters that move where runs begin
 Values = ArrayLike | Sequence[ReducedBody]
 
 
@@ -37,6 +39,9 @@ class Ensemble:
         `generalized_alpha` with rho 0.9 by default.
     output_every : int
         Every so many steps a state is recorded, from which outputs are made.
+    start : Result, optional
+        State at which all runs start, see `Simulation`: initial positions and rotations cannot be
+        varied then.
 
     Raises
     ------
@@ -53,9 +58,9 @@ class Ensemble:
     """
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
-                 output_every: int = 1):
-        self.model, self.scheme = model, scheme
-        self._template = Simulation(model, h, scheme, output_every)
+                 output_every: int = 1, start: Result | None = None):
+        self.model, self.scheme, self._start = model, scheme, start
+        self._template = Simulation(model, h, scheme, output_every, start=start)
         self.h, self.every = self._template.h, self._template.every
         self._lock = Lock()         # the model is changed for moments
         self._images: dict[tuple[str, ...], Image] = {}
@@ -101,7 +106,7 @@ class Ensemble:
         outcome = self._empty(kept, shapes, runs, last)
         began = time.perf_counter()
         work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
-                    self._lock)
+                    self._lock, self._start)
         work.go(min(threads, max(runs, 1)), progress)
         outcome.seconds = time.perf_counter() - began
         return outcome
@@ -123,6 +128,9 @@ class Ensemble:
                  ) -> tuple[dict[str, Handle], int, int, dict[str, Output]]:
         """Handles, number of runs, last step, outputs."""
         found, runs = given(self.model, parameters) if parameters != {} else ({}, 1)
+        if placing := [name for name in found if self._start and name.endswith(PLACING)]:
+            raise InputError(f"{placing[0]} cannot be varied: all runs begin at the start that was "
+                             "given; leave it out, or build an ensemble without a start")
         last = self._last_step(t_end)
         return found, runs, last, outputs_of(outputs, last * self.h)
 

@@ -17,15 +17,11 @@ from sebody.engine.loop import advance
 from sebody.engine.state import (
     ASKED,
     DONE,
-    FACTORED,
     FAILED,
-    PHASE,
-    PROJECTED,
     REASON,
     REASONS,
     RECORDED,
     RESTART,
-    SOLVED,
     TIME,
     Record,
     State,
@@ -150,11 +146,7 @@ class Course:
     def _advance(self, record: Record, last: int, stop: Stop) -> int:
         run, state, chunk = self.run, self.run.state, 1000
         while True:
-            phase = state.control[PHASE]
-            if phase == FACTORED:
-                run.exchanges.factorize()
-            elif phase in (PROJECTED, SOLVED):
-                run.exchanges.solve()
+            run.exchanges.serve()
             began = time.perf_counter()
             code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
             if code in (DONE, FAILED) or stop():
