@@ -16,7 +16,7 @@ from sebody.analysis.given_start import take
 from sebody.analysis.initial_state import begin
 from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
-from sebody.analysis.pulses import unseen
+from sebody.analysis.pulses import unseen, untold
 from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.tolerance import Tolerance, given
@@ -152,6 +152,8 @@ class Simulation:
         if self.state.control[ADAPTIVE] == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)
+            for name, message in untold(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"jump {name}", message)
         record = self._room(last)
         self.state.control[RECORDED] = 0
         code = CHUNK
