@@ -166,7 +166,7 @@ class Simulation:
             self.rows.append(record.rows[:self.state.control[RECORDED]])
         self.watch.look(self.model, self.numbering, self.rows[-1])
         if code == FAILED:
-            self.failure = explained(self)
+            self.failure = explained(self.model, self.system, self.state, self.numbering)
             raise SimulationError(self.failure, self.result())
         if code != DONE:
             result = self.result()

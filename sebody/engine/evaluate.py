@@ -7,7 +7,7 @@ from numba.extending import intrinsic
 from sebody.engine.links import place_dependent, pull_back
 from sebody.engine.tables import history_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
-from sebody.kernels.layout import C_DAMPING, OK, RESIDUAL, VELOCITY
+from sebody.kernels.layout import C_DAMPING, CLOCK, OK, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import rotate, tangent_operator
 
@@ -58,6 +58,9 @@ def set_loads_beside(system, loads, t, beside):
         if system.functions[k, 0] == 0:
             history_at(system.table_times, system.table_pieces, system.table_at[k],
                        system.table_at[k + 1] - 1, t, beside, loads, 3 * k)
+            continue
+        if system.functions[k, 0] == CLOCK:     # what is read at this time may jump
+            loads[3 * k], loads[3 * k + 1], loads[3 * k + 2] = t + beside, 1.0, 0.0
             continue
         for i in range(3):
             loads[3 * k + i] = (_call_function(system.functions[k, i], t + beside)

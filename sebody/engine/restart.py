@@ -203,8 +203,10 @@ def _correct(system, state):
         return FAILED
     none = max(ACCURATE, ROUNDED if rate > HARDLY else 0.0) * size + _rounding(system, state)
     if norm <= none:
-        # what the corrections of a regularized matrix leave is a contradiction
-        gap = control[RELAXED] == 1 and np.sqrt(left) > n * norm + CONTRADICTION * size
+        # what the corrections of a regularized matrix leave is a contradiction, or a force on
+        # something without mass
+        gap = (control[RELAXED] == 1 and system.massless[0] == 0
+               and np.sqrt(left) > n * norm + CONTRADICTION * size)
         return FAILED if gap else DONE
     if rate > POOR:
         control[WANTED] = EVALUATED

@@ -71,7 +71,8 @@ class System(Arrays):
     table_at            (p + 1,) where the table of each port begins
     table_times         times of the tables, ascending in each
     table_pieces        (times, PIECE) see `sebody.engine.tables`
-    functions           (p, 3) addresses of a compiled history and its rates, 0 for a table
+    functions           (p, 3) addresses of a compiled history and its rates, 0 for a table; CLOCK
+                        where the history is the time itself
     corners             times at which a history has a corner, ascending
     jumps               1 for those of them at which accelerations jump
     prescribed          (k, 3) coordinate, port, 1 for rotations

@@ -14,14 +14,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.errors import InputError
+from sebody.kernels.layout import CLOCK
 from sebody.kernels.user_functions import UserFunction, compile_history
-from sebody.model.derivatives import rates_of
 from sebody.model.functions import with_compiled_helpers
 from sebody.model.history_rows import linear, table
 
 LOAD, MOTION = "load history", "motion of a drive"
-SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
 COEFFICIENTS = 6        # most of a polynomial
 SMALL = 1e-9            # jump of a value or rate, relative to its size, that is rounding
 NEAR = 1e-8             # distance at which a function is looked at beside a corner, relative to it
@@ -43,10 +41,13 @@ class History:
     waves: tuple[tuple[float, float, float], ...] = ()      # A, w, p of each; none at all: zeros
     functions: tuple[UserFunction, ...] = ()    # in place of pieces: value and its rates
     corners: tuple[float, ...] = ()     # times at which it is not smooth: variable steps end there
+    is_time: bool = False               # the value is the time itself, for functions of time
 
     @property
     def addresses(self) -> tuple[int, int, int]:
-        """Addresses of the compiled value and its rates, 0 where there is none."""
+        """Addresses of the compiled value and its rates, 0 where there is none; CLOCK of time."""
+        if self.is_time:
+            return CLOCK, 0, 0
         given = [f.address for f in self.functions]
         return (*given, *[0] * (3 - len(given)))
 
@@ -152,10 +153,10 @@ def history(source: Source) -> History:
         return History()
     if isinstance(source, History):
         return source
-    if _is_function_with_rates(source):
+    if is_function_with_rates(source):
         source = source[0]
     if callable(source):
-        return History(functions=(_compiled(source, LOAD),))
+        return History(functions=(compiled(source, LOAD),))
     times, pieces, corners = linear(*table(source, LOAD, jumping=True))
     return History(times, pieces, corners=corners)
 
@@ -178,10 +179,10 @@ def with_corners(function: Callable[[float], float] | tuple[Callable, Callable, 
         A function Numba cannot compile, or times that are no numbers.
     """
     times = corners_of(corners)
-    given = function if _is_function_with_rates(function) else (function,)
+    given = function if is_function_with_rates(function) else (function,)
     for one in given:
         inputs.function(one, "function", "give a function of time")
-    return History(functions=tuple(_compiled(one, LOAD) for one in given), corners=times)
+    return History(functions=tuple(compiled(one, LOAD) for one in given), corners=times)
 
 
 def corners_of(given: Sequence[float]) -> tuple[float, ...]:
@@ -198,44 +199,7 @@ def corners_of(given: Sequence[float]) -> tuple[float, ...]:
 
 def clock(corners: Sequence[float] = ()) -> History:
     """A history whose value is the time itself, with corners of what depends on it."""
-    return History((0.0,), ((0.0, 1.0),), corners=corners_of(corners))
-
-
-def motion(source: Source) -> History:
-    """The motion of a drive: a position and its first two derivatives, less its value at t = 0.
-
-    Parameters
-    ----------
-    source : table, function, tuple of three functions or ready profile
-        A table ``[(t, value), ...]`` becomes a cubic spline, at rest at both ends and outside.
-        The rates of a function of time are derived from it by SymPy; three functions are value,
-        rate and second rate.
-
-    Raises
-    ------
-    InputError
-        None of these, functions that are not each other's derivatives, a function that cannot be
-        compiled or differentiated, a position or rate that jumps.
-    """
-    if isinstance(source, History):
-        if len(source.functions) == 1:
-            value = source.functions[0]
-            rates = (_compiled(f, MOTION) for f in rates_of(value.function, MOTION))
-            source = replace(source, functions=(value, *rates))
-        _check_rates(source.functions)
-        _refuse_jumps(source)
-        return source.from_zero()
-    if callable(source):
-        source = (source, *rates_of(source, MOTION))
-    if _is_function_with_rates(source):
-        functions = tuple(_compiled(f, MOTION) for f in source)
-        _check_rates(functions)
-        return History(functions=functions).from_zero()
-    times, values = table(source, MOTION)
-    if len(times) < 2:
-        raise InputError("the motion of a drive has one row: give at least two rows (t, value), "
-                         "or fix the node")
-    return spline_of(times, values, (0.0, 0.0)).from_zero().with_corners()
+    return History((0.0,), ((0.0, 1.0),), corners=corners_of(corners), is_time=True)
 
 
 def spline_of(times: NDArray, values: NDArray, rates: tuple[float, float]) -> History:
@@ -261,11 +225,11 @@ def same_waves(parts: Sequence[History]) -> tuple[tuple[float, float, float], ..
                  for wave, _ in zip_longest(part.waves, part.pieces, fillvalue=none))
 
 
-def _is_function_with_rates(source: object) -> bool:
+def is_function_with_rates(source: object) -> bool:
     return isinstance(source, tuple) and len(source) == 3 and all(map(callable, source))
 
 
-def _compiled(function: Callable[[float], float], what: str) -> UserFunction:
+def compiled(function: Callable[[float], float], what: str) -> UserFunction:
     return compile_history(with_compiled_helpers(function), what)
 
 
@@ -285,29 +249,3 @@ def _jumps(function: Callable[[float], float], t: float) -> bool:
     beside = abs(values[1] - values[0]) + abs(values[3] - values[2])
     jump = abs(values[2] - values[1])
     return jump > STEEP * beside + SMALL * max(abs(values[1]), abs(values[2]))
-
-
-def _refuse_jumps(given: History) -> None:
-    """Refuse a motion that no body can follow."""
-    for t, before, after in given.jumps():
-        for k, what in enumerate(("position", "rate")):
-            if before[k] != after[k]:
-                raise InputError(
-                    f"motion of a drive: its {what} jumps from {before[k]:.6g} to {after[k]:.6g} "
-                    f"at t = {t:.6g}, which no body can follow: go there by rest_to_rest, "
-                    "trapezoidal or a spline; only at t = 0 may it have a speed at once")
-
-
-def _check_rates(functions: Sequence[UserFunction]) -> None:
-    """Refuse a rate that is not the derivative of the function before it."""
-    if not functions:
-        return
-    for k, what in ((0, "second function is not the derivative of the first"),
-                    (1, "third function is not the derivative of the second")):
-        f, rate = functions[k].ctypes, functions[k + 1].ctypes
-        for t in SAMPLES:
-            slope = (f(t + 1e-5) - f(t - 1e-5)) / 2e-5
-            size = max(abs(slope), abs(rate(t)), abs(f(t)), 1e-300)
-            if not abs(slope - rate(t)) < 1e-4 * size:
-                raise InputError(f"motion of a drive: the {what}: at t = {t} it is {rate(t):.6g}, "
-                                 f"differences give {slope:.6g}")

@@ -75,7 +75,8 @@ def test_histories_to_be_refused(source):
     (lambda m: m.torque("base", (0, 0)), "torque on base.rotation is .*give 3 finite"),
     (lambda m: m.torque("base", (0, np.nan, 0)), "torque on base.rotation is .*give 3 finite"),
     (lambda m: m.force("far", (0, 0, 1)), "node 'far' is unknown: the model has base, tip"),
-    (lambda m: m.force("tip", (0, 0, 1), [(0.5, 1.0), (0.0, 2.0)]), "must not decrease, after t = 0.5"),
+    (lambda m: m.force("tip", (0, 0, 1), [(0.5, 1.0), (0.0, 2.0)]),
+     "must not decrease, after t = 0.5"),
 ])
 def test_wrong_loads(action, message):
     model = two_nodes()
