@@ -24,6 +24,7 @@ from sebody.assembly import batches
 from sebody.assembly import build as assembly
 from sebody.engine.state import MATRICES, PIVOTED
 from sebody.fem import Section, straight_beam
+from sebody.fem.loads import line_load
 from sebody.kernels import loader
 from sebody.kernels.sources import room_hash
 from sebody.model.parts import Element, positions
@@ -187,12 +188,16 @@ PIECES = [(0.0, 0.0), (0.0503, 1.0), (0.12, -0.6)]
 @cache
 def bar():
     ends = np.array([[0.3, -0.2, 0.1], [0.8, 0.5, -0.3]])
-    return ends, craig_bampton(straight_beam(*ends, SOFT, elements=6),
-                               [(0, "full"), (6, "full")], modes=2)
+    beam = straight_beam(*ends, SOFT, elements=6)
+    wind = {"wind": line_load(beam, 1e-6 * np.array([0.5, 1.0, -2.0]))}
+    return ends, craig_bampton(beam, [(0, "full"), (6, "full")], modes=2, loads=wind)
 
 
-def hinged(bodies=1, load=None):
-    """Bars in a row, a hinge about a turned axis in between and at the beginning; tip and force."""
+def hinged(bodies=1, load=None, distributed=False):
+    """Bars in a row, a hinge about a turned axis in between and at the beginning; name of the tip.
+
+    The load is a force at the tip, or one along the last bar.
+    """
     model, (ends, body) = Model(), bar()
     way = ends[1] - ends[0]
     for k in range(bodies):
@@ -200,8 +205,11 @@ def hinged(bodies=1, load=None):
         model.superelement(f"bar {k}", body, [a, b], stiffening=False)
         model.revolute(a, AXIS, to=f"b{k - 1}" if k else None, explicit=True)
         model.torsion_spring(a, 2.0, 0.01, AXIS, f"b{k - 1}" if k else None)
-    model.force(b, 1e-6 * np.array([0.3, -1.0, 0.8]),
-                piecewise(*PIECES) if load is None else load, name="push")
+    load = piecewise(*PIECES) if load is None else load
+    if distributed:
+        model.body_load(f"bar {bodies - 1}", "wind", load, name="push")
+    else:
+        model.force(b, 1e-6 * np.array([0.3, -1.0, 0.8]), load, name="push")
     return model, f"b{bodies - 1}"
 
 
@@ -210,7 +218,9 @@ def exponential(model, tip, pieces, t_end):
     run = Simulation(model, 1.0)
     M, C, K, free = linearize(run)
     first = run.numbering.triplets[id(model.nodes[tip].position)]
-    f = np.linalg.solve(M, free[first:first + 3].T @ model.element("push").direction)
+    push = model.element("push")
+    unknowns = batches.element_unknowns(run.numbering, push)
+    f = np.linalg.solve(M, free[unknowns].T @ push.constants["P" if push.body else "d"])
     n, minus = len(M), -np.linalg.solve(M, np.hstack([K, C]))
     A = np.block([[np.zeros((n, n)), np.eye(n), np.zeros((n, 1))], [minus, f[:, None]],
                   [np.zeros((1, 2 * n + 1))]])
@@ -221,13 +231,13 @@ def exponential(model, tip, pieces, t_end):
     return free[first:first + 3] @ y[:n]
 
 
-@pytest.mark.parametrize("bodies, index, exchanged", [
-    (1, 3, False), (3, 3, False), (3, 2, False), (2, 3, True)])
-def test_flexible_bodies_in_space(bodies, index, exchanged, monkeypatch):
+@pytest.mark.parametrize("bodies, index, distributed, exchanged", [
+    (1, 3, True, False), (3, 3, False, False), (3, 2, True, False), (2, 3, False, True)])
+def test_flexible_bodies_in_space(bodies, index, distributed, exchanged, monkeypatch):
     """Small matrices and large ones, and those that need row exchanges by Python."""
     if exchanged:
         monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
-    model, tip = hinged(bodies)
+    model, tip = hinged(bodies, distributed=distributed)
     exact = exponential(model, tip, PIECES, 0.2)
     steps, errors = (5e-4, 2.5e-4, 1.25e-4), []
     for h in steps:
