@@ -77,6 +77,8 @@ class Simulation:
 
     Attributes
     ----------
+    begun : Result or None
+        The state that was given to start from.
     start : Start
         Initial velocities that were solved for, redundant constraints.
 
@@ -109,6 +111,7 @@ class Simulation:
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
         user_faults.forget(model)
+        self.begun = start
         if start is not None:
             take(model, self.numbering, self.state, start)
         self.start: Start = begin(model, self.system, self.numbering, self.state)

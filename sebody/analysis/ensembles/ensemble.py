@@ -59,7 +59,7 @@ class Ensemble:
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, start: Result | None = None):
-        self.model, self.scheme, self._start = model, scheme, start
+        self.model, self.scheme = model, scheme
         self._template = Simulation(model, h, scheme, output_every, start=start)
         self.h, self.every = self._template.h, self._template.every
         self._lock = Lock()         # the model is changed for moments
@@ -106,7 +106,7 @@ class Ensemble:
         outcome = self._empty(kept, shapes, runs, last)
         began = time.perf_counter()
         work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
-                    self._lock, self._start)
+                    self._lock)
         work.go(min(threads, max(runs, 1)), progress)
         outcome.seconds = time.perf_counter() - began
         return outcome
@@ -128,7 +128,7 @@ class Ensemble:
                  ) -> tuple[dict[str, Handle], int, int, dict[str, Output]]:
         """Handles, number of runs, last step, outputs."""
         found, runs = given(self.model, parameters) if parameters != {} else ({}, 1)
-        if placing := [name for name in found if self._start and name.endswith(PLACING)]:
+        if placing := [name for name in found if self._template.begun and name.endswith(PLACING)]:
             raise InputError(f"{placing[0]} cannot be varied: all runs begin at the start that was "
                              "given; leave it out, or build an ensemble without a start")
         last = self._last_step(t_end)

@@ -17,7 +17,6 @@ from sebody.analysis.ensembles.outputs import Output
 from sebody.analysis.simulation import Simulation
 from sebody.engine.state import TIME
 from sebody.errors import InputError
-from sebody.results.result import Result
 
 LOOK = 0.05     # seconds between looks at the threads, for progress and Ctrl-C
 INTERRUPTED = "interrupted before its end"
@@ -44,14 +43,12 @@ class Work:
         Is filled.
     lock : Lock
         Held while the model is changed.
-    start : Result or None
-        State that runs start from.
     """
 
     def __init__(self, template: Simulation, image: Image, values: Mapping[str, Any],
                  outputs: Mapping[str, Output], kinematic: set[str], last: int, outcome: Outcome,
-                 lock: Lock, start: Result | None):
-        self.template, self.image, self.values, self.start = template, image, values, start
+                 lock: Lock):
+        self.template, self.image, self.values = template, image, values
         self.outputs, self.kinematic, self.last, self.outcome = outputs, kinematic, last, outcome
         self._next, self._stop, self._lock = count(), Event(), lock
         self._done, self._error = 0, None
@@ -123,7 +120,7 @@ class Work:
             try:
                 for name, handle in self.image.handles.items():
                     handle.set(self.values[name][run])
-                made = Simulation(one.model, one.h, one.scheme, one.every, start=self.start)
+                made = Simulation(one.model, one.h, one.scheme, one.every, start=one.begun)
                 made.model = copy(one.model)
             finally:
                 for handle in reversed(self.image.handles.values()):
