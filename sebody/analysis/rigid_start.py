@@ -39,7 +39,7 @@ PASSES = 3              # each leaves YIELDING of a deformation that need not be
 REFINED = 6             # corrections of a pass by factors with RELAXATION
 SETTLED = 1e-15         # change of the last one, relative to the solution
 SMALL = 1e-8            # change of a velocity, relative, that is none
-HEAVY = 1e12            # added mass, relative, that keeps velocities the user gave
+HEAVY = 1e20            # added mass, relative, that keeps velocities the user gave
 LEAST = 1e-6            # weight of a coordinate without mass, relative to the body's mean
 
 
@@ -64,8 +64,10 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
     triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
     if given := [c for t in triplets if t.given for c in coordinates(numbering, t)]:
         held[given] = HEAVY * np.abs(masses.diagonal()).max()
-    kinds = placed(model, numbering)[:n] + rotational(model, numbering)[:n].astype(int)
-    solve = _Saddle(masses, held, _rows(bodies, system, state, n), kinds, system)
+    sizes = _sizes(masses, placed(model, numbering) + rotational(model, numbering).astype(int),
+                   system)
+    giving = np.concatenate([body.rows**2 @ (1.0 / sizes[body.own]) for body in bodies])
+    solve = _Saddle(masses, held, _rows(bodies, system, state, n), giving, sizes[:n], system)
     before, demand = state.v.copy(), np.zeros(n)
     demand[multipliers] = -rates
     for _ in range(PASSES):
@@ -88,11 +90,20 @@ def _starting_from_speed(model: Mechanism, system: System, numbering: Numbering,
     return any(state.loads[3 * port + 1] != 0.0 for port in ports)
 
 
+def _sizes(masses: csc_matrix, kinds: NDArray, system: System) -> NDArray:
+    """Inertias that scale coordinates of each kind: positions, rotations, modes.
+
+    All of a kind have that of the largest: light bodies between heavy ones follow from the
+    constraints, not from small differences.
+    """
+    n, found = masses.shape[0], np.zeros(kinds.max() + 1)
+    moving = np.flatnonzero(system.is_multiplier[:n] == 0.0)
+    np.maximum.at(found, kinds[moving], part_sizes(masses, system)[moving])
+    return np.where(found > 0.0, found, 1.0)[kinds]
+
+
 class _Saddle:
     """Solves the system of the module's text.
-
-    All positions have one scale, so have all rotations and all modes, that of the largest inertia:
-    light bodies between heavy ones follow from the constraints, not from small differences.
 
     Parameters
     ----------
@@ -101,22 +112,18 @@ class _Saddle:
     held : (n,)
         Masses added to those of velocities that are given.
     F : (deformations, n)
-    kinds : (n,)
-        Numbers of what is an unknown of one kind.
+    giving : (deformations,)
+        How easily each deformation gives.
+    sizes : (n,)
+        See `_sizes`.
     """
 
-    def __init__(self, masses: csc_matrix, held: NDArray, F: csc_matrix, kinds: NDArray,
-                 system: System):
+    def __init__(self, masses: csc_matrix, held: NDArray, F: csc_matrix, giving: NDArray,
+                 sizes: NDArray, system: System):
         n, fixed = masses.shape[0], system.is_multiplier[:masses.shape[0]] > 0.0
-        own = part_sizes(masses, system)
-        largest = np.zeros(kinds.max() + 1)
-        np.maximum.at(largest, kinds[~fixed], own[~fixed])
-        sizes = largest[kinds]
-        mobility = np.where(fixed, 0.0, 1.0 / np.where(fixed, 1.0, sizes))
-        strength = masses.power(2) @ mobility
+        own, sizes = part_sizes(masses, system), sizes.copy()
+        strength = masses.power(2) @ np.where(fixed, 0.0, 1.0 / sizes)
         sizes[fixed] = np.where(strength[fixed] > 0.0, strength[fixed], 1.0)
-        giving = F.power(2) @ mobility
-        giving[giving == 0.0] = 1.0
         scale = 1.0 / np.sqrt(np.concatenate([sizes, giving]))
         whole = bmat([[masses, F.T], [F, None]], format="csc") + diags(
             np.concatenate([held, -YIELDING * giving]))
