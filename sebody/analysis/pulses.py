@@ -10,7 +10,7 @@ from sebody.model.histories import History
 
 MISSED = 0.2            # share of the largest value by which a peak may exceed what steps see
 ON_GRID = 1e-6          # of a step: nearer times are those of the step
-SAMPLES = 1000          # times at which a function is looked at for jumps
+SAMPLES = 200           # times at which a function is looked at for jumps
 SUSPECTS = 10           # largest changes from one to the next that are looked into
 HALVINGS = 40           # of the time between: to rounding
 ABRUPT = 0.1            # share of the change that is left of a jump, and no more of what is steep

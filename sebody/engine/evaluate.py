@@ -70,7 +70,7 @@ def set_loads_beside(system, loads, t, beside):
 
 @compiled(forceinline=True)
 def move_prescribed(system, state):
-    """Set prescribed coordinates and their rates; of rotations, the increment of the step."""
+    """Set prescribed coordinates, their rates, and the increments of the step."""
     loads, old = state.loads, state.loads_old
     for k in range(system.prescribed.shape[0]):
         i = system.prescribed[k, 0]
@@ -78,9 +78,8 @@ def move_prescribed(system, state):
     for k in range(system.prescribed.shape[0]):
         i, port, factor = (system.prescribed[k, 0], 3 * system.prescribed[k, 1],
                            system.prescribed_factor[k])
-        if system.prescribed[k, 2] == 1:
-            state.dq[i] += factor * (loads[port] - old[port])
-        else:
+        state.dq[i] += factor * (loads[port] - old[port])
+        if system.prescribed[k, 2] == 0:
             state.q[i] += factor * loads[port]
         state.v[i] += factor * loads[port + 1]
         state.a[i] += factor * loads[port + 2]

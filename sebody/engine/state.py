@@ -77,8 +77,6 @@ class State(Arrays):
     acting                forces of the ports, as residuals: of elements in the order of `g`, then
                           on prescribed coordinates
     acting_old            the same
-    increments            (N,) of all coordinates in the last step
-    change                (p,) increments or rates of the amplitudes
     works_old             (p,) work of every port
     powers, powers_old    (p,) power of every port at both ends of the last step, for output within
     --------------------  --------------------------------------------------------------------------
@@ -147,8 +145,6 @@ class State(Arrays):
     loads_old: NDArray
     acting: NDArray
     acting_old: NDArray
-    increments: NDArray
-    change: NDArray
     works_old: NDArray
     powers: NDArray
     powers_old: NDArray
