@@ -2,13 +2,15 @@
 
 Folders read only from those before them:
 
-1. `symbolic`: the maps of SO(3), the chain rule on the manifold and its proofs, named quantities,
-   steps and their differentials
-2. `formulas`: frames, kinematics, elastic forces, inertia, damping, gravity; joints, rigid bodies
-   and loads
-3. `kernels`: what a kernel is: layouts, its steps in order and their linearization, what it uses,
-   and which kernels are shipped
-4. `printing`: text, a pure function of the description; everything that knows the target
+1. `symbolic`: the maps of SO(3), the chain rule on the manifold and its proofs
+2. `form`: what a kernel is made of, as typed data: counts, arrays, calls, steps, statements
+3. `passes`: what is done with these: differentials, transposes, statements of steps, counts
+4. `formulas`: frames, kinematics, elastic forces, inertia, damping, gravity; joints, rigid bodies
+   and loads; motions of bodies
+5. `kernels`: layouts, the steps of a kernel in order and their linearization, the statements
+   around them, and which kernels are shipped
+6. `printing`: targets: text, a pure function of the statements
 
-`compiler.compile_kernel` runs them, `__main__` is the command that writes or checks the files.
+`compiler.compile_kernel` runs them, `names` reads what kernels are called by users, `__main__` is
+the command that writes or checks the files.
 """

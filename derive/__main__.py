@@ -1,7 +1,8 @@
-"""Write the kernels of the manifest, add the kernel of a layout, or check what is there.
+"""Write the kernels of the manifest, some of them, or one of a layout; or check what is there.
 
     python -m sebody.derive                         write all shipped kernels
     python -m sebody.derive --check                 compare, writing nothing
+    python -m sebody.derive distance [spring ...]   kernels of the catalogue: joints, bodies, loads
     python -m sebody.derive f2t1 [f3:mean:a ...]    add kernels: LAYOUT[:FRAME[:INERTIA]]
 """
 
@@ -11,34 +12,31 @@ import os
 import sys
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import sebody.generated
 from sebody.derive.compiler import Variant, compile_kernel, file_name
-from sebody.derive.kernels.layouts import Layout, LayoutError, fits
+from sebody.derive.kernels.layouts import Layout, LayoutError
 from sebody.derive.kernels.manifest import ELEMENTS, SUPERELEMENTS
-from sebody.derive.kernels.options import (
-    FRAMES,
-    INERTIA_OPTIONS,
-    frame_traits,
-    inertia_traits,
-)
-from sebody.derive.printing.options import options_text
+from sebody.derive.kernels.options import frame_conditions, frame_traits, inertia_traits
+from sebody.derive.names import kernel_of
+from sebody.derive.printing.numba.options import options_text
 from sebody.files import replacing
-from sebody.kernels.loader import user_directory
-from sebody.kernels.names import PREFIXES
+from sebody.kernels.loader import find, user_directory
+from sebody.kernels.names import PREFIXES, motion_name
 
-DEFAULT_INERTIA = "b"
 SECONDS = {True: 2.5, False: 0.4}       # to derive a superelement, or another element
 
 
 def shipped() -> dict[str, str]:
     """File name and text of every kernel of the manifest, and of the options' traits."""
-    return {"options.py": options_text(frame_traits(), inertia_traits())} | files(
+    return {"options.py": options_text(frame_traits(), inertia_traits(),
+                                          frame_conditions())} | files(
         [*(Variant(*row) for row in SUPERELEMENTS), *ELEMENTS])
 
 
-def files(kernels: Iterable[Variant | str]) -> dict[str, str]:
+def files(kernels: Iterable[Variant | str], shipped: bool = True) -> dict[str, str]:
     """File name and text of some kernels, derived in as many processes as there are processors.
 
     Raises
@@ -47,29 +45,23 @@ def files(kernels: Iterable[Variant | str]) -> dict[str, str]:
         A layout that cannot carry its frame.
     """
     kernels, processors = list(kernels), os.cpu_count() or 1
-    names = list(map(file_name, kernels))
+    names, compiled = list(map(file_name, kernels)), partial(compile_kernel, shipped=shipped)
     processes = min(processors, len(kernels))
     if processes < 2:
-        return dict(zip(names, map(compile_kernel, kernels), strict=True))
+        return dict(zip(names, map(compiled, kernels), strict=True))
     seconds = sum(SECONDS[isinstance(kernel, Variant)] for kernel in kernels) / processes
     print(f"deriving {len(kernels)} kernels in {processes} processes, about {seconds:.0f} s",
           file=sys.stderr, flush=True)
     with ProcessPoolExecutor(processes) as pool:
-        return dict(zip(names, pool.map(compile_kernel, kernels), strict=True))
+        return dict(zip(names, pool.map(compiled, kernels), strict=True))
 
 
-def parse_variant(text: str) -> Variant:
-    """``LAYOUT[:FRAME[:INERTIA]]`` with the defaults filled in."""
-    parts = text.split(":")
-    layout = Layout.parse(parts[0])
-    carried = [name for name, frame in frame_traits().items() if fits(layout, frame)]
-    frame = parts[1] if len(parts) > 1 else (carried or list(FRAMES))[0]
-    inertia = parts[2] if len(parts) > 2 else DEFAULT_INERTIA
-    for value, known, what in ((frame, FRAMES, "frame"),
-                               (inertia, INERTIA_OPTIONS, "inertia option")):
-        if value not in known:
-            raise LayoutError(f"{what} {value!r} is unknown: use one of {', '.join(known)}")
-    return Variant(layout.name, frame, inertia)
+def _with_motions(kernels: Iterable[Variant | str]) -> list[Variant | str]:
+    """Kernels, and those of the motions in their frames where there are none yet."""
+    found = list(kernels)
+    named = [motion_name(k.frame, Layout.parse(k.layout).planar) for k in found
+             if isinstance(k, Variant)]
+    return list(dict.fromkeys((*found, *(name for name in named if not find(name)))))
 
 
 def write(directory: Path, files: dict[str, str]) -> list[str]:
@@ -107,27 +99,28 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command; returns the exit code."""
     parser = argparse.ArgumentParser(prog="python -m sebody.derive", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("layouts", nargs="*", metavar="LAYOUT[:FRAME[:INERTIA]]")
+    parser.add_argument("kernels", nargs="*", metavar="NAME | LAYOUT[:FRAME[:INERTIA]]")
     parser.add_argument("--check", action="store_true", help="compare, writing nothing")
     options = parser.parse_args(arguments)
     directory = Path(sebody.generated.__file__).parent
     try:
-        if options.layouts:
-            texts = files(map(parse_variant, options.layouts))
-            directory = directory if os.access(directory, os.W_OK) and not os.environ.get(
-                "SEBODY_KERNELS") else user_directory()
+        if options.kernels:
+            own = os.access(directory, os.W_OK) and not os.environ.get("SEBODY_KERNELS")
+            directory = directory if own else user_directory()
+            texts = files(_with_motions(map(kernel_of, options.kernels)), shipped=own)
         else:
             texts = shipped()
     except LayoutError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     count = sum(name.startswith(PREFIXES) for name in texts)
+    kernels, are = ("kernel", "is") if count == 1 else ("kernels", "are")
     if options.check:
-        found = differences(directory, texts, orphans=not options.layouts)
-        print("\n".join(found) if found else f"{count} kernels are up to date")
+        found = differences(directory, texts, orphans=not options.kernels)
+        print("\n".join(found) if found else f"{count} {kernels} {are} up to date")
         return 1 if found else 0
     changed = write(directory, texts)
-    print(f"{count} kernels derived, {len(changed)} written to {directory}")
+    print(f"{count} {kernels} derived, {len(changed)} written to {directory}")
     return 0
 
 

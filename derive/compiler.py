@@ -1,22 +1,26 @@
 """The compiler of kernels: from the name of a kernel to the text of its file."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from sebody.derive.form.kernel import Kernel
 from sebody.derive.formulas import elements
 from sebody.derive.kernels.body_load import BODY_LOADS, body_load_kernel
+from sebody.derive.kernels.body_load_form import body_load_form
 from sebody.derive.kernels.catalogue import ELEMENTS
+from sebody.derive.kernels.element_form import element_form
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.linearize import linearized
-from sebody.derive.kernels.resources import (
-    body_load_resources,
-    element_resources,
-    resources,
-)
+from sebody.derive.kernels.motion import MOTIONS, frame_motion, motion_form
 from sebody.derive.kernels.superelement import superelement
-from sebody.derive.printing.body_loads import body_load_text
-from sebody.derive.printing.elements import element_text
-from sebody.derive.printing.superelements import superelement_text
+from sebody.derive.kernels.superelement_form import superelement_form
+from sebody.derive.printing.numba.files import Head, file_text
+from sebody.derive.printing.numba.heads import (
+    body_load_head,
+    element_head,
+    motion_head,
+    superelement_head,
+)
 from sebody.kernels.names import element_name, superelement_name
 
 
@@ -33,50 +37,69 @@ class Stages(NamedTuple):
 
     derive: Callable
     linearize: Callable
-    collect: Callable
-    print: Callable
+    assemble: Callable[[Any], Kernel]
+    head: Callable[[Any, Kernel], Head]
+    name: Callable[[Any], str]          # of the module
 
 
-SUPERELEMENT = Stages(lambda v: superelement(Layout.parse(v.layout), v.frame, v.inertia),
-                      linearized, resources, superelement_text)
-BODY_LOAD = Stages(body_load_kernel, lambda kernel: kernel, body_load_resources, body_load_text)
-ELEMENT = Stages(lambda name: ELEMENTS[name](), elements.linearized, element_resources,
-                 element_text)
+def _same(kernel: Any) -> Any:
+    return kernel
 
 
-def compile_kernel(kernel: Variant | str) -> str:
+SUPERELEMENT = Stages(
+    lambda v: superelement(Layout.parse(v.layout), v.frame, v.inertia), linearized,
+    superelement_form, superelement_head,
+    lambda v: superelement_name(Layout.parse(v.layout).name, v.frame, v.inertia))
+BODY_LOAD = Stages(body_load_kernel, _same, body_load_form, body_load_head, element_name)
+ELEMENT = Stages(lambda name: ELEMENTS[name](), elements.linearized, element_form, element_head,
+                 element_name)
+MOTION = Stages(frame_motion, _same, motion_form, motion_head, _same)
+
+
+def compile_kernel(kernel: Variant | str, shipped: bool = True) -> str:
     """The file of a kernel.
 
     1. derive: steps of the forces and energies, from kinematics and energies. Input: the names;
        output: a description, `Superelement` or `Element`, with the residual.
     2. linearize: the differential of every step, or expression. Output: the description with
        the column of the matrix.
-    3. collect: scratch rows and functions the steps report. Output: `Resources`.
-    4. print: text, a pure function of the description and the resources.
+    3. assemble: loads, common subexpressions, loops and tasks. Output: `Kernel`, typed statements
+       that know no target.
+    4. print: text, a pure function of the statements and of what the file says of itself.
 
     Parameters
     ----------
     kernel : Variant or str
-        A superelement, or the name of a joint, rigid body or load. The matrix of a load on a body
-        is derived with its force.
+        A superelement, or the name of a joint, rigid body, load or motion. The matrix of a load on
+        a body is derived with its force; motions have none.
+    shipped : bool
+        The file goes with the package; else it carries a hash of the functions that it calls.
 
     Raises
     ------
     LayoutError
         A layout that cannot be read, or that cannot carry the frame.
     """
-    stages = (SUPERELEMENT if isinstance(kernel, Variant) else
-              BODY_LOAD if kernel in BODY_LOADS else ELEMENT)
+    stages = stages_of(kernel)
     derived = stages.derive(kernel)                     # 1
     description = stages.linearize(derived)             # 2
-    uses = stages.collect(description)                  # 3
-    return stages.print(description, uses)              # 4
+    statements = stages.assemble(description)              # 3
+    return file_text(stages.head(description, statements), statements, shipped)     # 4
+
+
+def statements_of(kernel: Variant | str) -> Kernel:
+    """The first three stages: a kernel for any target."""
+    stages = stages_of(kernel)
+    return stages.assemble(stages.linearize(stages.derive(kernel)))
+
+
+def stages_of(kernel: Variant | str) -> Stages:
+    """How a kernel is compiled."""
+    if isinstance(kernel, Variant):
+        return SUPERELEMENT
+    return MOTION if kernel in MOTIONS else BODY_LOAD if kernel in BODY_LOADS else ELEMENT
 
 
 def file_name(kernel: Variant | str) -> str:
     """Name of the file of a kernel."""
-    if isinstance(kernel, Variant):
-        name = superelement_name(Layout.parse(kernel.layout).name, kernel.frame, kernel.inertia)
-    else:
-        name = element_name(kernel)
-    return name + ".py"
+    return stages_of(kernel).name(kernel) + ".py"

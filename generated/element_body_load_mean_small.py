@@ -42,7 +42,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 12
 OPERATIONS = {"residual": (310, 21, 129, 0),
               "column": (44, 9, 125, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -54,8 +53,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     ROTATIONS = 3*N_POSITIONS
     MODES = ROTATIONS + 3*N_ROTATIONS
     row = padded(max(n, 9*N_ROTATIONS))
-    qe = at(work, 0*row)
-    ve = at(work, 1*row)
+    qe = work
+    ve = at(work, row)
     beta = at(work, 2*row)
     y = at(work, 3*row)
     e0s = at(work, 4*row)
@@ -76,14 +75,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        P = at(X, N_POSITIONS*3)
+        P = at(X, 3*N_POSITIONS)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
             ve[i] = v[unknowns[i]]
         # rotation of the frame, (15)-(16)
-        status = (weighted_mean(N_ROTATIONS, nodes, alpha_rs, R, reference, frame, at(beta,
-            ROTATIONS), at(y, ROTATIONS)))
+        status = weighted_mean(N_ROTATIONS, nodes, alpha_rs, R, reference, frame,
+            at(beta, ROTATIONS), at(y, ROTATIONS))
         if status != 0:
             return status
         R0_xx, R0_xy, R0_xz = frame[0], frame[1], frame[2]
@@ -92,13 +91,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            e0s[j], e1s[j] = (inverse_tangent_coefficients(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] +
-                y[j3 + 2] * y[j3 + 2]))
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            e0s[j], e1s[j] = inverse_tangent_coefficients(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            b0s[j], b1s[j] = (inverse_tangent_coefficients(beta[j3] * beta[j3] + beta[j3 + 1] *
-                beta[j3 + 1] + beta[j3 + 2] * beta[j3 + 2]))
+            beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
+            b0s[j], b1s[j] = inverse_tangent_coefficients(
+                beta_x*beta_x + beta_y*beta_y + beta_z*beta_z)
         # weighted mean of the rotation increments, (16)
         beta0_x = beta0_y = beta0_z = 0.0
         for j in range(N_ROTATIONS):
@@ -109,13 +109,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             beta0_y += alpha_r*beta_y
             beta0_z += alpha_r*beta_z
         # coefficients of T(beta_0)
-        c2, c3, c4, c5 = stumpff_2345(beta0_x * beta0_x + beta0_y * beta0_y + beta0_z * beta0_z)
+        c2, c3, c4, c5 = stumpff_2345(beta0_x*beta0_x + beta0_y*beta0_y + beta0_z*beta0_z)
         # rotation of the node in the frame
         for j in range(N_ROTATIONS):
-            R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j] + 0],
+            R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j]],
                 R[9*nodes[j] + 1], R[9*nodes[j] + 2], R[9*nodes[j] + 3], R[9*nodes[j] + 4],
                 R[9*nodes[j] + 5], R[9*nodes[j] + 6], R[9*nodes[j] + 7], R[9*nodes[j] + 8])
-            Q[9*j + 0] = R0_xx*R_xx + R0_yx*R_yx + R0_zx*R_zx
+            Q[9*j] = R0_xx*R_xx + R0_yx*R_yx + R0_zx*R_zx
             Q[9*j + 1] = R0_xx*R_xy + R0_yx*R_yy + R0_zx*R_zy
             Q[9*j + 2] = R0_xx*R_xz + R0_yx*R_yz + R0_zx*R_zz
             Q[9*j + 3] = R0_xy*R_xx + R0_yy*R_yx + R0_zy*R_zx
@@ -144,8 +144,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             j3 = ROTATIONS + 3*j
             amplitude = loads[3*index[first + AT_PORT]]
             P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
-            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j + 1], Q[9*j
-                + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
+            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
             g[j3] = -amplitude*(P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx)
             g[j3 + 1] = -amplitude*(P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy)
             g[j3 + 2] = -amplitude*(P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz)
@@ -170,7 +170,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = T[9*nodes[j] + 3*r + k]*c_stiffness
                 else:
                     dqe[column] = c_stiffness
                 # sum alpha_j T^-1(beta_j) rate_j, (18)
@@ -223,9 +223,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     amplitude = loads[3*index[first + AT_PORT]]
                     P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
-                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j +
-                        1], Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j +
-                        7], Q[9*j + 8])
+                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                        Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
+                        Q[9*j + 8])
                     dg[j3] = (-amplitude*(P_rotation_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
                         Q_zx*dth0_y) + P_rotation_y*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y +
                         Q_zx*dth0_x) + P_rotation_z*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z -
@@ -240,7 +240,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Q_zy*dth_x)))
                 # differential: force on the modes
                 for k in range(MODES, n):
-                    dg[k] = 0
+                    dg[k] = 0.0
                 for i in range(n):
                     J[i*n + column] = dg[i]
     return OK

@@ -43,7 +43,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 9
 OPERATIONS = {"residual": (360, 21, 96, 0),
               "column": (15, 30, 84, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -55,8 +54,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     ROTATIONS = 3*N_POSITIONS
     MODES = ROTATIONS + 3*N_ROTATIONS
     row = padded(max(n, 9*N_ROTATIONS))
-    qe = at(work, 0*row)
-    ve = at(work, 1*row)
+    qe = work
+    ve = at(work, row)
     y = at(work, 2*row)
     e0s = at(work, 3*row)
     e1s = at(work, 4*row)
@@ -73,7 +72,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        P = at(X, N_POSITIONS*3)
+        P = at(X, 3*N_POSITIONS)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -92,14 +91,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            e0s[j], e1s[j] = (inverse_tangent_coefficients(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] +
-                y[j3 + 2] * y[j3 + 2]))
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            e0s[j], e1s[j] = inverse_tangent_coefficients(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
         # rotation of the node in the frame
         for j in range(N_ROTATIONS):
-            R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j] + 0],
+            R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j]],
                 R[9*nodes[j] + 1], R[9*nodes[j] + 2], R[9*nodes[j] + 3], R[9*nodes[j] + 4],
                 R[9*nodes[j] + 5], R[9*nodes[j] + 6], R[9*nodes[j] + 7], R[9*nodes[j] + 8])
-            Q[9*j + 0] = R0_xx*R_xx + R0_yx*R_yx + R0_zx*R_zx
+            Q[9*j] = R0_xx*R_xx + R0_yx*R_yx + R0_zx*R_zx
             Q[9*j + 1] = R0_xx*R_xy + R0_yx*R_yy + R0_zx*R_zy
             Q[9*j + 2] = R0_xx*R_xz + R0_yx*R_yz + R0_zx*R_zz
             Q[9*j + 3] = R0_xy*R_xx + R0_yy*R_yx + R0_zy*R_zx
@@ -128,8 +127,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             j3 = ROTATIONS + 3*j
             amplitude = loads[3*index[first + AT_PORT]]
             P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
-            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j + 1], Q[9*j
-                + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
+            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
             g[j3] = -amplitude*(P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx)
             g[j3 + 1] = -amplitude*(P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy)
             g[j3 + 2] = -amplitude*(P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz)
@@ -191,8 +190,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 B_20 += t10*t3
                 B_21 += -t11*t7
                 B_22 += fit*(X_x*t8 - X_y*t4)
-            Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = (inverse_3(B_00, B_01, B_02, B_10, B_11,
-                B_12, B_20, B_21, B_22))
+            Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
+                B_12, B_20, B_21, B_22)
             for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0
@@ -201,7 +200,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = T[9*nodes[j] + 3*r + k]*c_stiffness
                 else:
                     dqe[column] = c_stiffness
                 # origin of the frame, (14)
@@ -241,9 +240,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j3 = ROTATIONS + 3*j
                     amplitude = loads[3*index[first + AT_PORT]]
                     P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
-                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j +
-                        1], Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j +
-                        7], Q[9*j + 8])
+                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                        Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
+                        Q[9*j + 8])
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     dg[j3] = (-amplitude*(P_rotation_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
                         Q_zx*dth0_y) + P_rotation_y*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y +
@@ -259,7 +258,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Q_zy*dth_x)))
                 # differential: force on the modes
                 for k in range(MODES, n):
-                    dg[k] = 0
+                    dg[k] = 0.0
                 for i in range(n):
                     J[i*n + column] = dg[i]
     return OK

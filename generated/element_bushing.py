@@ -40,7 +40,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (375, 0, 0, 0),
               "column": (1122, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -76,7 +75,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         vb_x = v[unknowns[3]]
         vb_y = v[unknowns[4]]
         vb_z = v[unknowns[5]]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -88,7 +87,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_x = v[unknowns[6]]
         Oma_y = v[unknowns[7]]
         Oma_z = v[unknowns[8]]
-        Rb_xx = R[9*nodes[1] + 0]
+        Rb_xx = R[9*nodes[1]]
         Rb_xy = R[9*nodes[1] + 1]
         Rb_xz = R[9*nodes[1] + 2]
         Rb_yx = R[9*nodes[1] + 3]
@@ -724,7 +723,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t360 = t192*(2*t187 + 2*t188 + 2*t189)
                 t361 = t304*(2*t284 + 2*t285 + 2*t286)
                 t362 = t333*(2*t256 + 2*t257 + 2*t258)
-                J[0 + column] = -c_damping*t117 - c_stiffness*t166
+                J[column] = -c_damping*t117 - c_stiffness*t166
                 J[12 + column] = -c_damping*t170 - c_stiffness*t171
                 J[24 + column] = -c_damping*t175 - c_stiffness*t176
                 J[36 + column] = c_damping*t117 + c_stiffness*t166
@@ -762,5 +761,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     t352*(2*t261 + 2*t262 + 2*t263 + 2*t264 + 2*t265 + 2*t266) + t353*(2*t276 +
                     2*t277 + 2*t278 + 2*t279 + 2*t280 + 2*t281) + t354*t360 + t355*t361 +
                     t356*t362))
-
     return OK

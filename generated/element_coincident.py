@@ -23,7 +23,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (6, 0, 0, 0),
               "column": (6, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -86,7 +85,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dxb_x = dq[3]
                 dxb_y = dq[4]
                 dxb_z = dq[5]
-                J[0 + column] = 0.0
+                J[column] = 0.0
                 J[9 + column] = 0.0
                 J[18 + column] = 0.0
                 J[27 + column] = 0.0

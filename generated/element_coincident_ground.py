@@ -34,7 +34,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (3, 0, 0, 0),
               "column": (3, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -86,7 +85,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dxa_x = dq[0]
                 dxa_y = dq[1]
                 dxa_z = dq[2]
-                J[0 + column] = 0.0
+                J[column] = 0.0
                 J[6 + column] = 0.0
                 J[12 + column] = 0.0
                 J[18 + column] = c_constraint*dxa_x

@@ -35,7 +35,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (32, 0, 0, 0),
               "column": (32, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -110,7 +109,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t10 = -t5
                 t11 = -t8
                 t12 = -t9
-                J[0 + column] = t5*t7
+                J[column] = t5*t7
                 J[7 + column] = t7*t8
                 J[14 + column] = t7*t9
                 J[21 + column] = t10*t7

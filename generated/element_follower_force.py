@@ -35,7 +35,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (21, 0, 0, 0),
               "column": (49, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -53,7 +52,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         va_x = v[unknowns[0]]
         va_y = v[unknowns[1]]
         va_z = v[unknowns[2]]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -90,7 +89,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dtha_y = dq[4]
                 dtha_z = dq[5]
                 t0 = amplitude*c_stiffness
-                J[0 + column] = (-t0*(d_x*(Ra_xy*dtha_z - Ra_xz*dtha_y) + d_y*(-Ra_xx*dtha_z +
+                J[column] = (-t0*(d_x*(Ra_xy*dtha_z - Ra_xz*dtha_y) + d_y*(-Ra_xx*dtha_z +
                     Ra_xz*dtha_x) + d_z*(Ra_xx*dtha_y - Ra_xy*dtha_x)))
                 J[6 + column] = (-t0*(d_x*(Ra_yy*dtha_z - Ra_yz*dtha_y) + d_y*(-Ra_yx*dtha_z +
                     Ra_yz*dtha_x) + d_z*(Ra_yx*dtha_y - Ra_yy*dtha_x)))
@@ -99,5 +98,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 J[18 + column] = 0.0
                 J[24 + column] = 0.0
                 J[30 + column] = 0.0
-
     return OK

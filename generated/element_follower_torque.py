@@ -25,7 +25,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (6, 0, 0, 0),
               "column": (0, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -51,7 +50,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             energies[POWERS + index[first + AT_PORT]] = (amplitude*(Oma_x*d_x + Oma_y*d_y +
                 Oma_z*d_z))
         if task == TANGENT:
-
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             for column in range(3):
@@ -59,9 +57,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dq[i] = 0.0
                 j = column//3
                 for r in range(3):
-                    dq[0 + 3*j + r] = T[9*nodes[j] + 3*r + column - 0 - 3*j]
-                J[0 + column] = 0.0
+                    dq[3*j + r] = T[9*nodes[j] + 3*r + column - 3*j]
+                J[column] = 0.0
                 J[3 + column] = 0.0
                 J[6 + column] = 0.0
-
     return OK

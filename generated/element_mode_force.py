@@ -25,7 +25,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (2, 0, 0, 0),
               "column": (0, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -44,13 +43,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         if task == ENERGY:
             energies[POWERS + index[first + AT_PORT]] = amplitude*factor*yda
         if task == TANGENT:
-
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             for column in range(1):
                 for i in range(1):
                     dq[i] = 0.0
                 dq[column] = 1.0
-                J[0 + column] = 0.0
-
+                J[column] = 0.0
     return OK

@@ -36,7 +36,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (157, 0, 0, 0),
               "column": (330, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -72,7 +71,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         ab_x = a[unknowns[3]]
         ab_y = a[unknowns[4]]
         ab_z = a[unknowns[5]]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -223,7 +222,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t27 = -xa_x + xb_x
                 t28 = -xa_y + xb_y
                 t29 = -xa_z + xb_z
-                J[0 + column] = c_stiffness*(-lam_1*t12 - lam_2*t13)
+                J[column] = c_stiffness*(-lam_1*t12 - lam_2*t13)
                 J[11 + column] = c_stiffness*(-lam_1*t17 - lam_2*t18)
                 J[22 + column] = c_stiffness*(-lam_1*t22 - lam_2*t23)
                 J[33 + column] = c_stiffness*(lam_1*t12 + lam_2*t13)

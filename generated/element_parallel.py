@@ -37,7 +37,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (214, 0, 0, 0),
               "column": (486, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -58,7 +57,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         n2_x = constant[6]
         n2_y = constant[7]
         n2_z = constant[8]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -73,7 +72,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Aa_x = a[unknowns[0]]
         Aa_y = a[unknowns[1]]
         Aa_z = a[unknowns[2]]
-        Rb_xx = R[9*nodes[1] + 0]
+        Rb_xx = R[9*nodes[1]]
         Rb_xy = R[9*nodes[1] + 1]
         Rb_xz = R[9*nodes[1] + 2]
         Rb_yx = R[9*nodes[1] + 3]
@@ -214,7 +213,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dq[i] = 0.0
                 j = column//3
                 for r in range(3):
-                    dq[0 + 3*j + r] = T[9*nodes[j] + 3*r + column - 0 - 3*j]
+                    dq[3*j + r] = T[9*nodes[j] + 3*r + column - 3*j]
                 dtha_x = dq[0]
                 dtha_y = dq[1]
                 dtha_z = dq[2]
@@ -275,7 +274,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t69 = -Rb_xx*e_y + Rb_xy*e_x
                 t70 = -Rb_yx*e_y + Rb_yy*e_x
                 t71 = -Rb_zx*e_y + Rb_zy*e_x
-                J[0 + column] = (c_stiffness*(lam_1*(t18*(n1_y*t19 - n1_z*t20) + t21*(n1_y*t22 -
+                J[column] = (c_stiffness*(lam_1*(t18*(n1_y*t19 - n1_z*t20) + t21*(n1_y*t22 -
                     n1_z*t23) + t24*(n1_y*t25 - n1_z*t26) + t30*(-Ra_xy*n1_z + Ra_xz*n1_y) +
                     t34*(-Ra_yy*n1_z + Ra_yz*n1_y) + t38*(-Ra_zy*n1_z + Ra_zz*n1_y)) +
                     lam_2*(t18*(n2_y*t19 - n2_z*t20) + t21*(n2_y*t22 - n2_z*t23) + t24*(n2_y*t25 -

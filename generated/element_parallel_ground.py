@@ -37,7 +37,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (133, 0, 0, 0),
               "column": (165, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -58,7 +57,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         n2_x = constant[6]
         n2_y = constant[7]
         n2_z = constant[8]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -135,7 +134,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dq[i] = 0.0
                 j = column//3
                 for r in range(3):
-                    dq[0 + 3*j + r] = T[9*nodes[j] + 3*r + column - 0 - 3*j]
+                    dq[3*j + r] = T[9*nodes[j] + 3*r + column - 3*j]
                 dtha_x = dq[0]
                 dtha_y = dq[1]
                 dtha_z = dq[2]
@@ -148,9 +147,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t6 = Ra_xy*dtha_z - Ra_xz*dtha_y
                 t7 = Ra_yy*dtha_z - Ra_yz*dtha_y
                 t8 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                J[0 + column] = (c_stiffness*(lam_1*(e_x*(n1_y*t0 - n1_z*t1) + e_y*(n1_y*t2 -
-                    n1_z*t3) + e_z*(n1_y*t4 - n1_z*t5)) + lam_2*(e_x*(n2_y*t0 - n2_z*t1) +
-                    e_y*(n2_y*t2 - n2_z*t3) + e_z*(n2_y*t4 - n2_z*t5))))
+                J[column] = (c_stiffness*(lam_1*(e_x*(n1_y*t0 - n1_z*t1) + e_y*(n1_y*t2 - n1_z*t3)
+                    + e_z*(n1_y*t4 - n1_z*t5)) + lam_2*(e_x*(n2_y*t0 - n2_z*t1) + e_y*(n2_y*t2 -
+                    n2_z*t3) + e_z*(n2_y*t4 - n2_z*t5))))
                 J[5 + column] = (c_stiffness*(lam_1*(e_x*(-n1_x*t0 + n1_z*t6) + e_y*(-n1_x*t2 +
                     n1_z*t7) + e_z*(-n1_x*t4 + n1_z*t8)) + lam_2*(e_x*(-n2_x*t0 + n2_z*t6) +
                     e_y*(-n2_x*t2 + n2_z*t7) + e_z*(-n2_x*t4 + n2_z*t8))))

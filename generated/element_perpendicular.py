@@ -36,7 +36,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (125, 0, 0, 0),
               "column": (307, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -54,7 +53,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         n_x = constant[3]
         n_y = constant[4]
         n_z = constant[5]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -69,7 +68,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Aa_x = a[unknowns[0]]
         Aa_y = a[unknowns[1]]
         Aa_z = a[unknowns[2]]
-        Rb_xx = R[9*nodes[1] + 0]
+        Rb_xx = R[9*nodes[1]]
         Rb_xy = R[9*nodes[1] + 1]
         Rb_xz = R[9*nodes[1] + 2]
         Rb_yx = R[9*nodes[1] + 3]
@@ -167,7 +166,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dq[i] = 0.0
                 j = column//3
                 for r in range(3):
-                    dq[0 + 3*j + r] = T[9*nodes[j] + 3*r + column - 0 - 3*j]
+                    dq[3*j + r] = T[9*nodes[j] + 3*r + column - 3*j]
                 dtha_x = dq[0]
                 dtha_y = dq[1]
                 dtha_z = dq[2]
@@ -205,7 +204,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t34 = n_x*t28 + n_y*t8 + n_z*t7
                 t35 = n_x*t29 + n_y*t11 + n_z*t10
                 t36 = n_x*t30 + n_y*t14 + n_z*t13
-                J[0 + column] = (t27*(t12*(n_y*t13 - n_z*t14) + t18*(-Ra_xy*n_z + Ra_xz*n_y) +
+                J[column] = (t27*(t12*(n_y*t13 - n_z*t14) + t18*(-Ra_xy*n_z + Ra_xz*n_y) +
                     t22*(-Ra_yy*n_z + Ra_yz*n_y) + t26*(-Ra_zy*n_z + Ra_zz*n_y) + t6*(n_y*t7 -
                     n_z*t8) + t9*(n_y*t10 - n_z*t11)))
                 J[7 + column] = (t27*(t12*(-n_x*t13 + n_z*t30) + t18*(Ra_xx*n_z - Ra_xz*n_x) +

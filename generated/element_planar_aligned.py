@@ -23,7 +23,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (2, 0, 0, 0),
               "column": (2, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -58,7 +57,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dq[column] = 1.0
                 dtha_z = dq[0]
                 dthb_z = dq[1]
-                J[0 + column] = 0.0
+                J[column] = 0.0
                 J[3 + column] = 0.0
                 J[6 + column] = c_constraint*(dtha_z - dthb_z)
             J[2] = c_constraint

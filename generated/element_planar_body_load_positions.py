@@ -41,7 +41,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 6
 OPERATIONS = {"residual": (360, 10, 2, 0),
               "column": (1, 12, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -51,10 +50,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     N_POSITIONS = index[AT_POSITIONS]
     N_ROTATIONS = index[AT_ROTATIONS]
     ROTATIONS = 2*N_POSITIONS
-    MODES = ROTATIONS + 1*N_ROTATIONS
+    MODES = ROTATIONS + N_ROTATIONS
     row = padded(max(n, 9*N_ROTATIONS))
-    qe = at(work, 0*row)
-    ve = at(work, 1*row)
+    qe = work
+    ve = at(work, row)
     y = at(work, 2*row)
     h = at(work, 3*row)
     dqe = at(work, 4*row)
@@ -68,7 +67,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        P = at(X, N_POSITIONS*2)
+        P = at(X, 2*N_POSITIONS)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -170,10 +169,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # differential: moment on the nodes, material
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
-                    dg[j3] = 0
+                    dg[j3] = 0.0
                 # differential: force on the modes
                 for k in range(MODES, n):
-                    dg[k] = 0
+                    dg[k] = 0.0
                 for i in range(n):
                     J[i*n + column] = dg[i]
     return OK

@@ -42,7 +42,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (63, 0, 0, 0),
               "column": (194, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -230,7 +229,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t74 = kt_z*(-dtha_z + dthb_z)
                 t75 = 2*Ra_cos*t41 - 2*t46 - 2*t47 - 2*t48
                 t76 = 2*Ra_sin*dtha_z*t26 - 2*t40 - 2*t42 - 2*t43
-                J[0 + column] = -c_damping*t35 + c_stiffness*t63
+                J[column] = -c_damping*t35 + c_stiffness*t63
                 J[6 + column] = -c_damping*t64 - c_stiffness*t65
                 J[12 + column] = c_damping*t35 - c_stiffness*t63
                 J[18 + column] = c_damping*t64 + c_stiffness*t65
@@ -238,5 +237,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     c_stiffness*((0.5)*t36*t75 + (0.5)*t38*t76 + (0.5)*t45*t68 + (0.5)*t50*t71 +
                     t56*t69*t75 + t60*t72*t76 + t61*t73 + t62*t70 - t74))
                 J[30 + column] = -c_damping*t66*t67 + c_stiffness*t74
-
     return OK

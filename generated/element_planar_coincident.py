@@ -23,7 +23,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (4, 0, 0, 0),
               "column": (4, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -72,7 +71,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dxa_y = dq[1]
                 dxb_x = dq[2]
                 dxb_y = dq[3]
-                J[0 + column] = 0.0
+                J[column] = 0.0
                 J[6 + column] = 0.0
                 J[12 + column] = 0.0
                 J[18 + column] = 0.0

@@ -34,7 +34,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (2, 0, 0, 0),
               "column": (2, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -76,7 +75,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dq[column] = 1.0
                 dxa_x = dq[0]
                 dxa_y = dq[1]
-                J[0 + column] = 0.0
+                J[column] = 0.0
                 J[4 + column] = 0.0
                 J[8 + column] = c_constraint*dxa_x
                 J[12 + column] = c_constraint*dxa_y

@@ -35,7 +35,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (23, 0, 0, 0),
               "column": (23, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -95,7 +94,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t7 = 2*dxa_y - 2*dxb_y
                 t8 = -t4
                 t9 = -t7
-                J[0 + column] = t4*t6
+                J[column] = t4*t6
                 J[5 + column] = t6*t7
                 J[10 + column] = t6*t8
                 J[15 + column] = t6*t9

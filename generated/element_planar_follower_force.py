@@ -37,7 +37,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (10, 0, 0, 0),
               "column": (14, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -74,8 +73,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t0 = Ra_cos*dtha_z
                 t1 = Ra_sin*dtha_z
                 t2 = amplitude*c_stiffness
-                J[0 + column] = -t2*(-d_x*t1 - d_y*t0)
+                J[column] = -t2*(-d_x*t1 - d_y*t0)
                 J[3 + column] = -t2*(d_x*t0 - d_y*t1)
                 J[6 + column] = 0.0
-
     return OK

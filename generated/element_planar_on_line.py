@@ -37,7 +37,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (21, 0, 0, 0),
               "column": (40, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -124,7 +123,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t16 = t5 + t6
                 t17 = -xa_x + xb_x
                 t18 = -xa_y + xb_y
-                J[0 + column] = t7*t8
+                J[column] = t7*t8
                 J[6 + column] = t11*t8
                 J[12 + column] = t12*t8
                 J[18 + column] = t10*t8

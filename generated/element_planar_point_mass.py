@@ -38,7 +38,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (6, 0, 0, 0),
               "column": (3, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -82,7 +81,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxa_x = du[0]
                 uxa_y = du[1]
                 t0 = c_mass*mass
-                J[0 + column] = t0*uxa_x
+                J[column] = t0*uxa_x
                 J[2 + column] = t0*uxa_y
-
     return OK

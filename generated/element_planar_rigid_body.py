@@ -44,7 +44,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (41, 0, 0, 0),
               "column": (79, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -130,12 +129,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t18 = dtha_z*t12
                 t19 = Ra_sin*dtha_z*mc_y - t15
                 t20 = -t17 - t18
-                J[0 + column] = (c_damping*(2*Oma_z*Ra_sin*mc_y*utha_z - t8*t9) +
-                    c_mass*(mass*uxa_x - t11 - t13) + c_stiffness*(Aa_z*dtha_z*t14 - Aa_z*t15 +
-                    t16*t17 + t16*t18))
+                J[column] = (c_damping*(2*Oma_z*Ra_sin*mc_y*utha_z - t8*t9) + c_mass*(mass*uxa_x -
+                    t11 - t13) + c_stiffness*(Aa_z*dtha_z*t14 - Aa_z*t15 + t16*t17 + t16*t18))
                 J[3 + column] = (c_damping*(-t11*t9 - t13*t9) + c_mass*(mass*uxa_y - t14*utha_z +
                     t8) + c_stiffness*(-Aa_z*t17 - Aa_z*t18 + Ra_sin*dtha_z*mc_y*t16 - t15*t16))
                 J[6 + column] = (c_mass*(J_zz*utha_z + uxa_x*(-t10 - t12) + uxa_y*(-t14 + t7)) +
                     c_stiffness*(aa_x*t19 + aa_y*t20 - field_x*t19 - field_y*t20))
-
     return OK

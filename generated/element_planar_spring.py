@@ -42,7 +42,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (52, 0, 0, 0),
               "column": (164, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -173,7 +172,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t59 = t27*t38
                 t60 = -t54
                 t61 = t27*t40
-                J[0 + column] = (c_stiffness*(t17*t41 + t17*t53 + t18*t51 + t18*t52 + t29*t31 +
+                J[column] = (c_stiffness*(t17*t41 + t17*t53 + t18*t51 + t18*t52 + t29*t31 +
                     t29*t32 + t30*t42*t50 + t33*t37 + t42*t49) + t17*t25)
                 J[4 + column] = (c_stiffness*(t20*t51 + t20*t52 + t20*t56 + t20*t57 + t31*t55 +
                     t32*t55 + t37*t45 + t41*t54 + t53*t54) + t25*t54)
@@ -181,5 +180,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     t32*t59 + t37*t43 + t41*t58 + t53*t58) + t25*t58)
                 J[12 + column] = (c_stiffness*(t21*t51 + t21*t52 + t21*t56 + t21*t57 + t31*t61 +
                     t32*t61 + t37*t46 + t41*t60 + t53*t60) + t25*t60)
-
     return OK

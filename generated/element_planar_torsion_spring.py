@@ -40,7 +40,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (16, 0, 0, 0),
               "column": (23, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -97,7 +96,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t4 = (0.5)*c*c_damping
                 t5 = (k*(dtha_z - dthb_z) + k3*(3*dtha_z - 3*dthb_z)*(-rest + tha - thb)*(-rest +
                     tha - thb))
-                J[0 + column] = c_stiffness*t5 + t3*t4
+                J[column] = c_stiffness*t5 + t3*t4
                 J[2 + column] = -c_stiffness*t5 - t3*t4
-
     return OK

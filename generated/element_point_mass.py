@@ -38,7 +38,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (9, 0, 0, 0),
               "column": (4, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -93,8 +92,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxa_y = du[1]
                 uxa_z = du[2]
                 t0 = c_mass*mass
-                J[0 + column] = t0*uxa_x
+                J[column] = t0*uxa_x
                 J[3 + column] = t0*uxa_y
                 J[6 + column] = t0*uxa_z
-
     return OK

@@ -47,7 +47,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (303, 0, 0, 0),
               "column": (723, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -81,7 +80,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         aa_x = a[unknowns[0]]
         aa_y = a[unknowns[1]]
         aa_z = a[unknowns[2]]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -267,8 +266,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t96 = t93*va_x + t94*va_y + t95*va_z
                 t97 = J_xx*Oma_x + J_xy*Oma_y + J_xz*Oma_z + t72*va_x + t73*va_y + t74*va_z
                 t98 = t86*va_x + t87*va_y + t88*va_z
-                J[0 + column] = (c_damping*(t27*t36 + t28*t31 + t29*t30 + t32*t33 + t34*t35 +
-                    t37*t38) + c_mass*(Ra_xx*t27 + Ra_xy*t28 + Ra_xz*t29 + mass*uxa_x) +
+                J[column] = (c_damping*(t27*t36 + t28*t31 + t29*t30 + t32*t33 + t34*t35 + t37*t38)
+                    + c_mass*(Ra_xx*t27 + Ra_xy*t28 + Ra_xz*t29 + mass*uxa_x) +
                     c_stiffness*(t32*t45 + t34*t46 + t37*t47 + t39*t40 + t41*t42 + t43*t44))
                 J[6 + column] = (c_damping*(t27*t52 + t28*t49 + t29*t48 + t32*t50 + t34*t51 +
                     t37*t53) + c_mass*(Ra_yx*t27 + Ra_yy*t28 + Ra_yz*t29 + mass*uxa_y) +
@@ -309,5 +308,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     va_x*(mc_x*t46 - mc_y*t47) - va_x*(-t34*t44 + t37*t42) + va_y*(mc_x*t58 -
                     mc_y*t59) - va_y*(-t34*t56 + t37*t55) + va_z*(mc_x*t70 - mc_y*t71) -
                     va_z*(-t34*t68 + t37*t67)))
-
     return OK

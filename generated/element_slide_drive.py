@@ -39,7 +39,6 @@ DRIVEN = True        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (79, 0, 0, 0),
               "column": (175, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -73,7 +72,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         ab_x = a[unknowns[3]]
         ab_y = a[unknowns[4]]
         ab_z = a[unknowns[5]]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -192,7 +191,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t22 = -xa_x + xb_x
                 t23 = -xa_y + xb_y
                 t24 = -xa_z + xb_z
-                J[0 + column] = -t10*t9
+                J[column] = -t10*t9
                 J[10 + column] = -t10*t14
                 J[20 + column] = -t10*t18
                 J[30 + column] = t10*t9

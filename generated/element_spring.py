@@ -42,7 +42,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (74, 0, 0, 0),
               "column": (232, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -210,7 +209,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t76 = t34*t48
                 t77 = -t71
                 t78 = t34*t50
-                J[0 + column] = (c_stiffness*(t22*t51 + t22*t66 + t23*t64 + t23*t65 + t36*t38 +
+                J[column] = (c_stiffness*(t22*t51 + t22*t66 + t23*t64 + t23*t65 + t36*t38 +
                     t36*t39 + t37*t52*t63 + t40*t45 + t52*t62) + t22*t32)
                 J[6 + column] = (c_stiffness*(t25*t64 + t25*t65 + t25*t69 + t25*t70 + t38*t68 +
                     t39*t68 + t45*t55 + t51*t67 + t66*t67) + t32*t67)
@@ -222,5 +221,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     t39*t76 + t45*t56 + t51*t75 + t66*t75) + t32*t75)
                 J[30 + column] = (c_stiffness*(t28*t64 + t28*t65 + t28*t69 + t28*t70 + t38*t78 +
                     t39*t78 + t45*t59 + t51*t77 + t66*t77) + t32*t77)
-
     return OK

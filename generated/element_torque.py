@@ -35,7 +35,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (21, 0, 0, 0),
               "column": (49, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -50,7 +49,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         d_x = constant[0]
         d_y = constant[1]
         d_z = constant[2]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -79,16 +78,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dq[i] = 0.0
                 j = column//3
                 for r in range(3):
-                    dq[0 + 3*j + r] = T[9*nodes[j] + 3*r + column - 0 - 3*j]
+                    dq[3*j + r] = T[9*nodes[j] + 3*r + column - 3*j]
                 dtha_x = dq[0]
                 dtha_y = dq[1]
                 dtha_z = dq[2]
                 t0 = amplitude*c_stiffness
-                J[0 + column] = (-t0*(d_x*(Ra_xy*dtha_z - Ra_xz*dtha_y) + d_y*(Ra_yy*dtha_z -
+                J[column] = (-t0*(d_x*(Ra_xy*dtha_z - Ra_xz*dtha_y) + d_y*(Ra_yy*dtha_z -
                     Ra_yz*dtha_y) + d_z*(Ra_zy*dtha_z - Ra_zz*dtha_y)))
                 J[3 + column] = (-t0*(d_x*(-Ra_xx*dtha_z + Ra_xz*dtha_x) + d_y*(-Ra_yx*dtha_z +
                     Ra_yz*dtha_x) + d_z*(-Ra_zx*dtha_z + Ra_zz*dtha_x)))
                 J[6 + column] = (-t0*(d_x*(Ra_xx*dtha_y - Ra_xy*dtha_x) + d_y*(Ra_yx*dtha_y -
                     Ra_yy*dtha_x) + d_z*(Ra_zx*dtha_y - Ra_zy*dtha_x)))
-
     return OK

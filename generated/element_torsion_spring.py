@@ -44,7 +44,6 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (361, 0, 0, 0),
               "column": (1060, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -66,7 +65,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         m_x = constant[7]
         m_y = constant[8]
         m_z = constant[9]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -78,7 +77,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_x = v[unknowns[0]]
         Oma_y = v[unknowns[1]]
         Oma_z = v[unknowns[2]]
-        Rb_xx = R[9*nodes[1] + 0]
+        Rb_xx = R[9*nodes[1]]
         Rb_xy = R[9*nodes[1] + 1]
         Rb_xz = R[9*nodes[1] + 2]
         Rb_yx = R[9*nodes[1] + 3]
@@ -230,7 +229,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 du[column] = 1.0
                 j = column//3
                 for r in range(3):
-                    dq[0 + 3*j + r] = T[9*nodes[j] + 3*r + column - 0 - 3*j]
+                    dq[3*j + r] = T[9*nodes[j] + 3*r + column - 3*j]
                 dtha_x = dq[0]
                 dtha_y = dq[1]
                 dtha_z = dq[2]
@@ -452,7 +451,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t259 = t121*(m_x*t142 + m_y*t258)
                 t260 = t130*(n_x*t142 + n_y*t258)
                 t261 = t175*t254
-                J[0 + column] = (c_stiffness*(t104*t73 + t157*(t121*t129 + t130*t133) +
+                J[column] = (c_stiffness*(t104*t73 + t157*(t121*t129 + t130*t133) +
                     t163*(t121*t158 + t130*t160) + t177*(t129*t154 + t129*t174 + t132*t171 +
                     t133*t172 + 2*t170 + 2*t176) + t178*(t154*t158 + t158*t174 + t159*t171 +
                     t160*t172 + 4*t170 + 4*t176) + t94*(t68*t84 + t70*t87 + t72*t90 + t76*t77 +
@@ -482,5 +481,4 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     t174*t253 + 2*t259 + 2*t261) + t178*(t154*t256 + t159*t260 + t172*t257 +
                     t174*t256 + 4*t259 + 4*t261) + t94*(-Rb_xz*t180 - Rb_yz*t181 - Rb_zz*t182 -
                     t100*t79 - t103*t81 - t77*t97)) + t250*t75)
-
     return OK

@@ -41,7 +41,6 @@ DRIVEN = True        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (136, 0, 0, 0),
               "column": (318, 0, 0, 0)}
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -59,7 +58,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         m_x = constant[3]
         m_y = constant[4]
         m_z = constant[5]
-        Ra_xx = R[9*nodes[0] + 0]
+        Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
         Ra_yx = R[9*nodes[0] + 3]
@@ -74,7 +73,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Aa_x = a[unknowns[0]]
         Aa_y = a[unknowns[1]]
         Aa_z = a[unknowns[2]]
-        Rb_xx = R[9*nodes[1] + 0]
+        Rb_xx = R[9*nodes[1]]
         Rb_xy = R[9*nodes[1] + 1]
         Rb_xz = R[9*nodes[1] + 2]
         Rb_yx = R[9*nodes[1] + 3]
@@ -238,7 +237,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dq[i] = 0.0
                 j = column//3
                 for r in range(3):
-                    dq[0 + 3*j + r] = T[9*nodes[j] + 3*r + column - 0 - 3*j]
+                    dq[3*j + r] = T[9*nodes[j] + 3*r + column - 3*j]
                 dtha_x = dq[0]
                 dtha_y = dq[1]
                 dtha_z = dq[2]
@@ -281,9 +280,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t44 = n_x*t38 + n_y*t12 + n_z*t11
                 t45 = n_x*t39 + n_y*t20 + n_z*t19
                 t46 = n_x*t40 + n_y*t23 + n_z*t22
-                J[0 + column] = (t37*(t18*(n_y*t11 - n_z*t12) + t21*(n_y*t19 - n_z*t20) +
-                    t24*(n_y*t22 - n_z*t23) + t28*(-Ra_xy*n_z + Ra_xz*n_y) + t32*(-Ra_yy*n_z +
-                    Ra_yz*n_y) + t36*(-Ra_zy*n_z + Ra_zz*n_y)))
+                J[column] = (t37*(t18*(n_y*t11 - n_z*t12) + t21*(n_y*t19 - n_z*t20) + t24*(n_y*t22
+                    - n_z*t23) + t28*(-Ra_xy*n_z + Ra_xz*n_y) + t32*(-Ra_yy*n_z + Ra_yz*n_y) +
+                    t36*(-Ra_zy*n_z + Ra_zz*n_y)))
                 J[7 + column] = (t37*(t18*(-n_x*t11 + n_z*t38) + t21*(-n_x*t19 + n_z*t39) +
                     t24*(-n_x*t22 + n_z*t40) + t28*(Ra_xx*n_z - Ra_xz*n_x) + t32*(Ra_yx*n_z -
                     Ra_yz*n_x) + t36*(Ra_zx*n_z - Ra_zz*n_x)))

@@ -90,7 +90,6 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -104,8 +103,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         n = hidden(width)
         row = padded(max(n + 18, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         e0s = at(work, 4*row)
@@ -139,7 +138,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Zq = at(work, 57*row)
         Zd = at(work, 69*row)
         products = at(work, 81*row)
-        Gy = at(work, (120 + 0*(n + 18))*row)
+        Gy = at(work, 120*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -148,7 +147,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*3)
+        S = at(X, 3*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 3*padded(n))
@@ -199,8 +198,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            e0s[j], e1s[j] = (inverse_tangent_coefficients(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] +
-                y[j3 + 2] * y[j3 + 2]))
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            e0s[j], e1s[j] = inverse_tangent_coefficients(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
         # displacement of the nodes in the frame, (11)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -258,8 +257,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
             rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
             rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
-        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = (inverse_3(B_00, B_01, B_02, B_10, B_11,
-            B_12, B_20, B_21, B_22))
+        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
+            B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -440,8 +439,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[1] = R0_xy*field_x + R0_yy*field_y + R0_zy*field_z
         gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
         # coordinates that determine the others, and their rates
-        all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound,
-                    bound_free, free, hN)
+        all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free, hN)
         # Q_b z, all b
         packed_times(followers, z, Zq, slaved*hn)
         # Q_b zd, all b
@@ -560,19 +558,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
-        by_products[9] = 0
-        by_products[10] = 0
-        by_products[11] = 0
+        by_products[9] = 0.0
+        by_products[10] = 0.0
+        by_products[11] = 0.0
         by_products[12] = spin_x
         by_products[13] = spin_y
         by_products[14] = spin_z
         # inertia force of deformation, Mbar zddot
-        packed_times(Mz, zdd, local, 1*hN)
+        packed_times(Mz, zdd, local, hN)
         # damping force, Cbar ydot
         add_packed_times(Cz, zd, local)
         # force on the coordinates: first moments, couplings, inertia at rest and deformed
-        add_blocks_times(moment_columns, by_moment_columns, products, by_products,
-                         local, N, 12, 15, hN)
+        add_blocks_times(moment_columns, by_moment_columns, products, by_products, local, N, 12,
+                         15, hN)
         # Ghat_e y of all e, and Sbar y
         packed_times(stretched, z, Gy, stretching*hn)
         # E_e . y
@@ -593,8 +591,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # and of Sbar y
         by_Gy[resultants] = 1
         # forces of the resultants and their geometric stiffness, with Sbar y
-        add_blocks_times(E, by_E, Gy, by_Gy, local, free, resultants, stretching,
-                         hn)
+        add_blocks_times(E, by_E, Gy, by_Gy, local, free, resultants, stretching, hn)
         # forces on eta, pulled back
         add_block_times(Zq, at(local, free), local, free, slaved, hn)
         # force and moment on the frame, in axes of the body
@@ -731,13 +728,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[k] = fm
         if task == ENERGY:
             # momentum of deformation, Mbar zdot
-            packed_times(Mz, zd, moved, 1*hN)
+            packed_times(Mz, zd, moved, hN)
             # twice its energy
-            rows_times(moved, zd, at(squares, 0), N, 1, hN)
+            rows_times(moved, zd, squares, N, 1, hN)
             # twice that of Sbar y
             rows_times(at(Gy, resultants*hn), z, at(squares, 1), free, 1, hn)
             # damping force, Cbar ydot
-            packed_times(Cz, zd, moved, 1*hN)
+            packed_times(Cz, zd, moved, hN)
             # its power
             rows_times(moved, zd, at(squares, 2), free, 1, hn)
             # energies, momentum and its moment about the origin
@@ -830,7 +827,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dg = at(work, 53*row)
             Za = at(work, 96*row)
             more = at(work, 108*row)
-            Lz = at(work, (120 + 1*(n + 18))*row)
+            Lz = at(work, (120 + n + 18)*row)
             Lv = at(work, (120 + 2*(n + 18))*row)
             La = at(work, (120 + 3*(n + 18))*row)
             # Q_b zdd, all b
@@ -838,8 +835,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # second derivative of the coefficients of T^-1
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
-                e2s[j] = (inverse_tangent_second(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2]
-                    * y[j3 + 2]))
+                psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
             # J2_kl zdot
             packed_times(of_place, zd, more, 9*hN)
             # K_k^T zddot and (K_k^T - K_k) zddot
@@ -857,9 +854,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_place[6] = c_geo*turning_x
             by_place[7] = c_geo*turning_y
             by_place[8] = c_geo*turning_z
-            by_rate[0] = 0
-            by_rate[1] = 0
-            by_rate[2] = 0
+            by_rate[0] = 0.0
+            by_rate[1] = 0.0
+            by_rate[2] = 0.0
             by_rate[3] = spin_x
             by_rate[4] = spin_y
             by_rate[5] = spin_z
@@ -896,31 +893,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
                 # their forces
-                add_blocks_times(E, of_E, Gy, of_Gy, at(Lz, j*deep), free, resultants,
-                                 resultants, hn)
+                add_blocks_times(E, of_E, Gy, of_Gy, at(Lz, j*deep), free, resultants, resultants,
+                                 hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
                 turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-                row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
+                row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
                     moment_columns[5*hN + i])
-                row_h_xx, row_h_yy, row_h_zz, row_h_xy, row_h_xz, row_h_yz = (moment_columns[6*hN
-                    + i], moment_columns[7*hN + i], moment_columns[8*hN + i], moment_columns[9*hN
-                    + i], moment_columns[10*hN + i], moment_columns[11*hN + i])
+                row_h_xx, row_h_yy, row_h_zz, row_h_xy, row_h_xz, row_h_yz = (
+                    moment_columns[6*hN + i], moment_columns[7*hN + i], moment_columns[8*hN + i],
+                    moment_columns[9*hN + i], moment_columns[10*hN + i], moment_columns[11*hN + i])
                 row_j_xx, row_j_yy, row_j_zz, row_j_xy, row_j_xz, row_j_yz = (products[i],
-                    products[1*hN + i], products[2*hN + i], products[3*hN + i], products[4*hN +
-                    i], products[5*hN + i])
-                row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i], products[8*hN
-                    + i])
+                    products[hN + i], products[2*hN + i], products[3*hN + i], products[4*hN + i],
+                    products[5*hN + i])
+                row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i],
+                    products[8*hN + i])
                 row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
                     products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
-                    more[1*hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
+                    more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
                 row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
                 t159 = row_S1_x*spin_z
@@ -984,18 +981,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-                row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[1*hN + i],
+                row_S1_x, row_S1_y, row_S1_z = (moment_columns[i], moment_columns[hN + i],
                     moment_columns[2*hN + i])
                 row_g_x, row_g_y, row_g_z = (moment_columns[3*hN + i], moment_columns[4*hN + i],
                     moment_columns[5*hN + i])
-                row_h_xx, row_h_yy, row_h_zz, row_h_xy, row_h_xz, row_h_yz = (moment_columns[6*hN
-                    + i], moment_columns[7*hN + i], moment_columns[8*hN + i], moment_columns[9*hN
-                    + i], moment_columns[10*hN + i], moment_columns[11*hN + i])
+                row_h_xx, row_h_yy, row_h_zz, row_h_xy, row_h_xz, row_h_yz = (
+                    moment_columns[6*hN + i], moment_columns[7*hN + i], moment_columns[8*hN + i],
+                    moment_columns[9*hN + i], moment_columns[10*hN + i], moment_columns[11*hN + i])
                 row_j_xx, row_j_yy, row_j_zz, row_j_xy, row_j_xz, row_j_yz = (products[i],
-                    products[1*hN + i], products[2*hN + i], products[3*hN + i], products[4*hN +
-                    i], products[5*hN + i])
-                row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i], products[8*hN
-                    + i])
+                    products[hN + i], products[2*hN + i], products[3*hN + i], products[4*hN + i],
+                    products[5*hN + i])
+                row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i],
+                    products[8*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
                 t187 = row_h_xy + 2*row_j_xy
@@ -1059,38 +1056,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t208 + t209 + t210
             Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t196 + t207
             La[N*deep + N] = mass
-            La[N*deep + N + 1] = 0
-            La[N*deep + N + 2] = 0
-            La[N*deep + N + 3] = 0
+            La[N*deep + N + 1] = 0.0
+            La[N*deep + N + 2] = 0.0
+            La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
             La[N*deep + N + 5] = t211
-            La[(N + 1)*deep + N] = 0
+            La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
-            La[(N + 1)*deep + N + 2] = 0
+            La[(N + 1)*deep + N + 2] = 0.0
             La[(N + 1)*deep + N + 3] = t212
-            La[(N + 1)*deep + N + 4] = 0
+            La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
-            La[(N + 2)*deep + N] = 0
-            La[(N + 2)*deep + N + 1] = 0
+            La[(N + 2)*deep + N] = 0.0
+            La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
             La[(N + 2)*deep + N + 4] = t213
-            La[(N + 2)*deep + N + 5] = 0
-            La[(N + 3)*deep + N] = 0
+            La[(N + 2)*deep + N + 5] = 0.0
+            La[(N + 3)*deep + N] = 0.0
             La[(N + 3)*deep + N + 1] = t212
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
-            La[(N + 4)*deep + N + 1] = 0
+            La[(N + 4)*deep + N + 1] = 0.0
             La[(N + 4)*deep + N + 2] = t213
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
             La[(N + 5)*deep + N] = t211
             La[(N + 5)*deep + N + 1] = sum_c_x
-            La[(N + 5)*deep + N + 2] = 0
+            La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
             La[(N + 5)*deep + N + 4] = sum_J_yz
             La[(N + 5)*deep + N + 5] = sum_J_zz
@@ -1104,7 +1101,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = T[9*nodes[j] + 3*r + k]*c_stiffness
                 else:
                     dqe[column] = c_stiffness
                 dve[column] = c_damping

@@ -74,7 +74,6 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -88,8 +87,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         n = hidden(width)
         row = padded(max(n, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         e0s = at(work, 4*row)
@@ -116,7 +115,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*3)
+        S = at(X, 3*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 3*padded(n))
@@ -154,8 +153,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            e0s[j], e1s[j] = (inverse_tangent_coefficients(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] +
-                y[j3 + 2] * y[j3 + 2]))
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            e0s[j], e1s[j] = inverse_tangent_coefficients(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
         # displacement of the nodes in the frame, (11)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -213,8 +212,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
             rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
             rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
-        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = (inverse_3(B_00, B_01, B_02, B_10, B_11,
-            B_12, B_20, B_21, B_22))
+        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
+            B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -408,8 +407,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # rigid part of etad
         columns_times(rigid_rows, etad, rigid2, 6, n)
         # coefficients of exp(phi) and T(phi), and for their derivatives
-        r1, r2, r3, r4, r5, r6, r7 = (stumpff_1_to_7(rigid0[3] * rigid0[3] + rigid0[4] * rigid0[4]
-            + rigid0[5] * rigid0[5]))
+        angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
+        r1, r2, r3, r4, r5, r6, r7 = stumpff_1_to_7(
+            angle0_x*angle0_x + angle0_y*angle0_y + angle0_z*angle0_z)
         # angular velocity of the rigid part
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
@@ -718,8 +718,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # second derivative of the coefficients of T^-1
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
-                e2s[j] = (inverse_tangent_second(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2]
-                    * y[j3 + 2]))
+                psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
             for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0
@@ -730,7 +730,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = T[9*nodes[j] + 3*r + k]*c_stiffness
                 else:
                     dqe[column] = c_stiffness
                 dve[column] = c_damping

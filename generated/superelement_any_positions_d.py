@@ -75,7 +75,6 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -89,8 +88,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         n = hidden(width)
         row = padded(max(n, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         e0s = at(work, 4*row)
@@ -117,7 +116,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*3)
+        S = at(X, 3*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 3*padded(n))
@@ -159,8 +158,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            e0s[j], e1s[j] = (inverse_tangent_coefficients(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] +
-                y[j3 + 2] * y[j3 + 2]))
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            e0s[j], e1s[j] = inverse_tangent_coefficients(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
         # displacement of the nodes in the frame, (11)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -225,8 +224,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             rhs_x += -fit*(X_y*t12 - X_z*t13)
             rhs_y += -fit*(-X_x*t12 + X_z*t14)
             rhs_z += -fit*(X_x*t13 - X_y*t14)
-        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = (inverse_3(B_00, B_01, B_02, B_10, B_11,
-            B_12, B_20, B_21, B_22))
+        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
+            B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -417,8 +416,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # rigid part of etad
         columns_times(rigid_rows, etad, rigid2, 6, n)
         # coefficients of exp(phi) and T(phi), and for their derivatives
-        r1, r2, r3, r4, r5, r6, r7 = (stumpff_1_to_7(rigid0[3] * rigid0[3] + rigid0[4] * rigid0[4]
-            + rigid0[5] * rigid0[5]))
+        angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
+        r1, r2, r3, r4, r5, r6, r7 = stumpff_1_to_7(
+            angle0_x*angle0_x + angle0_y*angle0_y + angle0_z*angle0_z)
         # angular velocity of the rigid part
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
@@ -726,8 +726,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # second derivative of the coefficients of T^-1
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
-                e2s[j] = (inverse_tangent_second(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2]
-                    * y[j3 + 2]))
+                psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+                e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
             for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0
@@ -738,7 +738,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = T[9*nodes[j] + 3*r + k]*c_stiffness
                 else:
                     dqe[column] = c_stiffness
                 dve[column] = c_damping

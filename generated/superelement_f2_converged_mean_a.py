@@ -51,7 +51,6 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (300, 136, 375, 3),
               "column": (81, 172, 1195, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -61,8 +60,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         n = hidden(width)
         row = padded(max(n, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         e0s = at(work, 4*row)
@@ -86,7 +85,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*3)
+        S = at(X, 3*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 3*padded(n))
@@ -118,8 +117,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            e0s[j], e1s[j] = (inverse_tangent_coefficients(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] +
-                y[j3 + 2] * y[j3 + 2]))
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            e0s[j], e1s[j] = inverse_tangent_coefficients(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
         # displacement of the nodes in the frame, (11)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -144,10 +143,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             acc[i3 + 2] = R0_xz*a_x + R0_yz*a_y + R0_zz*a_z
         # rotation of the node in the frame
         for j in range(N_ROTATIONS):
-            R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j] + 0],
+            R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j]],
                 R[9*nodes[j] + 1], R[9*nodes[j] + 2], R[9*nodes[j] + 3], R[9*nodes[j] + 4],
                 R[9*nodes[j] + 5], R[9*nodes[j] + 6], R[9*nodes[j] + 7], R[9*nodes[j] + 8])
-            Q[9*j + 0] = R0_xx*R_xx + R0_yx*R_yx + R0_zx*R_zx
+            Q[9*j] = R0_xx*R_xx + R0_yx*R_yx + R0_zx*R_zx
             Q[9*j + 1] = R0_xx*R_xy + R0_yx*R_yy + R0_zx*R_zy
             Q[9*j + 2] = R0_xx*R_xz + R0_yx*R_yz + R0_zx*R_zz
             Q[9*j + 3] = R0_xy*R_xx + R0_yy*R_yx + R0_zy*R_zx
@@ -160,8 +159,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
-            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j + 1], Q[9*j
-                + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
+            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
             yd[j3] = Om_x*Q_xx + Om_y*Q_xy + Om_z*Q_xz
             yd[j3 + 1] = Om_x*Q_yx + Om_y*Q_yy + Om_z*Q_yz
             yd[j3 + 2] = Om_x*Q_zx + Om_y*Q_zy + Om_z*Q_zz
@@ -200,8 +199,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
             rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
             rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
-        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = (inverse_3(B_00, B_01, B_02, B_10, B_11,
-            B_12, B_20, B_21, B_22))
+        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
+            B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -217,8 +216,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
-            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j + 1], Q[9*j
-                + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
+            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
             w_x, w_y, w_z = yd[j3], yd[j3 + 1], yd[j3 + 2]
             ydd[j3] = A_x*Q_xx + A_y*Q_xy + A_z*Q_xz - Om0_y*w_z + Om0_z*w_y
             ydd[j3 + 1] = A_x*Q_yx + A_y*Q_yy + A_z*Q_yz + Om0_x*w_z - Om0_z*w_x
@@ -330,8 +329,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             j3 = ROTATIONS + 3*j
             alpha_r = alpha_rs[j]
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
-            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j + 1], Q[9*j
-                + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
+            Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
             w_x, w_y, w_z = yd[j3], yd[j3 + 1], yd[j3 + 2]
             pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
@@ -373,8 +372,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kinetic = 0.0
             strain = 0.0
             for i in range(n):
-                kinetic += 0.5*yd[i]*p[i]
-                strain += 0.5*y[i]*s[i]
+                kinetic += 0.5*p[i]*yd[i]
+                strain += 0.5*s[i]*y[i]
             # energies
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
@@ -403,11 +402,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # moment of momentum: rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
-                Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j + 1],
-                    Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j
-                    + 8])
+                Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                    Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
+                    Q[9*j + 8])
                 pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
-                R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j] + 0],
+                R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j]],
                     R[9*nodes[j] + 1], R[9*nodes[j] + 2], R[9*nodes[j] + 3], R[9*nodes[j] + 4],
                     R[9*nodes[j] + 5], R[9*nodes[j] + 6], R[9*nodes[j] + 7], R[9*nodes[j] + 8])
                 t52 = Q_xx*pw_x + Q_yx*pw_y + Q_zx*pw_z
@@ -455,7 +454,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = T[9*nodes[j] + 3*r + k]*c_stiffness
                 else:
                     dqe[column] = c_stiffness
                 dve[column] = c_damping
@@ -575,9 +574,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                     dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
-                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j +
-                        1], Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j +
-                        7], Q[9*j + 8])
+                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                        Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
+                        Q[9*j + 8])
                     dyd[j3] = (Om_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) +
                         Om_y*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y) +
                         Om_z*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y) + Q_xx*dOm_x +
@@ -659,9 +658,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
                     dA_x, dA_y, dA_z = dae[j3], dae[j3 + 1], dae[j3 + 2]
-                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j +
-                        1], Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j +
-                        7], Q[9*j + 8])
+                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                        Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
+                        Q[9*j + 8])
                     w_x, w_y, w_z = yd[j3], yd[j3 + 1], yd[j3 + 2]
                     dw_x, dw_y, dw_z = dyd[j3], dyd[j3 + 1], dyd[j3 + 2]
                     dydd[j3] = (A_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) +
@@ -829,9 +828,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     alpha_r = alpha_rs[j]
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
-                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j + 0], Q[9*j +
-                        1], Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j +
-                        7], Q[9*j + 8])
+                    Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
+                        Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
+                        Q[9*j + 8])
                     w_x, w_y, w_z = yd[j3], yd[j3 + 1], yd[j3 + 2]
                     pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
                     pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]

@@ -51,7 +51,6 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (337, 136, 153, 3),
               "column": (77, 172, 362, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -61,8 +60,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         n = hidden(width)
         row = padded(max(n, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         beta = at(work, 3*row)
         y = at(work, 4*row)
@@ -89,7 +88,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*3)
+        S = at(X, 3*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 3*padded(n))
@@ -112,8 +111,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             x0_y += alpha*x_y
             x0_z += alpha*x_z
         # rotation of the frame, (15)-(16)
-        status = (weighted_mean(N_ROTATIONS, nodes, alpha_rs, R, reference, frame, at(beta,
-            ROTATIONS), at(y, ROTATIONS)))
+        status = weighted_mean(N_ROTATIONS, nodes, alpha_rs, R, reference, frame,
+            at(beta, ROTATIONS), at(y, ROTATIONS))
         if status != 0:
             return status
         R0_xx, R0_xy, R0_xz = frame[0], frame[1], frame[2]
@@ -122,13 +121,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            e0s[j], e1s[j] = (inverse_tangent_coefficients(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] +
-                y[j3 + 2] * y[j3 + 2]))
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            e0s[j], e1s[j] = inverse_tangent_coefficients(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            b0s[j], b1s[j] = (inverse_tangent_coefficients(beta[j3] * beta[j3] + beta[j3 + 1] *
-                beta[j3 + 1] + beta[j3 + 2] * beta[j3 + 2]))
+            beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
+            b0s[j], b1s[j] = inverse_tangent_coefficients(
+                beta_x*beta_x + beta_y*beta_y + beta_z*beta_z)
         # weighted mean of the rotation increments, (16)
         beta0_x = beta0_y = beta0_z = 0.0
         for j in range(N_ROTATIONS):
@@ -139,7 +139,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             beta0_y += alpha_r*beta_y
             beta0_z += alpha_r*beta_z
         # coefficients of T(beta_0)
-        c2, c3, c4, c5 = stumpff_2345(beta0_x * beta0_x + beta0_y * beta0_y + beta0_z * beta0_z)
+        c2, c3, c4, c5 = stumpff_2345(beta0_x*beta0_x + beta0_y*beta0_y + beta0_z*beta0_z)
         # displacement of the nodes in the frame, (11)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -316,8 +316,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kinetic = 0.0
             strain = 0.0
             for i in range(n):
-                kinetic += 0.5*yd[i]*p[i]
-                strain += 0.5*y[i]*s[i]
+                kinetic += 0.5*p[i]*yd[i]
+                strain += 0.5*s[i]*y[i]
             # energies
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
@@ -347,7 +347,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
-                R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j] + 0],
+                R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j]],
                     R[9*nodes[j] + 1], R[9*nodes[j] + 2], R[9*nodes[j] + 3], R[9*nodes[j] + 4],
                     R[9*nodes[j] + 5], R[9*nodes[j] + 6], R[9*nodes[j] + 7], R[9*nodes[j] + 8])
                 H_x += R_xx*pw_x + R_xy*pw_y + R_xz*pw_z
@@ -393,7 +393,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = T[9*nodes[j] + 3*r + k]*c_stiffness
                 else:
                     dqe[column] = c_stiffness
                 dve[column] = c_damping

@@ -51,7 +51,6 @@ WORK_SQUARES = 0
 OPERATIONS = {"residual": (460, 217, 128, 3),
               "column": (81, 277, 352, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -61,8 +60,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         n = hidden(width)
         row = padded(max(n, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         e0s = at(work, 4*row)
@@ -85,7 +84,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*3)
+        S = at(X, 3*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 3*padded(n))
@@ -121,8 +120,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coefficients of T^-1
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
-            e0s[j], e1s[j] = (inverse_tangent_coefficients(y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] +
-                y[j3 + 2] * y[j3 + 2]))
+            psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
+            e0s[j], e1s[j] = inverse_tangent_coefficients(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
         # displacement of the nodes in the frame, (11)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -194,8 +193,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             rhs_x += -fit*(X_y*t12 - X_z*t13)
             rhs_y += -fit*(-X_x*t12 + X_z*t14)
             rhs_z += -fit*(X_x*t13 - X_y*t14)
-        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = (inverse_3(B_00, B_01, B_02, B_10, B_11,
-            B_12, B_20, B_21, B_22))
+        Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
+            B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -357,8 +356,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kinetic = 0.0
             strain = 0.0
             for i in range(n):
-                kinetic += 0.5*yd[i]*p[i]
-                strain += 0.5*y[i]*s[i]
+                kinetic += 0.5*p[i]*yd[i]
+                strain += 0.5*s[i]*y[i]
             # energies
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
@@ -388,7 +387,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
-                R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j] + 0],
+                R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j]],
                     R[9*nodes[j] + 1], R[9*nodes[j] + 2], R[9*nodes[j] + 3], R[9*nodes[j] + 4],
                     R[9*nodes[j] + 5], R[9*nodes[j] + 6], R[9*nodes[j] + 7], R[9*nodes[j] + 8])
                 H_x += R_xx*pw_x + R_xy*pw_y + R_xz*pw_z
@@ -433,7 +432,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     j = (column - ROTATIONS)//3
                     k = column - ROTATIONS - 3*j
                     for r in range(3):
-                        dqe[ROTATIONS + 3*j + r] = c_stiffness*T[9*nodes[j] + 3*r + k]
+                        dqe[ROTATIONS + 3*j + r] = T[9*nodes[j] + 3*r + k]*c_stiffness
                 else:
                     dqe[column] = c_stiffness
                 dve[column] = c_damping

@@ -68,7 +68,6 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
     Part("C", ("n", "damped"), "reduced damping", columns=True),
 )
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -78,12 +77,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     N_POSITIONS = index[AT_POSITIONS]
     N_ROTATIONS = index[AT_ROTATIONS]
     ROTATIONS = 2*N_POSITIONS
-    MODES = ROTATIONS + 1*N_ROTATIONS
+    MODES = ROTATIONS + N_ROTATIONS
     for element in range(count):
         n = hidden(width)
         row = padded(max(n, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         yd = at(work, 4*row)
@@ -108,7 +107,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*2)
+        S = at(X, 2*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 2*padded(n))

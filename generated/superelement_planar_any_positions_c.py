@@ -61,7 +61,7 @@ WORK_ROWS = 117
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (463, 106, 3, 1),
+OPERATIONS = {"residual": (424, 106, 3, 1),
               "column": (22, 142, 4, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -82,7 +82,6 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness", packed=True),
 )
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -92,12 +91,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     N_POSITIONS = index[AT_POSITIONS]
     N_ROTATIONS = index[AT_ROTATIONS]
     ROTATIONS = 2*N_POSITIONS
-    MODES = ROTATIONS + 1*N_ROTATIONS
+    MODES = ROTATIONS + N_ROTATIONS
     for element in range(count):
         n = hidden(width)
         row = padded(max(n + 18, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         yd = at(work, 4*row)
@@ -129,7 +128,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Zq = at(work, 54*row)
         Zd = at(work, 66*row)
         products = at(work, 78*row)
-        Gy = at(work, (117 + 0*(n + 18))*row)
+        Gy = at(work, 117*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -138,7 +137,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*2)
+        S = at(X, 2*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 2*padded(n))
@@ -302,8 +301,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[0] = R0_cos*field_x + R0_sin*field_y
         gamma[1] = R0_cos*field_y - R0_sin*field_x
         # coordinates that determine the others, and their rates
-        all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound,
-                    bound_free, free, hN)
+        all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free, hN)
         # Q_b z, all b
         packed_times(followers, z, Zq, slaved*hn)
         # Q_b zd, all b
@@ -325,7 +323,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # quadratic parts, by zd
         rows_times(products, zd, product1, N, 4, hN)
         # quadratic parts, by zdd
-        rows_times(at(products, 1*hN), zdd, product2, N, 4, hN)
+        rows_times(at(products, hN), zdd, product2, N, 4, hN)
         # integrals over the body
         c0_x, c0_y = c0[0], c0[1]
         J0_zz = J0[0]
@@ -372,15 +370,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         by_moment_columns[3] = -0.5*t4
         by_products[0] = -t4
         by_products[1] = turning_z
-        by_products[2] = 0
+        by_products[2] = 0.0
         by_products[3] = spin_z
         # inertia force of deformation, Mbar zddot
-        packed_times(Mz, zdd, local, 1*hN)
+        packed_times(Mz, zdd, local, hN)
         # damping force, Cbar ydot
         add_packed_times(Cz, zd, local)
         # force on the coordinates: first moments, couplings, inertia at rest and deformed
-        add_blocks_times(moment_columns, by_moment_columns, products, by_products,
-                         local, N, 4, 4, hN)
+        add_blocks_times(moment_columns, by_moment_columns, products, by_products, local, N, 4, 4,
+                         hN)
         # Ghat_e y of all e, and Sbar y
         packed_times(stretched, z, Gy, stretching*hn)
         # E_e . y
@@ -401,8 +399,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # and of Sbar y
         by_Gy[resultants] = 1
         # forces of the resultants and their geometric stiffness, with Sbar y
-        add_blocks_times(E, by_E, Gy, by_Gy, local, free, resultants, stretching,
-                         hn)
+        add_blocks_times(E, by_E, Gy, by_Gy, local, free, resultants, stretching, hn)
         # forces on eta, pulled back
         add_block_times(Zq, at(local, free), local, free, slaved, hn)
         # force and moment on the frame, in axes of the body
@@ -479,13 +476,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[k] = fm
         if task == ENERGY:
             # momentum of deformation, Mbar zdot
-            packed_times(Mz, zd, moved, 1*hN)
+            packed_times(Mz, zd, moved, hN)
             # twice its energy
-            rows_times(moved, zd, at(squares, 0), N, 1, hN)
+            rows_times(moved, zd, squares, N, 1, hN)
             # twice that of Sbar y
             rows_times(at(Gy, resultants*hn), z, at(squares, 1), free, 1, hn)
             # damping force, Cbar ydot
-            packed_times(Cz, zd, moved, 1*hN)
+            packed_times(Cz, zd, moved, hN)
             # its power
             rows_times(moved, zd, at(squares, 2), free, 1, hn)
             # energies, momentum and its moment about the origin
@@ -552,7 +549,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dg = at(work, 50*row)
             Za = at(work, 93*row)
             more = at(work, 105*row)
-            Lz = at(work, (117 + 1*(n + 18))*row)
+            Lz = at(work, (117 + n + 18)*row)
             Lv = at(work, (117 + 2*(n + 18))*row)
             La = at(work, (117 + 3*(n + 18))*row)
             # Q_b zdd, all b
@@ -560,13 +557,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # J2_kl zdot
             packed_times(of_place, zd, more, 2*hN)
             # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, 1*hN), 2*hN)
+            packed_times(of_rate, zdd, at(more, hN), 2*hN)
             # factors of the local tangents
             turning_z = zdd[N + 2]
             spin_z = zd[N]
             by_place[0] = -c_geo*spin_z*spin_z
             by_place[1] = c_geo*turning_z
-            by_rate[0] = 0
+            by_rate[0] = 0.0
             by_rate[1] = spin_z
             ones[0] = 1
             # forces on eta as factors
@@ -601,22 +598,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
                 # their forces
-                add_blocks_times(E, of_E, Gy, of_Gy, at(Lz, j*deep), free, resultants,
-                                 resultants, hn)
+                add_blocks_times(E, of_E, Gy, of_Gy, at(Lz, j*deep), free, resultants, resultants,
+                                 hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y = zdd[N], zdd[N + 1]
                 turning_z = zdd[N + 2]
                 spin_z = zd[N]
-                row_S1_x, row_S1_y = moment_columns[i], moment_columns[1*hN + i]
+                row_S1_x, row_S1_y = moment_columns[i], moment_columns[hN + i]
                 row_g_z = moment_columns[2*hN + i]
                 row_h_zz = moment_columns[3*hN + i]
                 row_j_zz = products[i]
-                row_u_z = products[1*hN + i]
+                row_u_z = products[hN + i]
                 row_v_z = products[2*hN + i]
                 row_w_z = products[3*hN + i]
                 row_jd_zz = more[i]
-                row_ua_z = more[1*hN + i]
+                row_ua_z = more[hN + i]
                 row_wa_z = more[2*hN + i]
                 t23 = spin_z*spin_z
                 t24 = 2*spin_z
@@ -634,11 +631,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: motion of the frame
             for i in range(N):
                 spin_z = zd[N]
-                row_S1_x, row_S1_y = moment_columns[i], moment_columns[1*hN + i]
+                row_S1_x, row_S1_y = moment_columns[i], moment_columns[hN + i]
                 row_g_z = moment_columns[2*hN + i]
                 row_h_zz = moment_columns[3*hN + i]
                 row_j_zz = products[i]
-                row_u_z = products[1*hN + i]
+                row_u_z = products[hN + i]
                 row_w_z = products[3*hN + i]
                 Lv[N*deep + i] = row_w_z - spin_z*(row_h_zz + 2*row_j_zz)
                 La[N*deep + i] = row_S1_x
@@ -653,9 +650,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Lv[N*deep + N + 1] = -sum_c_y*t26 + 2*sum_cd_x
             Lv[N*deep + N + 2] = sum_Jd_zz
             La[N*deep + N] = mass
-            La[N*deep + N + 1] = 0
+            La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = t27
-            La[(N + 1)*deep + N] = 0
+            La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = sum_c_x
             La[(N + 2)*deep + N] = t27

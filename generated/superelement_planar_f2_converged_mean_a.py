@@ -43,14 +43,13 @@ ROTATIONS = 4      # first rotation among the local coordinates
 MODES = 6          # first internal mode
 DAMPED = False        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 30
+WORK_ROWS = 29
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (212, 61, 11, 3),
+OPERATIONS = {"residual": (212, 61, 5, 3),
               "column": (13, 70, 7, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -60,21 +59,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         n = hidden(width)
         row = padded(max(n, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         yd = at(work, 4*row)
         acc = at(work, 5*row)
-        Q = at(work, 6*row)
-        ydd = at(work, 7*row)
-        gamma = at(work, 8*row)
-        d = at(work, 9*row)
-        s = at(work, 10*row)
-        weight = at(work, 11*row)
-        p = at(work, 12*row)
-        pd = at(work, 13*row)
-        h = at(work, 14*row)
+        ydd = at(work, 6*row)
+        gamma = at(work, 7*row)
+        d = at(work, 8*row)
+        s = at(work, 9*row)
+        weight = at(work, 10*row)
+        p = at(work, 11*row)
+        pd = at(work, 12*row)
+        h = at(work, 13*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -83,7 +81,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*2)
+        S = at(X, 2*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 2*padded(n))
@@ -127,11 +125,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             yd[i3 + 1] = R0_cos*v_y - R0_sin*v_x
             acc[i3] = R0_cos*a_x + R0_sin*a_y
             acc[i3 + 1] = R0_cos*a_y - R0_sin*a_x
-        # rotation of the node in the frame
-        for j in range(N_ROTATIONS):
-            R_cos, R_sin = R[9*nodes[j] + 0], R[9*nodes[j] + 1]
-            Q[9*j + 0] = R0_cos*R_cos + R0_sin*R_sin
-            Q[9*j + 1] = R0_cos*R_sin - R0_sin*R_cos
         # angular velocities in frame axes, (36)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
@@ -243,8 +236,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kinetic = 0.0
             strain = 0.0
             for i in range(n):
-                kinetic += 0.5*yd[i]*p[i]
-                strain += 0.5*y[i]*s[i]
+                kinetic += 0.5*p[i]*yd[i]
+                strain += 0.5*s[i]*y[i]
             # energies
             gamma_x, gamma_y = gamma[0], gamma[1]
             d_x, d_y = d[0], d[1]
@@ -279,21 +272,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
             row = hidden(row)
-            dqe = at(work, 15*row)
-            dve = at(work, 16*row)
-            dae = at(work, 17*row)
-            dy = at(work, 18*row)
-            ds = at(work, 19*row)
-            dgamma = at(work, 20*row)
-            dd = at(work, 21*row)
-            dweight = at(work, 22*row)
-            dyd = at(work, 23*row)
-            dacc = at(work, 24*row)
-            dydd = at(work, 25*row)
-            dp = at(work, 26*row)
-            dpd = at(work, 27*row)
-            dh = at(work, 28*row)
-            dg = at(work, 29*row)
+            dqe = at(work, 14*row)
+            dve = at(work, 15*row)
+            dae = at(work, 16*row)
+            dy = at(work, 17*row)
+            ds = at(work, 18*row)
+            dgamma = at(work, 19*row)
+            dd = at(work, 20*row)
+            dweight = at(work, 21*row)
+            dyd = at(work, 22*row)
+            dacc = at(work, 23*row)
+            dydd = at(work, 24*row)
+            dp = at(work, 25*row)
+            dpd = at(work, 26*row)
+            dh = at(work, 27*row)
+            dg = at(work, 28*row)
             for column in range(n):
                 for i in range(n):
                     dqe[i] = 0.0

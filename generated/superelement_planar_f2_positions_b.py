@@ -47,10 +47,9 @@ WORK_ROWS = 29
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (414, 86, 2, 3),
+OPERATIONS = {"residual": (375, 86, 2, 3),
               "column": (16, 107, 3, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
-ROOM = "62459a87abbd"     # hash of sebody/kernels, which this file was made for
 
 
 @kernel_function
@@ -60,8 +59,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         n = hidden(width)
         row = padded(max(n, 9*N_ROTATIONS))
-        qe = at(work, 0*row)
-        ve = at(work, 1*row)
+        qe = work
+        ve = at(work, row)
         ae = at(work, 2*row)
         y = at(work, 3*row)
         yd = at(work, 4*row)
@@ -82,7 +81,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        S = at(X, N_POSITIONS*2)
+        S = at(X, 2*N_POSITIONS)
         M = at(S, n*padded(n))
         mass_columns = at(M, n*padded(n))
         mass_rows = at(mass_columns, 2*padded(n))
@@ -264,8 +263,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kinetic = 0.0
             strain = 0.0
             for i in range(n):
-                kinetic += 0.5*yd[i]*p[i]
-                strain += 0.5*y[i]*s[i]
+                kinetic += 0.5*p[i]*yd[i]
+                strain += 0.5*s[i]*y[i]
             # energies
             gamma_x, gamma_y = gamma[0], gamma[1]
             d_x, d_y = d[0], d[1]

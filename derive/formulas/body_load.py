@@ -15,14 +15,21 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Place, constant
+from sebody.derive.form.counts import agreed, first
+from sebody.derive.form.spaces import Space
+from sebody.derive.form.steps import Invert, Solve, Stage, Step
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
 from sebody.derive.formulas.inertia.option_a import relative_rotating, relative_rotation
 from sebody.derive.formulas.kinematics import local_displacement, unknown_rules
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Invert, Solve, Stage, Step, cross
+from sebody.derive.passes.linearize import Linearizer
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import check_same, differential
+from sebody.kernels.layout import Part
+
+LOAD = Part("P", ("n",), "load on the local coordinates, of amplitude one")
 
 
 class Steps(NamedTuple):
@@ -40,7 +47,7 @@ def body_load(planar: bool, frame: FrameOption) -> Steps:
     q = Quantities(Space(planar))
     chosen, amplitude = frame.derive(q), _amplitude(q.space)
     on_position, on_rotation, on_mode = (
-        q.space.quantity(f"P_{home}", kind, home, "P").symbols
+        q.space.quantity(f"P_{home}", kind, home, constant(LOAD)).symbols
         for kind, home in (("vector", "position"), ("axial", "rotation"), ("scalar", "mode")))
     h, R0 = q.h.symbols, q.R0.symbols
     # an angle in a plane has the same axis in all frames
@@ -79,5 +86,5 @@ def _column(q: Quantities, chosen: Frame, on_rotations: Stage, on_modes: Stage) 
 
 def _amplitude(space: Space) -> sp.Symbol:
     """Of the history, at its power port."""
-    return space.quantity("amplitude", "scalar", "element", "loads",
-                          "3*index[first + AT_PORT]").symbols[0]
+    return space.quantity("amplitude", "scalar", "element", arrays.loads,
+                          Place(3 * arrays.index[first + agreed("AT_PORT")])).symbols[0]

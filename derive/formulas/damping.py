@@ -5,14 +5,19 @@ rigid motion has no such rates, however fast, and is not damped. (The ``ydot`` o
 options is another thing: velocities, not rates of deformation.)
 """
 
+from sebody.derive.form.steps import Damping, Product, Shift, Stage, Step
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.frames.frame import origin_stage
-from sebody.derive.formulas.kinematics import elastic_rotation_variation, local_displacement
+from sebody.derive.formulas.kinematics import (
+    elastic_rotation_variation,
+    in_time,
+    local_displacement,
+)
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.steps import Damping, Product, Shift, Stage, Step
+from sebody.derive.passes.linearize import Linearizer
 
-FRICTION = Product("damping force, friction = Cbar eta", "C", "eta", "friction")
-ADDED = Shift("forces conjugate to y, damping included", "s", "friction", "+")
+FRICTION = Product("damping force, friction = Cbar eta", arrays.C, arrays.eta, arrays.friction)
+ADDED = Shift("forces conjugate to y, damping included", arrays.s, arrays.friction)
 
 
 def damping(q: Quantities) -> Damping:
@@ -29,12 +34,11 @@ def linearized_damping(q: Quantities, chain: Linearizer) -> Damping:
 
 def rates(q: Quantities) -> tuple[Stage, ...]:
     """Rates of the local coordinates: those of the origin, displacements, rotations, modes."""
-    in_time = dict(zip((*q.dx.symbols, *q.dx0.symbols, *q.dth.symbols, *q.dth0.symbols),
-                       (*q.vs.symbols, *q.v0.symbols, *q.Om.symbols, *q.Om0.symbols), strict=True))
+    velocities = in_time(q)
     return (origin_stage(q, q.v0, q.vs),
             Stage("rates of the elastic displacements", "position",
-                  sets=((q.eu, local_displacement(q).short[0].xreplace(in_time)),)),
+                  sets=((q.eu, local_displacement(q).short[0].xreplace(velocities)),)),
             Stage("rates of the elastic rotations", "rotation",
-                  sets=((q.ep, elastic_rotation_variation(q).xreplace(in_time)),)),
+                  sets=((q.ep, elastic_rotation_variation(q).xreplace(velocities)),)),
             Stage("rates of the internal modes", "mode", sets=((q.em, q.vm.symbols),)))
 

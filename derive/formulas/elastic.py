@@ -4,13 +4,18 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.steps import Product
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.kinematics import elastic_rotation_variation, local_displacement
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.rotations import inverse_tangent_times, inverse_tangent_transposed_times
-from sebody.derive.symbolic.steps import Product, cross
+from sebody.derive.symbolic.rotations import (
+    cross,
+    inverse_tangent_times,
+    inverse_tangent_transposed_times,
+)
 from sebody.derive.symbolic.variation import check_same, coefficients
 
-ELASTIC = Product("elastic force, s = Sbar y", "S", "y", "s")
+ELASTIC = Product("elastic force, s = Sbar y", arrays.S, arrays.y, arrays.s)
 
 
 class VirtualWork(NamedTuple):

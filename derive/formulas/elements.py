@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.spaces import Quantity, Space
 from sebody.derive.formulas.elastic import conjugate_to
-from sebody.derive.symbolic.spaces import Quantity, Space
-from sebody.derive.symbolic.steps import cross
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 AMPLITUDE = sp.symbols("amplitude amplitude_rate amplitude_acceleration")

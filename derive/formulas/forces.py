@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.elements import (
     AMPLITUDE,
     Constant,
@@ -12,8 +13,7 @@ from sebody.derive.formulas.elements import (
     position,
     rotation,
 )
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import cross
+from sebody.derive.symbolic.rotations import cross
 
 
 def force(planar: bool, follower: bool) -> Element:

@@ -15,12 +15,16 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.counts import n
+from sebody.derive.form.steps import Product, Shift, Stage, Step
+from sebody.derive.form.whole import Number
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.steps import Product, Shift, Stage, Step, cross
+from sebody.derive.passes.linearize import Linearizer
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import along, check_same, differential, rotating
 
-TAKEN_OFF = Shift("force conjugate to y, elastic and gravity", "s", "weight", "-")
+TAKEN_OFF = Shift("force conjugate to y, elastic and gravity", arrays.s, arrays.weight, adds=False)
 
 
 class Gravity(NamedTuple):
@@ -41,12 +45,12 @@ def gravity(q: Quantities) -> Gravity:
     d = at_rest + moment
     potential = -(mass * (R0.T * x0).dot(gamma) + d.dot(gamma))
     _check_variation(q, d, mass)
-    axes = 2 if q.space.planar else 3
+    axes = Number(2 if q.space.planar else 3)
     return Gravity(
         before=(in_frame_axes(q), Product("first moment of mass of the deformation, d = r^T Mbar y",
-                               "mass_rows", "y", "d", (str(axes), "n"))),
-        products=(Product("weight conjugate to y, Mbar r gamma", "mass_columns", "gamma",
-                          "weight", ("n", str(axes))),),
+                                          arrays.mass_rows, arrays.y, arrays.d, axes, n)),
+        products=(Product("weight conjugate to y, Mbar r gamma", arrays.mass_columns, arrays.gamma,
+                          arrays.weight, n, axes),),
         on_frame=cross(gamma, d), origin=-mass * gamma, potential=potential,
         strain=moment.dot(gamma) / 2)
 

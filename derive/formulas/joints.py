@@ -8,6 +8,7 @@ lasts.
 
 import sympy as sp
 
+from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.elements import (
     AMPLITUDE,
     Block,
@@ -18,7 +19,6 @@ from sebody.derive.formulas.elements import (
     position,
     rotation,
 )
-from sebody.derive.symbolic.spaces import Space
 
 
 def _vector(space: Space, name: str, meaning: str) -> Constant:

@@ -6,8 +6,11 @@ material ``delta Theta``.
 
 import sympy as sp
 
+from sebody.derive.form.spaces import Space
+from sebody.derive.form.steps import Stage
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import (
+    cross,
     exp,
     inverse_tangent,
     inverse_tangent_times,
@@ -15,8 +18,6 @@ from sebody.derive.symbolic.rotations import (
     skew,
     tangent,
 )
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Stage, cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 
@@ -30,6 +31,14 @@ def unknown_rules(q: Quantities) -> Rules:
     for fixed_axes, local in ((q.x, q.dx), (q.x0, q.dx0), (q.v, q.dv), (q.a, q.da)):
         rules |= along(fixed_axes.symbols, R0 * local.symbols)
     return rules | along(q.Om.symbols, q.dOm.symbols) | along(q.A.symbols, q.dA.symbols)
+
+
+def in_time(q: Quantities) -> Rules:
+    """Velocities in place of variations: whatever varies so has these rates."""
+    pairs = (q.dx, q.vs), (q.dx0, q.v0), (q.dth, q.Om), (q.dth0, q.Om0)
+    return {d: rate for varied, rated in pairs
+            for d, rate in zip(varied.symbols, rated.symbols, strict=True)
+            if isinstance(d, sp.Symbol)}
 
 
 def local_displacement(q: Quantities) -> Stage:

@@ -1,6 +1,7 @@
 """The quantities of a superelement kernel: name, paper symbol, place in the kernel, unit."""
 
-from sebody.derive.symbolic.spaces import Quantity, Space
+from sebody.derive.form.spaces import Quantity, Space
+from sebody.derive.formulas.arrays import ARRAYS
 
 # name: (kind, home, kernel array, paper symbol, meaning [unit])
 TABLE = {
@@ -105,4 +106,4 @@ class Quantities:
 
     def __getattr__(self, name: str) -> Quantity:
         kind, home, array, _, _ = TABLE[name]
-        return self.space.quantity(name, kind, home, array)
+        return self.space.quantity(name, kind, home, ARRAYS[array] if array else None)

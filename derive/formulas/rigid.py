@@ -2,9 +2,9 @@
 
 import sympy as sp
 
+from sebody.derive.form.spaces import AXES, Space
 from sebody.derive.formulas.elements import Element, constant, element, position, rotation
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import cross
+from sebody.derive.symbolic.rotations import cross
 
 
 def rigid_body(planar: bool) -> Element:
@@ -15,11 +15,11 @@ def rigid_body(planar: bool) -> Element:
     space = Space(planar)
     mass = constant(space, "mass", "scalar", "mass")
     first = constant(space, "mc", "vector", "first moment of mass about the node, body axes")
-    names = ["J_zz"] if planar else ["J_xx", "J_yy", "J_zz", "J_xy", "J_yz", "J_xz"]
-    moments = [constant(space, n, "scalar", "inertia about the node, body axes") for n in names]
+    pairs = ((2, 2),) if planar else ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
+    moments = [constant(space, f"J_{AXES[i]}{AXES[j]}", "scalar",
+                        "inertia about the node, body axes") for i, j in pairs]
     inertia = sp.zeros(3, 3)
-    for moment in moments:
-        i, j = ("xyz".index(a) for a in moment.quantity.name[2:])
+    for (i, j), moment in zip(pairs, moments, strict=True):
         inertia[i, j] = inertia[j, i] = moment.symbols[0]
     x, turn = position(space, "a"), rotation(space, "a")
     v, spin, m = x.rate.symbols, turn.rate.symbols, mass.symbols[0]

@@ -2,17 +2,17 @@
 
 from typing import NamedTuple
 
-from sebody.derive.formulas.body_load import body_load
+from sebody.derive.form.spaces import Space
+from sebody.derive.form.steps import Step
+from sebody.derive.formulas.body_load import LOAD, body_load
 from sebody.derive.formulas.frames.frame import FrameOption
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.options import FRAMES
 from sebody.derive.kernels.superelement import opaque_names
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Names, Step
+from sebody.derive.passes.lower import Names
 from sebody.kernels.layout import FRAME_CONSTANTS, Part
 from sebody.kernels.names import body_load_kind
 
-LOAD = Part("P", ("n",), "load on the local coordinates, of amplitude one")
 BODY_LOADS = {body_load_kind(name, planar): (name, planar)
               for name, frame in FRAMES.items() for planar in (False, True)
               if frame.traits.planar or not planar}

@@ -44,7 +44,8 @@ class Layout(NamedTuple):
             raise LayoutError(f"layout {name!r} is unknown: write counts of full, translation-only "
                               "and rotation-only nodes, such as f2, f2t1, f2r1, t8 or planar-f2, "
                               "m with the number of internal modes to pin it, as in f2m4, and d "
-                              f"for structural damping; or {ANY} for any nodes")
+                              f"for structural damping; or {ANY} for any nodes; or the name of a "
+                              "joint, rigid body or load, such as distance")
         nodes = []
         for part, kind in zip(match.groups()[1:4], LETTERS, strict=True):
             nodes += [kind] * int(part[1:]) if part else []

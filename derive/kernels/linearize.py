@@ -6,6 +6,10 @@ held fixed between the two, which leaves the paper's tangents (31), (48)-(51), (
 
 from functools import cache
 
+import sympy as sp
+
+from sebody.derive.form.steps import Role, Scaling, Stage, Step
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.frames.frame import FrameOption, origin_stage
 from sebody.derive.formulas.inertia.option import InertiaOption
 from sebody.derive.formulas.kinematics import elastic_rotation_variation, unknown_rules
@@ -15,8 +19,8 @@ from sebody.derive.kernels.superelement import (
     kept,
     node_formulas,
 )
-from sebody.derive.symbolic.linearize import Linearizer, along_own
-from sebody.derive.symbolic.steps import Role, Scaling, Stage, Step, cross
+from sebody.derive.passes.linearize import Linearizer, along_own
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import check_same, differential
 
 
@@ -64,4 +68,4 @@ def _geometric_switch(q: Quantities) -> Scaling:
     """Between the paper's tangents and the consistent one."""
     return Scaling(
         "c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here",
-        ("dy", "dqe"), (q.dth0,), "c_geo")
+        (arrays.y.d, arrays.qe.d), (q.dth0,), sp.Symbol("c_geo"))

@@ -1,4 +1,4 @@
-"""The kernels that are shipped: one table of superelements, and all elements of `catalogue`.
+"""The kernels that are shipped: one table of superelements, and all others.
 
 A kernel fuses one frame and one inertia option, so the loop makes one call an element and the
 compiler sees all of its arithmetic. The formulas are derived once for each and only combined here:
@@ -7,6 +7,7 @@ sources add, and files multiply no further than this table; any other combinatio
 
 from sebody.derive.kernels.body_load import BODY_LOADS
 from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
+from sebody.derive.kernels.motion import MOTIONS
 
 SUPERELEMENTS = (
     # layout, frame, inertia option; pinned numbers of modes where beams mostly need no others
@@ -42,4 +43,4 @@ SUPERELEMENTS = (
     ("planar-any", "converged_mean", "d"),
     ("planar-any", "positions", "d"),
 )
-ELEMENTS = (*CATALOGUE, *BODY_LOADS)
+ELEMENTS = (*CATALOGUE, *BODY_LOADS, *MOTIONS)

@@ -1,7 +1,10 @@
 """Frames and inertia options by name: a kernel combines one of each."""
 
+from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.frames import converged_mean, mean, mean_small, positions
+from sebody.derive.formulas.frames.frame import Condition
 from sebody.derive.formulas.inertia import option_a, option_b, option_c, option_d
+from sebody.derive.formulas.quantities import Quantities
 from sebody.kernels.layout import FrameTraits, InertiaTraits
 
 FRAMES = {
@@ -21,6 +24,13 @@ INERTIA_OPTIONS = {
 def frame_traits() -> dict[str, FrameTraits]:
     """What each frame needs."""
     return {name: option.traits for name, option in FRAMES.items()}
+
+
+def frame_conditions() -> dict[tuple[str, bool], Condition]:
+    """What local coordinates obey in each frame that says it, in space and in a plane."""
+    return {(name, planar): option.condition(Quantities(Space(planar)))
+            for name, option in FRAMES.items() if option.condition
+            for planar in (False, True) if option.traits.planar or not planar}
 
 
 def inertia_traits() -> dict[str, InertiaTraits]:

@@ -10,6 +10,10 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Array
+from sebody.derive.form.spaces import Space
+from sebody.derive.form.statements import Let
+from sebody.derive.form.steps import Damping, Role, Solve, Stage, Step
 from sebody.derive.formulas.damping import damping, linearized_damping
 from sebody.derive.formulas.elastic import ELASTIC, VirtualWork, conjugate_to
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
@@ -25,19 +29,10 @@ from sebody.derive.kernels.options import (
     frame_traits,
     inertia_traits,
 )
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.rotations import stumpff, tangent_inverse
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import (
-    Damping,
-    Names,
-    Role,
-    Solve,
-    Stage,
-    Step,
-    cross,
-)
-from sebody.kernels.layout import Part
+from sebody.derive.passes.linearize import Linearizer
+from sebody.derive.passes.lower import Names
+from sebody.derive.symbolic.rotations import cross, stumpff, tangent_inverse
+from sebody.kernels.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS, Part
 from sebody.kernels.names import superelement_name
 
 
@@ -91,6 +86,16 @@ class Superelement(NamedTuple):
     def declared(self) -> tuple[Part, ...]:
         """Constants that its frame and inertia option read in addition."""
         return tuple(part for option in self.options for part in option.traits.constants)
+
+    @property
+    def constants(self) -> tuple[Part, ...]:
+        """The row of constants."""
+        return SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS * self.layout.damped + self.declared
+
+    @property
+    def read(self) -> dict[Array, tuple[Let, ...]]:
+        """Counts that its inertia option reads from constants, by the array of these."""
+        return self.options[1].read(self.layout.planar)
 
 
 def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:

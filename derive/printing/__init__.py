@@ -1,1 +1,1 @@
-"""From a kernel's description to its text: everything that knows Numba."""
+"""Targets: text, a pure function of a kernel's statements; one folder each."""

@@ -16,6 +16,11 @@ def skew(a: sp.Matrix) -> sp.Matrix:
     return sp.Matrix([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
 
 
+def cross(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
+    """``a x b`` of two columns."""
+    return skew(a) * b
+
+
 class stumpff(sp.Function):
     """``stumpff(k, s) = c_k(s)``, opaque, with ``c_k' = (k c_{k+2} - c_{k+1}) / 2``."""
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
 
+import numpy as np
 from numba import typeof
 
 from sebody.analysis import workers
@@ -19,6 +20,7 @@ from sebody.analysis.allocation import allocate
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.workers import Task
 from sebody.assembly.build import build
+from sebody.assembly.motions import motion_kernel
 from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, step_control
 from sebody.engine.state import Record
 from sebody.kernels import loader, store
@@ -26,7 +28,7 @@ from sebody.kernels.loader import USER_FORCE, element_kernel_name, find
 from sebody.kernels.pipeline import is_compiled
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
-from sebody.results import postprocessing
+from sebody.results import motion, postprocessing
 
 SECONDS_A_LETTER = 7e-5         # of a kernel's file, of one processor
 WORTH_IT = 4.0                  # seconds of compiling: starting processes takes one or two
@@ -72,6 +74,8 @@ PARTS = LOOP | {
     "motions": Part(evaluate.move_prescribed, "system state", 0.2),
     "links": Part(links.place_dependent, "links vector vector vector vector", 0.3),
     "axes": Part(evaluate.to_body_axes, "system vector vector flag", 0.2),
+    "movements": Part(motion._evaluate, "whole whole whole indices vector table places vector "
+                      "vector movements", 0.3),
     "records": Part(step.write_record, "state record", 0.1),
 }
 
@@ -79,7 +83,8 @@ PARTS = LOOP | {
 def prepare(models: Iterable[Mechanism]) -> None:
     """Compile what runs of models need and the cache lacks; a line says so."""
     models = list(models)
-    kernels = {body.kernel for model in models for body in model.bodies.values()}
+    bodies = [body for model in models for body in model.bodies.values()]
+    kernels = {body.kernel for body in bodies} | {motion_kernel(body) for body in bodies}
     kernels |= {element_kernel_name(e.kind) for model in models
                 for e in (*model.rigid_bodies.values(), *model.constraints, *model.loads)}
     if not _ready.issuperset(kernels) or not _ready.issuperset(PARTS):
@@ -153,7 +158,8 @@ def _examples() -> dict:
     state = allocate(model, system, numbering, 1.0, True)
     found = {"system": system, "state": state, "record": Record.of(state, 1), "links": system.links,
              "scheme": generalized_alpha(), "vector": state.residual, "table": state.inverse,
-             "whole": 1, "number": 1.0, "flag": True}
+             "movements": np.zeros((1, 1, 1)), "indices": np.zeros((1, 1), dtype=np.int64),
+             "places": np.zeros(1, dtype=np.int64), "whole": 1, "number": 1.0, "flag": True}
     return {name: typeof(value) for name, value in found.items()}
 
 

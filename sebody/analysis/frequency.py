@@ -28,6 +28,7 @@ from sebody.results.frequency_pictures import save_response
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
 
+UNMOVED, ADDED_UP = ("t", "energy.external_work"), ".work"     # quantities that do not answer
 SMALL = 1e-5        # motion of the states that are compared, of the extent or in radians
 
 
@@ -93,6 +94,15 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
     names = [quantities] if isinstance(quantities, str) else inputs.items(
         quantities, "quantities", "give names of quantities")
     omega = inputs.vector(omega, "omega")
+    if not len(omega):
+        raise inputs.refusal("omega", omega, "give at least one frequency")
+    if not names:
+        raise inputs.refusal("quantities", quantities, "name at least one")
+    for name in names:
+        if inputs.name(name, "name of a quantity") in UNMOVED or name.endswith(ADDED_UP):
+            raise InputError(f"quantity {name!r} has no answer to a harmonic load: it is the time, "
+                             "or a work that adds up over a run; name a position, a force or a "
+                             "power")
     steady = Spin.of(run, spin)
     matrices = small_motion(run, steady)
     element = _load(run, load)

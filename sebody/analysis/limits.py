@@ -4,7 +4,7 @@ Only few of the recorded states are checked, after the compiled loop, which is n
 """
 
 import warnings
-from typing import NamedTuple
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,13 +12,16 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.analysis.quality import remarks
 from sebody.analysis.softening import cautious_limit, divergence, first_frequency, reach
-from sebody.analysis.thresholds import FAST, FLAT, LINEAR
+from sebody.analysis.thresholds import BENT, FAST, FLAT, LINEAR, OFF_LINE
+from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
-from sebody.kernels.layout import RECORD
+from sebody.kernels.layout import MOTION, Counts
+from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
+from sebody.results.motion import evaluated
 from sebody.results.recording import Recording, record_counts
 
 STATES = 3000           # states of bodies that are checked in a piece of a run
@@ -31,7 +34,9 @@ class Watch:
     def __init__(self) -> None:
         self.messages: list[str] = []
         self._said: set[str] = set()
-        self._groups: tuple[list[Group], list[Placed]] | None = None
+        self._groups: list[Motions] | None = None
+        self._least: dict[str, float] = {}
+        self._off_line: dict[str, bool] = {}
 
     def say(self, key: str, message: str) -> None:
         """Warn, unless the same was said before."""
@@ -48,7 +53,8 @@ class Watch:
                                "oscillate and grow with every disturbance: use rho 0.9, alpha "
                                "-0.05, or index=2")
         for name, body in bodies.items():
-            if body.frame == "positions" and _spread(body) < FLAT:
+            follows = not FRAMES[body.frame].traits.needs_rotations
+            if follows and not body.body.planar and _spread(body) < FLAT:
                 self.say(f"flat {name}", f"nodes of body {name!r} lie nearly on a line (spread "
                          f"{_spread(body):.1e} of their length): its frame turns about it with "
                          "every small deflection; keep a rotation and take another frame, or a "
@@ -64,25 +70,30 @@ class Watch:
         if not len(rows):
             return
         if self._groups is None:
-            self._groups = _grouped(model, numbering)
+            self._groups = motions(model, numbering, model.bodies.values())
+            self._least = _least_spins(model.bodies.values())
+            self._off_line = {name: _off_line(body) for name, body in model.bodies.items()}
         most = min(max(FEWEST, STATES // max(len(model.bodies), 1)), MOST)
         rows = rows[::-(-len(rows) // most)]
-        parts = RECORD.slices(record_counts(numbering))
-        rotated, placed = self._groups
-        found = [(group, _spins_of_positions(model.planar, group, rows, parts))
-                 for group in placed]
-        for group in rotated:
-            local, spins = _motion(model.planar, group, rows, parts)
-            found.append((group, spins))
-            for k in np.flatnonzero(local > LINEAR):
-                name = group.bodies[k].name
-                self.say(f"turn {name}", f"local rotation {local[k]:.2g} rad of body {name!r} "
-                         f"exceeds the linear range, {LINEAR} rad: divide it")
-        for group, spins in found:
+        for group in self._groups:
+            found, _ = evaluated(group, rows, record_counts(numbering))
+            parts = MOTION.slices(group.counts)
+            local = _local_rotations(found[:, :, parts["y"]], group.counts).max(axis=0)
+            spins = found[:, :, parts["spin"]]
             speeds = np.linalg.norm(spins, axis=2)
-            for k in np.flatnonzero(speeds.max(axis=0) > group.least):
-                row = int(np.argmax(speeds[:, k]))
-                self._compare(group.bodies[k], spins[row, k], speeds[row, k])
+            for k, name in enumerate(group.bodies):
+                if local[k] > LINEAR:
+                    self.say(f"turn {name}", f"local rotation {local[k]:.2g} rad of body {name!r} "
+                             f"exceeds the linear range, {LINEAR} rad: divide it")
+                if local[k] > BENT and self._off_line[name]:
+                    self.say(f"bent {name}", f"local rotation {local[k]:.2g} rad of body {name!r}, "
+                             "whose frame follows the rotations of its nodes while its mass is off "
+                             f"their line (limit {BENT} rad): its inertia depends too much on how "
+                             "it is bent, and energy may grow; keep the position of a node off the "
+                             "line, such as a corner, or divide the body")
+                if speeds[:, k].max() > self._least[name]:
+                    row = int(np.argmax(speeds[:, k]))
+                    self._compare(model.bodies[name], spins[row, k], speeds[row, k])
 
     def judge(self, run: Recording) -> None:
         """Compare energies, steps, vibrations and constraints of a whole run with their limits."""
@@ -105,48 +116,38 @@ class Watch:
                      f"{_remedy(body)}")
 
 
-class Group(NamedTuple):
-    """Bodies with the same number of moving rotations, m each."""
-
-    bodies: list[Superelement]
-    frames: NDArray         # (b,) numbers of their frames
-    places: NDArray         # (b, m) first coordinates of the rotations
-    rotations: NDArray      # (b, m) numbers of the rotation matrices, in space
-    weights: NDArray        # (b, m) frame weights of the rotations
-    least: NDArray          # (b,) spins below which nothing is compared
-
-
-class Placed(NamedTuple):
-    """Bodies whose frames follow their positions, the same number of them, p."""
-
-    bodies: list[Superelement]
-    frames: NDArray         # (b,) numbers of their frames
-    places: NDArray         # (b, p) first coordinates of the positions
-    least: NDArray          # (b,) spins below which nothing is compared
-
-
-def _grouped(model: Mechanism, numbering: Numbering) -> tuple[list[Group], list[Placed]]:
-    rotated: dict[int, list] = {}
-    placed: dict[int, list] = {}
+def _least_spins(bodies: Iterable[Superelement]) -> dict[str, float]:
+    """Spins below which nothing is compared, by body."""
     limits: dict[tuple, float] = {}
-    for k, body in enumerate(model.bodies.values()):
-        parts = [(numbering.triplets[id(t)], numbering.rotations.get(id(t), 0), weight)
-                 for t, weight in zip(body.rotations, body.alpha_r, strict=True)
-                 if id(t) in numbering.triplets]
+    found = {}
+    for body in bodies:
         key = id(body.body), body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in limits:
             limits[key] = np.inf if body.stiffening else FAST * cautious_limit(body)
-        least = limits[key]
-        if body.frame == "positions":
-            places = [numbering.triplets[id(t)] for t in body.positions]
-            placed.setdefault(len(places), []).append((body, k, places, least))
-            least = np.inf
-        if parts:
-            rotated.setdefault(len(parts), []).append((body, k, *zip(*parts, strict=True), least))
-    return ([Group(list(bodies), *map(np.array, columns))
-             for bodies, *columns in (zip(*rows, strict=True) for rows in rotated.values())],
-            [Placed(list(bodies), *map(np.array, columns))
-             for bodies, *columns in (zip(*rows, strict=True) for rows in placed.values())])
+        found[body.name] = limits[key]
+    return found
+
+
+def _local_rotations(y: NDArray, counts: Counts) -> NDArray:
+    """Largest rotation of a node against its frame, (states, bodies), from local coordinates."""
+    first, turns = counts["D"] * counts["N_POSITIONS"], counts["turns"]
+    psi = y[..., first:first + turns * counts["N_ROTATIONS"]].reshape(*y.shape[:2], -1, turns)
+    return np.linalg.norm(psi, axis=3).max(axis=2, initial=0.0)
+
+
+def _off_line(body: Superelement) -> bool:
+    """Whether a body of option C has its frame on rotations, and its mass off the nodes' line."""
+    if body.inertia != "c" or body.frame == "positions" or len(body.positions) < 2:
+        return False
+    reduced = body.body
+    points = reduced.coordinates[list(reduced.position_nodes)]
+    middle = points.mean(axis=0)
+    _, extents, axes = np.linalg.svd(points - middle)
+    if reduced.planar:          # what is known of the mass off a line is its centre
+        off = abs(axes[1] @ (reduced.centre_of_mass - middle))
+    else:
+        off = np.sqrt(axes[0] @ reduced.invariants.about(middle).J0 @ axes[0] / reduced.total_mass)
+    return bool(off > OFF_LINE * np.ptp((points - middle) @ axes[0]))
 
 
 def spin_limit(body: Superelement, axis: ArrayLike | None) -> float:
@@ -201,41 +202,3 @@ def _spread(body: Superelement) -> float:
     points = body.body.coordinates[list(body.body.position_nodes)]
     extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     return float(extents[1] / extents[0]) if len(extents) > 1 and extents[0] > 0 else 0.0
-
-
-def _motion(planar: bool, group: Group, rows: NDArray, parts: dict) -> tuple[NDArray, NDArray]:
-    """Largest local rotations, (b,), and spins of the frames in their own axes, (n, b, 3 or 1)."""
-    n, shape = len(rows), group.places.shape
-    frames = rows[:, parts["frames"]].reshape(n, -1, 3, 3)[:, group.frames]
-    v = rows[:, parts["v"]]
-    if planar:
-        angles = np.arctan2(frames[..., 1, 0], frames[..., 0, 0])
-        turns = rows[:, parts["q"]][:, group.places] - angles[..., None]
-        local = np.abs(np.angle(np.exp(1j * turns)))
-        return local.max(axis=(0, 2)), (group.weights * v[:, group.places]).sum(axis=2)[..., None]
-    R = rows[:, parts["R"]].reshape(n, -1, 3, 3)[:, group.rotations]
-    relative = np.swapaxes(frames, 2, 3)[:, :, None] @ R
-    cosines = (np.trace(relative, axis1=3, axis2=4) - 1.0) / 2.0
-    local = np.arccos(np.clip(cosines, -1.0, 1.0))
-    rates = v[:, group.places[..., None] + np.arange(3)].reshape(n, *shape, 3, 1)
-    spins = (group.weights[..., None] * (relative @ rates)[..., 0]).sum(axis=2)
-    return local.max(axis=(0, 2)), spins
-
-
-def _spins_of_positions(planar: bool, group: Placed, rows: NDArray, parts: dict) -> NDArray:
-    """Spins of frames of best fit in their own axes, (n, b, 3 or 1).
-
-    Of a body that moves as the nodes do, by the moment of their velocities about their mean.
-    """
-    n, d = len(rows), 2 if planar else 3
-    at = group.places[..., None] + np.arange(d)
-    frames = rows[:, parts["frames"]].reshape(n, -1, 3, 3)[:, group.frames, :d, :d]
-    arms, rates = ((x - x.mean(axis=2, keepdims=True)) @ frames
-                   for x in (rows[:, parts[name]][:, at] for name in ("q", "v")))
-    if planar:
-        moments = arms[..., 0] * rates[..., 1] - arms[..., 1] * rates[..., 0]
-        return (moments.sum(axis=2) / (arms**2).sum(axis=(2, 3)))[..., None]
-    moments = np.cross(arms, rates).sum(axis=2)
-    squares = np.swapaxes(arms, 2, 3) @ arms
-    inertia = np.trace(squares, axis1=2, axis2=3)[..., None, None] * np.eye(3) - squares
-    return (np.linalg.pinv(inertia) @ moments[..., None])[..., 0]

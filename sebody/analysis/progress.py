@@ -4,6 +4,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from inspect import signature
 
 from sebody import inputs
 
@@ -68,7 +69,7 @@ class Progress:
 
 
 @contextmanager
-def showing(progress: Callable[[float], None] | bool | None, t_end: float
+def showing(progress: Callable[[float], None] | bool | None, t_end: float | None
             ) -> Iterator[Callable[[float], None] | None]:
     """What is called during a run: a function, or a bar for True.
 
@@ -86,8 +87,15 @@ def showing(progress: Callable[[float], None] | bool | None, t_end: float
     elif progress is None or progress is False:
         yield None
     else:
-        yield inputs.function(progress, "progress",
-                              "give a function of the part that is done, or True for a bar")
+        remedy = "give a function of the part that is done, or True for a bar"
+        inputs.function(progress, "progress", remedy)
+        try:
+            signature(progress).bind(0.5)
+        except TypeError as error:
+            raise inputs.refusal("progress", progress, remedy) from error
+        except ValueError:      # a function that does not tell what it takes
+            pass
+        yield progress
 
 
 def _duration(seconds: float) -> str:

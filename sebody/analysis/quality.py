@@ -6,7 +6,7 @@ from scipy.linalg import LinAlgError, eigh, null_space
 
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import matrix
-from sebody.analysis.thresholds import CUT, EXCITED, PERIOD
+from sebody.analysis.thresholds import CUT, EXCITED, GROWN, PERIOD
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import ADAPTIVE, CUTS, STEPS
 from sebody.kernels.layout import ENERGIES, RECORD_T
@@ -18,6 +18,7 @@ from sebody.results.recording import Recording, record_counts
 LOOKED_AT = 200     # recorded states whose energies are compared
 SMALL = 100         # unknowns up to which vibrations are looked for, by dense algebra
 MASSLESS = 1e-12    # of the mean mass, where there is none
+IDLE = 1e-9         # of all work: nothing works between two states
 NO_MOTION = 1e-9    # of all energies: kinetic energy of a model at rest
 
 
@@ -42,6 +43,13 @@ def remarks(run: Recording) -> dict[str, str]:
             f"energy balance {balance:.2g} of the energy exchanged (limit {BALANCE:g}): the step "
             "is too long, or numerical damping takes energy that matters; take a smaller step, a "
             "larger rho, or simulate_within")
+    grown = growth(kinetic + strain + potential, work) / max((kinetic + strain).max(), 1e-300)
+    if grown > GROWN and "balance" not in found:
+        found["growth"] = (
+            f"energy grows by {grown:.2g} of its largest while nothing works on the model (limit "
+            f"{GROWN:g}): vibrations that the steps do not resolve feed a body that bends far; "
+            "take a smaller step, divide the body, or keep the position of a node off the line of "
+            "the others")
     found |= _steps(run)
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
         states = {int(np.argmax(kinetic)), int(np.argmax(strain))}
@@ -50,6 +58,21 @@ def remarks(run: Recording) -> dict[str, str]:
     if run.numbering.multipliers:
         found |= _constraints(part)
     return found
+
+
+def growth(energy: NDArray, work: NDArray) -> float:
+    """Largest increase of an energy over stretches of states between which no work is done.
+
+    Parameters
+    ----------
+    energy, work : (n,)
+    """
+    idle = np.abs(np.diff(work)) <= IDLE * max(np.ptp(work), np.ptp(energy))
+    least, most = energy[0], 0.0
+    for still, now in zip(idle, energy[1:], strict=True):
+        least = min(least, now) if still else now
+        most = max(most, now - least)
+    return float(most)
 
 
 def _steps(run: Recording) -> dict[str, str]:

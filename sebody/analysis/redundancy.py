@@ -43,13 +43,15 @@ def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
     Where these are zero, a typical one of the model by the magnitudes of coordinates.
     """
     n = matrix.shape[0]
-    diagonal, part, magnitude = np.abs(matrix.diagonal()), system.part[:n], system.magnitude[:n]
+    diagonal, part = np.abs(matrix.diagonal()), system.part[:n]
+    # of a model whose only place is the origin: magnitudes are zero
+    magnitude = np.where(system.magnitude[:n] > 0.0, system.magnitude[:n], 1.0)
     found = np.zeros(n)
     np.maximum.at(found, part, diagonal)
     found = found[part]
-    typical = (diagonal * magnitude**2).max()
+    typical = (diagonal * magnitude**2).max() or 1.0    # one of a model without any inertia
     empty = found == 0.0
-    found[empty] = typical / np.where(magnitude[empty] > 0.0, magnitude[empty], 1.0)**2
+    found[empty] = typical / magnitude[empty]**2
     return found
 
 

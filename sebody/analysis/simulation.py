@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
 from sebody.analysis.failures import explained
@@ -18,7 +18,7 @@ from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen, untold
 from sebody.analysis.row_exchanges import RowExchanges
-from sebody.analysis.schemes import generalized_alpha
+from sebody.analysis.schemes import checked, generalized_alpha
 from sebody.analysis.tolerance import Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import placed, rotational
@@ -94,10 +94,10 @@ class Simulation:
                  start: Result | None = None):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
-        self.every = inputs.integer(output_every, "output_every", least=1,
+        self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
                                     remedy="give a whole number of steps >= 1")
         if scheme is not None:
-            inputs.instance(scheme, "scheme", Scheme, "give generalized_alpha() or hht()")
+            checked(scheme)
         tolerance = given(tolerance)
         prepare([model])
         self.system, self.numbering = build(model)
@@ -193,7 +193,8 @@ class Simulation:
                              "an earlier time or a longer step")
         if round(steps) < self.state.control[GRID]:
             raise InputError(past)
-        if round(steps) == self.state.control[GRID] and abs(steps - round(steps)) > OFF_GRID:
+        there = abs(t_end - self.time) <= OFF_GRID * min(self.h, max(t_end, self.time))
+        if round(steps) == self.state.control[GRID] and not there:
             raise InputError(f"cannot run to t_end = {t_end:g} from t = {self.time:g}: the step is "
                              f"{self.h:g}; give a later time or a smaller step (the step comes "
                              "first)")
@@ -202,11 +203,9 @@ class Simulation:
     def _room(self, last: int) -> Record:
         """An empty record for the states up to a step of the grid."""
         count = last // self.every - int(self.state.control[GRID]) // self.every
-        try:
-            return Record.of(self.state, count, self.every)
-        except (MemoryError, ValueError) as error:      # ValueError: more than any array can hold
-            raise InputError(f"{count} recorded states do not fit into memory: keep fewer with "
-                             "output_every, or give an earlier t_end") from error
+        memory.check(8.0 * count * self.state.now.size, f"a record of {count} states",
+                     "keep fewer with output_every, or give an earlier t_end")
+        return Record.of(self.state, count, self.every)
 
     def _advance(self, record: Record, last: int, t_end: float,
                  progress: Callable[[float], None] | None) -> int:

@@ -26,8 +26,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
+from sebody.assembly.batches import frame_constants
 from sebody.assembly.carried import carried_constants
+from sebody.assembly.contracts import frame_counts
+from sebody.assembly.floating import frame_conditions
 from sebody.generated.options import INERTIA_OPTIONS
+from sebody.model.frames import FRAMES
 from sebody.model.parts import Superelement
 from sebody.reduction import ReducedBody
 
@@ -100,16 +104,25 @@ def holds(part: Superelement, axis: NDArray | None) -> list[Held]:
     body = part.body
     moved, rotated = rows_of(body)
     points = _in_space(body.coordinates)
-    of_frame = (_fit(body, moved) if part.frame == "positions" else
-                np.einsum("j,jin->in", part.alpha_r, rotated))
+    of_frame = _frame_rotation(part)
     found = []
     for k, node in enumerate(body.position_nodes):
         free = null_space(np.vstack([moved[k], of_frame]))
-        turns = [np.zeros_like(of_frame)]
+        turns = [np.zeros((3, len(body.mass)))]
         if node in body.rotation_nodes and _principal(body, node, axis):
             turns.append(rotated[body.rotation_nodes.index(node)])
         found += [Held(points[node], turn, free) for turn in turns]
     return found
+
+
+def _frame_rotation(part: Superelement) -> NDArray:
+    """Rows that vanish where y leaves the rotation of the frame as it is, (k, n)."""
+    counts = frame_counts(part)
+    D, p = counts["D"], counts["N_POSITIONS"]
+    conditions = frame_conditions(FRAMES[part.frame].kernel, counts, frame_constants(part))
+    origin, turned = conditions[:D], conditions[D:]
+    # of displacements relative to the origin, which moves with y
+    return turned - turned[:, :D * p] @ np.tile(np.eye(D), (p, 1)) @ origin
 
 
 def first_frequency(part: Superelement) -> float:

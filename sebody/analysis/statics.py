@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.analysis import user_faults
 from sebody.analysis.linearization import rotating
 from sebody.analysis.simulation import Simulation
@@ -56,6 +56,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     t = inputs.number(t, "t")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     run = Simulation(model, 1.0)
+    memory.check(8.0 * steps * run.state.now.size, f"steps is {steps}: the record of all",
+                 "give fewer")
     state, field = run.state, run.state.coefficients[FIELD:].copy()
     steady = Spin.of(run, spin)
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0

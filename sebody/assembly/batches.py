@@ -21,9 +21,10 @@ from sebody.assembly.contracts import (
 )
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
-from sebody.generated.options import FRAMES, INERTIA_OPTIONS
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
+from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 from sebody.reduction import ReducedBody
@@ -205,9 +206,13 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     if not option.field:
         return values | carried_constants(reduced)
     counts = counts_of(body)
-    conditions = frame_conditions(FRAMES[load(body.kernel).FRAME], counts, values)
-    return values | floating_constants(body.invariants.about(origin), reduced.stiffness,
-                                       conditions, counts, reduced.damping, ROUNDING)
+    frame = FRAMES[body.frame]
+    invariants = body.invariants.about(origin)
+    if not frame.traits.needs_rotations:
+        invariants = invariants.rigidly_followed
+    return values | floating_constants(invariants, reduced.stiffness,
+                                       frame_conditions(frame.kernel, counts, values), counts,
+                                       reduced.damping, ROUNDING)
 
 
 def frame_constants(body: Superelement) -> dict[str, ArrayLike]:

@@ -18,6 +18,7 @@ from sebody.kernels.layout import (
     ContractError,
     Counts,
     Row,
+    axes_of,
     bound_counts,
     carried_counts,
     first_mode,
@@ -123,6 +124,13 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[in
 def positions_of(element: Element) -> int:
     """How many positions an element is on; an internal mode counts as one."""
     return sum(not t.rotational for t in element.triplets) + (element.mode is not None)
+
+
+def frame_counts(body: Superelement) -> Counts:
+    """The counts that what places its frame refers to, and what its motion has."""
+    reduced = body.body
+    return axes_of(reduced.planar) | superelement_counts(
+        len(reduced.position_nodes), len(reduced.rotation_nodes), reduced.planar, _width(body))
 
 
 def counts_of(body: Superelement) -> Counts:

@@ -14,7 +14,9 @@ from sebody.assembly.body_axes import (
     stiff_without_rounding,
     without_rounding,
 )
-from sebody.kernels.layout import Counts, FrameTraits, first_rotation
+from sebody.errors import InputError
+from sebody.generated.options import CONDITIONS
+from sebody.kernels.layout import Counts, first_rotation
 from sebody.kernels.packed import pack
 from sebody.reduction.invariants import InertiaInvariants
 
@@ -92,25 +94,38 @@ def packed(invariants: InertiaInvariants, stiffness: NDArray, coordinates: Free,
             "stretched": rows([*i.Ghat, stiffness], free)}
 
 
-def frame_conditions(frame: FrameTraits, counts: Counts, values: Mapping[str, ArrayLike]
-                     ) -> NDArray:
+def frame_conditions(frame: str, counts: Counts, values: Mapping[str, ArrayLike]) -> NDArray:
     """Linear conditions that the local coordinates obey: no motion of the frame is among them.
 
-    The weighted displacements add up to zero; so do the weighted rotation vectors, or the moments
-    of the displacements in a rotation of best fit.
+    The weighted displacements add up to zero, and so does what the frame declares.
+
+    Parameters
+    ----------
+    frame : str
+        Of a kernel.
+    counts : dict
+        Those of the body's kernel.
+    values : dict
+        Constants of the frame by name.
+
+    Raises
+    ------
+    InputError
+        A frame that declares no condition.
     """
     D, turns = counts["D"], counts["turns"]
-    first = first_rotation(counts["N_POSITIONS"], D == 2)
+    key = frame, D == 2
+    if key not in CONDITIONS:
+        raise InputError(f"frame {frame!r} declares no linear condition of the local coordinates, "
+                         "which inertia='c' needs: use another frame or option")
+    condition, first = CONDITIONS[key], first_rotation(counts["N_POSITIONS"], D == 2)
     found = np.zeros((D + turns, counts["n"]))
     found[:D, :first] = np.kron(values["alphas"], np.eye(D))
-    if frame.needs_rotations:
-        weights = np.kron(values["alpha_rs"], np.eye(turns))
-        found[D:, first:first + weights.shape[1]] = weights
-        return found
-    for j, (w, X) in enumerate(zip(values["fits"], np.asarray(values["X"]), strict=True)):
-        moment = (np.array([[-X[1], X[0]]]) if D == 2 else
-                  np.array([[0, -X[2], X[1]], [X[2], 0, -X[0]], [-X[1], X[0], 0]]))
-        found[D:, D * j:D * j + D] = w * moment
+    begin, size = (0, D) if condition.of == "position" else (first, turns)
+    constants = (np.asarray(values[name]) for name in condition.constants)
+    for j, of_node in enumerate(zip(*constants, strict=True)):
+        at = begin + size * j
+        found[D:, at:at + size] = condition.coefficients(*of_node)
     return found
 
 

@@ -53,11 +53,17 @@ def build_scene(name: str, changes: Sequence[str]) -> "Scene":
     arguments = given_arguments(name, build, changes)
     if not file:
         return build(**arguments)
-    return _checked(scene_files.call(file, lambda: build(**arguments)), name)
+    return checked_scene(scene_files.call(file, lambda: build(**arguments)), name)
 
 
-def _checked(scene: object, name: str) -> "Scene":
-    """What the `build` of a file returned, if that is a scene that can be run."""
+def checked_scene(scene: object, name: str) -> "Scene":
+    """What the `build` of a file returned, if that is a scene that can be run.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
     from sebody import Model
     from sebody.scenes.scene import Scene
 
@@ -156,7 +162,7 @@ def _value(name: str, text: str, default: Any) -> Any:
         return text
     try:
         value = ast.literal_eval(text)
-    except (ValueError, SyntaxError):
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
         value = text
     if isinstance(default, float) and type(value) is int:
         value = float(value)

@@ -105,19 +105,23 @@ class SolidStress:
         return replace(self, nodes=place[self.nodes[kept]], coordinates=coordinates,
                        elasticity=law)
 
+    def volumes(self) -> NDArray:
+        """Volume about each point, of the size cubed; negative where it is mirrored, (n, g)."""
+        jacobian = self.jacobian()
+        size = np.abs(jacobian).max(axis=(1, 2, 3))
+        return np.linalg.det(jacobian) / np.where(size > 0, size, 1.0)[:, None]**3
+
+    def jacobian(self) -> NDArray:
+        """Derivatives of x, y and z by the element's coordinates, (n, g, 3, 3)."""
+        corners = self.coordinates[self.nodes]
+        slopes = element_kind(self.kind).slopes
+        return (slopes.reshape(-1, slopes.shape[2]) @ corners).reshape(len(corners), -1, 3, 3)
+
     @cached_property
     def _inverse(self) -> NDArray:
         """Derivatives of the element's coordinates by x, y and z, (n, g, 3, 3)."""
-        corners = self.coordinates[self.nodes]
-        slopes = element_kind(self.kind).slopes
-        jacobian = (slopes.reshape(-1, slopes.shape[2]) @ corners).reshape(len(corners), -1, 3, 3)
-        size = np.abs(jacobian).max(axis=(1, 2, 3))
-        flat = np.abs(np.linalg.det(jacobian)).min(axis=1) <= FLAT * size**3
-        if flat.any():
-            k = int(np.argmax(flat))
-            raise InputError(f"element {k} of kind {self.kind!r}, with the nodes "
-                             f"{self.nodes[k].tolist()}, has no volume: correct its nodes")
-        return np.linalg.inv(jacobian)
+        _refuse(self, np.abs(self.volumes()).min(axis=1) <= FLAT, "has no volume")
+        return np.linalg.inv(self.jacobian())
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +172,9 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
     Raises
     ------
     InputError
-        No solid elements, a wrong number of nodes, or a material that there is not.
+        No solid elements, a wrong number of nodes, elements without volume or turned inside out in
+        a part of them (a whole one may be mirrored, which changes no strain), or a material that
+        there is not.
     """
     coordinates = inputs.array(coordinates, "coordinates", (None, 3))
     inputs.number(youngs_modulus, "youngs_modulus", above=0)
@@ -183,10 +189,21 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
             raise InputError(f"cells of kind {kind!r} have {nodes.shape[1]} nodes each: give "
                              f"{count}, in meshio's order")
         found.append(SolidStress(kind, nodes, coordinates, law))
+        volumes = found[-1].volumes()
+        _refuse(found[-1], np.abs(volumes).min(axis=1) <= FLAT, "has no volume")
+        _refuse(found[-1], (volumes > 0).any(axis=1) & (volumes < 0).any(axis=1),
+                "is turned inside out in a part of it")
     if not found:
         raise InputError(f"cells have no solid elements: give cells of the kinds "
                          f"{', '.join(SOLID_KINDS)}")
     return tuple(found)
+
+
+def _refuse(one: SolidStress, wrong: NDArray, what: str) -> None:
+    if wrong.any():
+        k = int(np.argmax(wrong))
+        raise InputError(f"element {k} of kind {one.kind!r}, with the nodes "
+                         f"{one.nodes[k].tolist()}, {what}: correct its nodes, in meshio's order")
 
 
 def elasticity(youngs_modulus: float, poisson_ratio: float) -> NDArray:

@@ -15,7 +15,7 @@ N             these, and the coordinates that follow them
 ============  ======================================================================================
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import prod
 from typing import NamedTuple
 
@@ -59,15 +59,6 @@ class Part(NamedTuple):
         if self.packed:
             return (self.size(counts),)
         return tuple([counts[s] if isinstance(s, str) else s for s in self.shape])
-
-    def expression(self, known: Counts) -> str:
-        """The size as text for a kernel: known counts as numbers, the others by name."""
-        sizes = [str(known.get(s, s)) for s in self.shape]
-        if self.columns:
-            return f"{sizes[1]}*padded({sizes[0]})"
-        if self.packed:
-            return f"packed_room({', '.join(sizes)})"
-        return "*".join(sizes) or "1"
 
 
 class Row(NamedTuple):
@@ -192,7 +183,7 @@ ARGUMENTS = (
     ("T", "float64", "tangent operators of the step increments of rotations, nine numbers each"),
     ("loads", "float64", "of every power port the amplitude now and its first two derivatives"),
     ("coefficients", "float64", "the row COEFFICIENTS"),
-    ("forces", "float64", "written: forces of every element, (count, n)"),
+    ("forces", "float64", "written: forces of every element, (count, n); of motions rows MOTION"),
     ("matrices", "float64", "written: matrices of every element, (count, n, n)"),
     ("work", "float64", "scratch memory: WORK_ROWS padded rows"),
     ("energies", "float64", "added to: the row ENERGIES"),
@@ -250,6 +241,18 @@ RECORD_T, RECORD_ITERATIONS, RECORD_WORKS = (
     RECORD.first(name) for name in ("t", "iterations", "works"))
 Q_PART, R_PART, V_PART, A_PART = (
     [part.name for part in RECORD.parts].index(name) for name in ("q", "R", "v", "a"))
+
+MOTION = Row("motion of a body in a state, in axes of its frame but for the place of that", (
+    Part("origin", ("D",), "place of the frame, in global axes"),
+    Part("rotation", (9,), "of the frame, row by row; in a plane its first two axes are there"),
+    Part("velocity", ("D",), "of the origin"),
+    Part("acceleration", ("D",), "of the origin"),
+    Part("spin", ("turns",), "angular velocity of the frame"),
+    Part("spin_rate", ("turns",), "its rate"),
+    Part("y", ("n",), "local coordinates"),
+    Part("y_rate", ("n",), "their rates, seen in the frame"),
+    Part("y_second", ("n",), "their second rates"),
+))
 
 # what places the frame of a body, and constants of every superelement; a frame or inertia option
 # may declare more
@@ -360,6 +363,18 @@ class InertiaTraits(NamedTuple):
     # alone, and the same kernels for bodies with and without damping
     field: bool = False             # T of the displacement field, from integrals over the body
     constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
+
+
+class Condition(NamedTuple):
+    """What the local coordinates of a body obey in its frame, beside zero mean displacements.
+
+    A sum over the nodes vanishes: coefficients times the displacement or rotation of each. In
+    incremental frames it does so to first order.
+    """
+
+    of: str                     # position | rotation
+    constants: tuple[str, ...]  # that the coefficients are made of, by name: those of a node
+    coefficients: Callable      # (rows, components) of the constants of a node, in this order
 
 
 LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # by kept triplets of a node

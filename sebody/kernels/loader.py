@@ -14,6 +14,9 @@ from types import ModuleType
 
 from sebody.errors import InputError
 from sebody.kernels.names import (
+    ELEMENT,
+    IN_PLANE,
+    SUPERELEMENT,
     element_name,
     general_layout,
     layout_variant,
@@ -21,6 +24,7 @@ from sebody.kernels.names import (
 )
 from sebody.kernels.sources import room_hash
 
+DERIVE = "python -m sebody.derive"
 USER_FORCE = element_name("user_force")      # written by hand, in this room
 
 
@@ -61,9 +65,11 @@ def find(name: str) -> Path | None:
     lines = re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE)
     facts = dict(lines)
     if facts.get("ROOM") != room_hash("kernels"):
-        variant = ":".join(facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA"))
+        asked = [name.removeprefix(ELEMENT)]
+        if name.startswith(SUPERELEMENT):
+            asked = [facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA")]
         raise InputError(f"kernel {path} was made by another version of sebody: make it again with"
-                         f"\n    python -m sebody.derive {variant}")
+                         f"\n    {derive_command(*asked)}")
     return path
 
 
@@ -115,9 +121,9 @@ def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
                      f"{derive_command(variants[1], frame, inertia)}")
 
 
-def derive_command(variant: str, frame: str, inertia: str) -> str:
-    """What makes a superelement's kernel."""
-    return f"python -m sebody.derive {variant}:{frame}:{inertia}"
+def derive_command(*name: str) -> str:
+    """What makes a kernel: by its name, or a superelement's by layout, frame and inertia option."""
+    return f"{DERIVE} {':'.join(name)}"
 
 
 @cache
@@ -129,10 +135,15 @@ def element_kernel_name(kind: str) -> str:
     InputError
         If it has not been generated.
     """
-    name = element_name(kind)
+    name, planar = element_name(kind), kind.startswith(IN_PLANE)
+    other = kind.removeprefix(IN_PLANE) if planar else IN_PLANE + kind
     if name != USER_FORCE and not find(name):
-        raise InputError(f"there is no kernel for element {kind!r}: reinstall sebody or run "
-                         "python -m sebody.derive")
+        if find(element_name(other)):
+            spaces = ("a plane", "space") if planar else ("space", "a plane")
+            raise InputError(f"element {kind!r} does not exist for motion in {spaces[0]}, only "
+                             f"{other!r} for motion in {spaces[1]}")
+        raise InputError(f"there is no kernel for element {kind!r}: reinstall sebody or make it "
+                         f"with\n    {derive_command(kind)}")
     return name
 
 

@@ -1,7 +1,8 @@
 """Names of kernels, which are the names of their modules."""
 
-SUPERELEMENT, ELEMENT = PREFIXES = "superelement_", "element_"
+SUPERELEMENT, ELEMENT, MOTION = PREFIXES = "superelement_", "element_", "motion_"
 PLANAR = "planar-"  # begins names of layouts in a plane
+IN_PLANE = "planar_"     # begins names of kernels of elements in a plane
 ANY = "any"         # layout of the general kernels, which read the counts of nodes at run time
 
 
@@ -17,7 +18,12 @@ def element_name(kind: str) -> str:
 
 def body_load_kind(frame: str, planar: bool) -> str:
     """Kind of a load on a body with this frame: the name of its kernel without the prefix."""
-    return "planar_" * planar + f"body_load_{frame}"
+    return IN_PLANE * planar + f"body_load_{frame}"
+
+
+def motion_name(frame: str, planar: bool) -> str:
+    """The kernel of the motion of bodies with a frame: its place, local coordinates, rates."""
+    return MOTION + IN_PLANE * planar + frame
 
 
 def general_layout(layout: str) -> str:

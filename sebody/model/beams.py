@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from numpy.typing import ArrayLike
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.errors import InputError
 from sebody.fem import planar_beam, straight_beam
 from sebody.fem.section import AnySection, part_of
@@ -19,6 +19,8 @@ from sebody.model.parts import Beam, Node
 from sebody.reduction import ReducedBody, craig_bampton
 
 KEPT = 64       # bodies of beams that are kept for further models
+
+OF_BODY = 20_000        # bytes of a superelement and its node
 
 
 def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
@@ -80,6 +82,7 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
                  f"{inputs.shown(bodies)} bodies: give a multiple")
     bodies = elements if bodies is None else inputs.integer(bodies, "bodies", least=1,
                                                             remedy=undivided)
+    memory.check(float(OF_BODY) * bodies, f"beam {name!r} of {bodies} bodies", "give fewer bodies")
     damping = inputs.number(damping, f"beam {name!r}: damping", least=0)
     if up is not None and model.planar:
         raise InputError(f"beam {name!r}: up is for beams in space, leave it out")

@@ -12,7 +12,7 @@ from sebody.errors import InputError
 from sebody.io.body_file import load_body
 from sebody.kernels.layout import layout_name
 from sebody.kernels.loader import superelement_kernel_name
-from sebody.model.frames import check_frame, frame_weights, known_frame
+from sebody.model.frames import check_frame, default_frame, frame_weights, known_frame
 from sebody.model.inertias import chosen_inertia, needs_damped_kernel
 from sebody.model.inputs import known, refuse_taken, triplet, vector
 from sebody.model.mechanism import Mechanism
@@ -21,7 +21,7 @@ from sebody.reduction import ReducedBody
 
 
 def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
-                 nodes: Iterable[Node | str], frame: str = "converged_mean",
+                 nodes: Iterable[Node | str], frame: str | None = None,
                  inertia: str | None = None, rotation: ArrayLike | None = None,
                  frame_node: int = 0, stiffening: bool | None = None) -> Superelement:
     """Place a reduced body on nodes.
@@ -32,7 +32,10 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         Reduced matrices in any axes, or the body file that holds them.
     nodes : iterable of Node or str
         One node for each boundary node of the body, in its order.
-    frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}
+    frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}, optional
+        By default the rotation of best fit of the positions, 'positions', for bodies with inertia
+        c and three or more positions that are not nearly on a line, else the mean of the nodes'
+        rotations, 'converged_mean'.
     inertia : {'a', 'b', 'c', 'd'}, optional
         By default c, the velocities of the whole displacement field, of bodies that know it:
         `craig_bampton` returns such bodies where the FE model knows the points of its mass. Of
@@ -67,8 +70,11 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         raise InputError(f"superelement {name!r} is {'planar' if body.planar else 'spatial'} "
                          f"and the model is {'planar' if model.planar else 'spatial'}: use one "
                          "kind in a model")
-    own = known_frame(frame)
+    _check_units(model, name, body)
     placed = body if rotation is None else body.rotated(rotation)
+    if frame is None:
+        frame = default_frame(placed, inertia)
+    own = known_frame(frame)
     _check_place(name, placed, nodes)
     check_frame(name, placed, frame)
     inertia, stiffening = chosen_inertia(name, placed, frame, inertia, stiffening)
@@ -76,6 +82,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     layout = layout_name(placed.keeps, placed.planar)
     kernel = superelement_kernel_name(layout, own.kernel, inertia, placed.modes,
                                       needs_damped_kernel(placed, inertia))
+    model.units = model.units or body.units
     model.bodies[name] = Superelement(name, placed, nodes, frame, inertia, stiffening, layout,
                                       alpha, alpha_r, kernel, np.zeros(placed.modes))
     model.own_names.add(name)
@@ -142,6 +149,12 @@ def _check_name(model: Mechanism, name: str, what: str) -> None:
     if name in model.bodies or name in model.rigid_bodies:
         raise InputError(f"{what} {name!r} exists already: give it its own name")
     refuse_taken(model, name, f"{what} {name!r}")
+
+
+def _check_units(model: Mechanism, name: str, body: ReducedBody) -> None:
+    if body.units and model.units and body.units != model.units:
+        raise InputError(f"superelement {name!r}: the body is in the units {body.units} and the "
+                         f"model in {model.units}: import the body in the model's units")
 
 
 def _check_rigid(model: Mechanism, name: str, mass: float) -> float:

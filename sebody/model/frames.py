@@ -21,6 +21,9 @@ class Frame(NamedTuple):
 
 
 FRAMES = {name: Frame(name, traits) for name, traits in options.FRAMES.items()}
+# Ratio of the spreads of positions from which on their fit is the default: it follows the least of
+# them, which has little mass in bodies much longer than wide.
+FAR_FROM_A_LINE = 0.2
 FRAMES["node"] = FRAMES["converged_mean"]._replace(on_one_node=True)    # the mean of one rotation
 
 
@@ -33,8 +36,25 @@ def known_frame(frame: str) -> Frame:
         There is none of this name.
     """
     if not isinstance(frame, str) or frame not in FRAMES:
-        raise InputError(f"frame {frame!r} is unknown: use one of {', '.join(sorted(FRAMES))}")
+        raise InputError(f"frame {inputs.shown(frame)} is unknown: use one of "
+                         f"{', '.join(sorted(FRAMES))}")
     return FRAMES[frame]
+
+
+def default_frame(body: ReducedBody, inertia: str | None) -> str:
+    """The frame of a body whose user asks for none.
+
+    A frame on rotations follows nodes that have little inertia of rotation. The inertia of option C
+    then depends on how far the body is bent, the more the lighter the nodes are against the body.
+    Positions move with more mass.
+    """
+    if body.invariants is None or inertia not in (None, "c") or not body.rotation_nodes:
+        return "converged_mean"
+    points = body.coordinates[list(body.position_nodes)]
+    if len(points) < 3:
+        return "converged_mean"
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return "positions" if spread[1] > FAR_FROM_A_LINE * spread[0] else "converged_mean"
 
 
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:

@@ -15,7 +15,7 @@ def known(model: Mechanism, node: Node | str) -> Node:
         raise inputs.refusal("node", node, "give a node of the model or its name")
     name = node.name if isinstance(node, Node) else node
     if name not in model.nodes:
-        raise InputError(f"node {name!r} is unknown: the model has "
+        raise InputError(f"node {inputs.shown(name)} is unknown: the model has "
                          f"{', '.join(model.nodes) or 'no nodes'}")
     if isinstance(node, Node) and model.nodes[name] is not node:
         raise InputError(f"node {name!r} is of another model: use that of this one")

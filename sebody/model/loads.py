@@ -157,7 +157,7 @@ def gravity(model: Mechanism, field: ArrayLike) -> None:
 def _body(model: Mechanism, name: str) -> Superelement:
     """A superelement by its name."""
     if not isinstance(name, str) or name not in model.bodies:
-        raise InputError(f"superelement {name!r} is unknown: "
+        raise InputError(f"superelement {inputs.shown(name)} is unknown: "
                          + _others(str(name), model.bodies, "the model has", "the model has none"))
     return model.bodies[name]
 

@@ -21,6 +21,7 @@ from sebody.model.parts import (
     Triplet,
 )
 from sebody.model.plane import Plane
+from sebody.units import parsed_units
 
 
 @dataclass(eq=False)
@@ -31,9 +32,13 @@ class Mechanism:
     ----------
     planar : bool
         Motion in the x-y plane: positions (x, y) and one angle a node.
+    units : str
+        Units of all numbers, such as ``mm t N s``, for legends, axes and tables; those of its
+        bodies by default.
     """
 
     planar: bool = False
+    units: str = ""
     nodes: dict[str, Node] = field(default_factory=dict, init=False)
     bodies: dict[str, Superelement] = field(default_factory=dict, init=False)
     rigid_bodies: dict[str, Element] = field(default_factory=dict, init=False)
@@ -49,6 +54,7 @@ class Mechanism:
 
     def __post_init__(self) -> None:
         self.planar = inputs.flag(self.planar, "planar")
+        self.units = str(parsed_units(self.units, "units of the model") or "")
         self.gravity_field = np.zeros(self.dimension)
 
     @property
@@ -101,6 +107,6 @@ class Mechanism:
                              "tell them apart")
         names = list(dict.fromkeys(e.name for e in self.elements()))
         near = get_close_matches(str(name), names)
-        raise InputError(f"element {name!r} is unknown: " + (
+        raise InputError(f"element {inputs.shown(name)} is unknown: " + (
             f"did you mean {' or '.join(map(repr, near))}?" if near else
             f"the model has {', '.join(map(repr, names)) or 'none'}"))

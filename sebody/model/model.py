@@ -22,6 +22,9 @@ class Model(Mechanism):
     ----------
     planar : bool
         Motion in the x-y plane: positions (x, y) and one angle a node.
+    units : str
+        Units of all numbers, such as ``mm t N s``, for legends, axes and tables; those of its
+        bodies by default.
     """
 
     def _repr_html_(self) -> str:

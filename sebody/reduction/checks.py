@@ -4,6 +4,8 @@ Matrices are compared in unit-free form: positions, rotations and each internal 
 by the square root of their largest diagonal entry, so no verdict depends on the units.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,13 +42,18 @@ def check_layout(coordinates: NDArray, keeps: tuple[str, ...]) -> None:
         )
 
 
-def coordinate_names(keeps: tuple[str, ...], dimension: int, modes: int) -> list[str]:
-    """Name of every reduced coordinate, in order: positions, rotations, internal modes."""
+def coordinate_names(keeps: tuple[str, ...], dimension: int, modes: int,
+                     names: Sequence[str] = ()) -> list[str]:
+    """Name of every reduced coordinate, in order: positions, rotations, internal modes.
+
+    With the names of the boundary nodes, or their numbers.
+    """
     axes, about = "xyz"[:dimension], "z" if dimension == 2 else "xyz"
-    nodes = list(enumerate(keeps))
+    nodes = list(zip(names or [f"node {i}" for i in range(len(keeps))], keeps, strict=True))
     return (
-        [f"position {a} of node {i}" for i, keep in nodes if keep != "rotation" for a in axes]
-        + [f"rotation {a} of node {i}" for i, keep in nodes if keep != "translation" for a in about]
+        [f"position {a} of {name}" for name, keep in nodes if keep != "rotation" for a in axes]
+        + [f"rotation {a} of {name}" for name, keep in nodes if keep != "translation"
+           for a in about]
         + [f"mode {i}" for i in range(modes)]
     )
 

@@ -15,6 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 
+# of the arrays: D axes of translation, r of rotation, n coordinates, N with the slaved ones
+LENGTHS = {"c0": ("D",), "S1": ("D", "N"), "J0": ("r", "r"), "g": ("r", "N"), "h": ("r", "r", "N"),
+           "K": ("r", "N", "N"), "J2": ("r", "r", "N", "N"), "Mbar": ("N", "N"),
+           "Q": ("slaved", "n", "n"), "lam": ("resultants",), "E": ("n", "resultants"),
+           "Ghat": ("resultants", "n", "n"), "origin": ("D",)}
+
 
 @dataclass(frozen=True, eq=False)
 class InertiaInvariants:
@@ -111,6 +117,33 @@ class InertiaInvariants:
             self, S1=self.S1[:, :n], g=self.g[:, :n], h=self.h[..., :n], K=self.K[:, :n, :n],
             J2=self.J2[..., :n, :n], Mbar=self.Mbar[:n, :n], Q=self.Q[:0], lam=self.lam[:0],
             E=self.E[:, :0], Ghat=self.Ghat[:0])
+
+    @property
+    def rigidly_followed(self) -> "InertiaInvariants":
+        """The same body, with rates of slaved coordinates that count by their rigid part.
+
+        The velocity ``Psi etadot`` is replaced by the rigid motion with the same momentum and
+        moment of momentum. What the slaved coordinates are for stays: the work of the loads that
+        accelerating, turning and spinning make on them. What goes are products of rates of
+        deformation with deformation, in the kinetic energy as ``ydot . M_yeta Q y ydot``. Products
+        of this order in the strain energy, which would go with them, are not known: one without
+        the other takes energy to high frequencies where a body bends far. Velocities still are
+        those of a field, so the kinetic energy is positive, and momenta are the rates of moments
+        of mass.
+        """
+        if not self.slaved:
+            return self
+        n = self.Q.shape[1]
+        moments = self._cross(self.c0[:, None])[..., 0]     # E_t^T M E_rk, (r, D)
+        rigid = np.block([[self.mass * np.eye(len(self.c0)), moments.T], [moments, self.J0]])
+        momenta = np.vstack([self.S1, self.g])
+        motions = np.linalg.solve(rigid, momenta[:, n:])    # rigid motions of unit rates of eta
+        mass, K = np.array(self.Mbar), np.array(self.K)
+        mass[:, n:] = momenta.T @ motions
+        mass[n:, :n] = mass[:n, n:].T
+        turned = np.concatenate([self._cross(self.S1), self.h.transpose(1, 0, 2)], axis=1)
+        K[:, :, n:] = turned.transpose(0, 2, 1) @ motions
+        return replace(self, Mbar=mass, K=K)
 
     def about(self, point: ArrayLike) -> "InertiaInvariants":
         """The same integrals about `point`, (D,) in the FE axes.

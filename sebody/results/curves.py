@@ -10,6 +10,8 @@ from scipy.spatial.transform import Rotation
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.results.result import Result
+from sebody.results.units import with_unit
+from sebody.units import Units
 
 AXES = "xyz"
 NORM = "norm"                   # component: the length of a vector
@@ -79,7 +81,7 @@ def panels(results: Mapping[str, Result], words: Sequence[str], spectrum: bool =
         if pair and spectrum:
             raise InputError(f"{word} is a phase plot, which has no spectrum: name one quantity")
         found += _phase(results, word, *pair) if pair else _histories(results, word)
-    return [_spectrum(panel) for panel in found] if spectrum else found
+    return [_spectrum(panel, _units(results)) for panel in found] if spectrum else found
 
 
 def values(result: Result, word: str) -> Values:
@@ -163,7 +165,9 @@ def _phase(results: Mapping[str, Result], word: str, across: str, up: str) -> li
     curves = []
     for label in results:
         curves.append(Curve(label, *(_one(results, label, word, side) for side in (across, up))))
-    return [Panel(f"{up} over {across}", across, up, curves, "phase")]
+    units = _units(results)
+    return [Panel(f"{up} over {across}", *(with_unit(side, side, units)
+                                           for side in (across, up)), curves, "phase")]
 
 
 def _one(results: Mapping[str, Result], label: str, word: str, side: str) -> NDArray:
@@ -182,7 +186,7 @@ def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
         t = next(iter(results.values())).t
         curves = [Curve(label, t, column)
                   for label, column in zip(first.labels, first.numbers.T, strict=True)]
-        return [Panel(first.name, "time", _plain(first.name), curves)]
+        return [_history(first.name, curves, results)]
     made = []
     for component in first.labels:
         name = f"{first.name}.{component}".rstrip(".")
@@ -193,8 +197,20 @@ def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
                                  f"{', '.join(one.labels)}")
             curves.append(Curve(label, results[label].t,
                                 one.numbers[:, one.labels.index(component)]))
-        made.append(Panel(name, "time", _plain(name), curves))
+        made.append(_history(name, curves, results))
     return made
+
+
+def _history(name: str, curves: list[Curve], results: Mapping[str, Result]) -> Panel:
+    units = _units(results)
+    return Panel(name, with_unit("time", "t", units), with_unit(_plain(name), name, units),
+                 curves)
+
+
+def _units(results: Mapping[str, Result]) -> Units | None:
+    """The units of results, if all have the same."""
+    found = {result.units for result in results.values()}
+    return found.pop() if len(found) == 1 else None
 
 
 def _values_of(results: Mapping[str, Result], label: str, word: str) -> Values:
@@ -214,10 +230,11 @@ def _plain(name: str) -> str:
     return quantity.replace("_", " ")
 
 
-def _spectrum(panel: Panel) -> Panel:
+def _spectrum(panel: Panel, units: Units | None) -> Panel:
     """Power spectral densities of the curves, by the method of Welch (1967)."""
     curves = [Curve(curve.label, *_density(panel.title, curve)) for curve in panel.curves]
-    return Panel(panel.title, "frequency [1/time]", "power spectral density", curves, "spectrum")
+    return Panel(panel.title, f"frequency [{units.of('1/time') if units else '1/time'}]",
+                 "power spectral density", curves, "spectrum")
 
 
 def _density(title: str, curve: Curve) -> tuple[NDArray, NDArray]:

@@ -13,14 +13,17 @@ from sebody.files import check_target, replacing
 from sebody.model.tables import table
 from sebody.results import hdf5, tables
 from sebody.results.advice import kernels_that_pay
+from sebody.results.cautions import cautions
 from sebody.results.energy_balance import energy_balance
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
+from sebody.results.hot_spots import HotSpots, hot_spots
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
 from sebody.results.units import unit
 from sebody.results.vtk_series import save_vtk
+from sebody.units import Units, parsed_units
 
 OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
 LABELS = 21             # columns of the labels of a summary
@@ -110,6 +113,25 @@ class Result(Recording):
         inputs.name(name, "name of a superelement")
         return field_of(self, name)
 
+    def hot_spots(self, name: str, count: int = 10, apart: float = 0.0) -> HotSpots:
+        """The most stressed FE nodes of a superelement over the whole run, as a table.
+
+        Parameters
+        ----------
+        name : str
+            Of the superelement.
+        count : int
+            How many nodes.
+        apart : float
+            Least distance between two of them, so that neighbours count as one spot [length].
+
+        Raises
+        ------
+        InputError
+            No such superelement, or one without stresses; the message says why.
+        """
+        return hot_spots(self.field(name), count, apart, self.units)
+
     def energy_balance(self) -> float:
         """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
 
@@ -117,6 +139,16 @@ class Result(Recording):
         """
         return energy_balance(*(self[f"energy.{name}"] for name in
                                 ("kinetic", "strain", "potential", "external_work")))
+
+    @property
+    def units(self) -> Units | None:
+        """Units of the model, if it has some."""
+        return parsed_units(self.model.units)
+
+    @property
+    def cautions(self) -> list[str]:
+        """What bodies do not know and why: stresses, stiffening, exact inertia; odd materials."""
+        return cautions(self.model)
 
     @cached_property
     def advice(self) -> dict[str, list[str]]:
@@ -143,7 +175,7 @@ class Result(Recording):
         members = self.arrays() | packed(self)
         with replacing(path, OUTPUT[0]) as file:
             if path.suffix == hdf5.SUFFIX:
-                hdf5.write(file, members, {name: unit(name) for name in self.arrays()},
+                hdf5.write(file, members, {name: unit(name, self.units) for name in self.arrays()},
                            {"title": "results of a run", "superelements": ", ".join(
                                self.model.bodies), "nodes": ", ".join(self.model.nodes)})
             else:
@@ -241,6 +273,7 @@ class Result(Recording):
         lines += [f"general kernel       of {', '.join(bodies)}: one of the layout's own is "
                   f"faster, made by {command}"
                   for command, bodies in self.advice.items()]
+        lines += [f"caution              {text}" for text in self.cautions]
         lines += [f"WARNING              {message}" for message in self.warnings]
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
 

@@ -13,6 +13,7 @@ from sebody.errors import InputError
 from sebody.results.quantities import look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.units import unit
+from sebody.units import parsed_units
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -29,7 +30,7 @@ def to_pandas(recording: Recording, names: Iterable[str] | None) -> "DataFrame":
     InputError
         pandas is missing, or a name that nothing has.
     """
-    _check_installed("pandas")
+    check_installed("pandas")
     from pandas import DataFrame, Index
 
     columns = {}
@@ -48,9 +49,10 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
     InputError
         xarray is missing, or a name that nothing has.
     """
-    _check_installed("xarray")
+    check_installed("xarray")
     from xarray import Dataset
 
+    units = parsed_units(recording.model.units)
     variables, coordinates = {}, {"t": recording.recorded("t")[:, 0]}
     for name, values in _histories(recording, names):
         sizes = values.shape[1:]
@@ -59,7 +61,7 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
             if labels := {"axis": "xyz", "row": "xyz", "column": "xyz",
                           "component": STRESS}.get(dimension):
                 coordinates[dimension] = list(labels[:size])
-        variables[name] = (("t", *dimensions), values, {"units": unit(name)})
+        variables[name] = (("t", *dimensions), values, {"units": unit(name, units)})
     return Dataset(variables, coordinates)
 
 
@@ -87,11 +89,21 @@ def _histories(recording: Recording, names: Iterable[str] | None
                ) -> Iterator[tuple[str, NDArray]]:
     wanted = saved(recording) if names is None else inputs.items(
         names, "names", "give a list of names of quantities")
+    if not wanted:
+        raise inputs.refusal("names", names, "name a quantity, or leave it out")
     for name in wanted:
+        inputs.name(name, "name of a quantity")
         if name != "t":
             yield name, np.asarray(look_up(recording, name))
 
 
-def _check_installed(package: str) -> None:
+def check_installed(package: str) -> None:
+    """Refuse tables without their package.
+
+    Raises
+    ------
+    InputError
+        It is missing.
+    """
     if find_spec(package) is None:
         raise InputError(f'tables need {package}: pip install "sebody[tables]"')

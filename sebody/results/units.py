@@ -1,4 +1,6 @@
-"""Units of quantities in words: numbers have none, but the file of a result says what they are."""
+"""Units of quantities: in words, or by name where the model has units."""
+
+from sebody.units import Units
 
 OF_QUANTITY = {
     "t": "time", "position": "length", "displacement": "length", "velocity": "length/time",
@@ -16,8 +18,30 @@ OF_MODEL = {
 }
 
 
-def unit(name: str) -> str:
-    """Unit of a quantity by its full name, in words; empty if it has none that is known."""
-    if name.startswith("energy."):
-        return "force length"
-    return OF_MODEL.get(name) or OF_QUANTITY.get(name.rpartition(".")[2], "")
+def unit(name: str, units: Units | None = None) -> str:
+    """Unit of a quantity by its full name; empty if it has none that is known.
+
+    Parameters
+    ----------
+    name : str
+    units : Units, optional
+        Of the model; in words without them, such as ``length/time``.
+    """
+    words = "force length" if name.startswith("energy.") else (
+        OF_MODEL.get(name) or OF_QUANTITY.get(name.rpartition(".")[2], ""))
+    return words if units is None else units.of(words)
+
+
+def unit_of_curves(name: str, units: Units | None = None) -> str:
+    """Unit of what is drawn of a quantity, of a component or of a group of quantities."""
+    while name.rpartition(".")[2] in ("x", "y", "z", "norm") or name.rpartition(".")[2].isdecimal():
+        name = name.rpartition(".")[0]
+    if name.rpartition(".")[2] == "rotation":
+        return "rad"            # rotation vectors
+    return unit("energy.total" if name == "energy" else name, units)
+
+
+def with_unit(label: str, name: str, units: Units | None) -> str:
+    """The label of an axis or a legend, with the unit of a quantity if the model has units."""
+    found = "" if units is None else unit_of_curves(name, units).replace("^2", "\u00b2")
+    return f"{label} [{found}]" if found else label

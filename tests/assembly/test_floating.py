@@ -12,7 +12,6 @@ from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.floating import determining, floating_constants, frame_conditions
 from sebody.fem import Section
-from sebody.generated.options import FRAMES
 from sebody.kernels.layout import (
     ENERGY,
     KINETIC,
@@ -58,7 +57,7 @@ def reference_case(frame, state):
               "S": stiffness, "M": body.Mbar[:18, :18], "mass_columns": np.zeros((18, 3)),
               "mass_rows": np.zeros((3, 18)), "mc": np.zeros(3), "full": [18],
               "masses": [body.mass]}
-    conditions = frame_conditions(FRAMES["converged_mean"], counts, values)
+    conditions = frame_conditions("converged_mean", counts, values)
     first = s["R"][0].ravel()
     case = states.Case(kernel, 18, states.index_row(18, 2, 2), np.zeros(0), q, s["R"].ravel(), v, a,
                        first, first, slaved=2, resultants=6)
@@ -83,7 +82,7 @@ def test_local_coordinates_follow_from_those_that_are_kept(name):
     """Coordinates found by SciPy obey the conditions, with unequal weights and nodes."""
     case = superelement_case(load(f"superelement_{name}"), 3)
     counts = case.counts | floating_counts(case.planar, case.n, 0, 0)
-    conditions = frame_conditions(FRAMES[case.module.FRAME], counts, states.constants_of(case))
+    conditions = frame_conditions(case.module.FRAME, counts, states.constants_of(case))
     kept, basis = determining(conditions)
     y = local_coordinates(case)
     assert len(kept) == counts["free"] == case.n - len(conditions)

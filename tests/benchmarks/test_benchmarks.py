@@ -116,6 +116,15 @@ def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
         assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
 
 
+def test_modes_by_frequencies_are_the_least(capsys):
+    bench = imported("bench_modes")
+    bench.main(["--json", "--frequencies"], bodies=3)
+    for row in json.loads(capsys.readouterr().out):
+        assert row["modes"] == row["least"] < row["stiffness"]
+        assert row["true"] <= bench.TOLERANCE and row["rubin_true"] < 1e-7
+        assert abs(row["estimate"] / row["true"] - 1) < 0.03
+
+
 def test_beams_are_compared_by_method():
     rows = imported("bench_modes").beam_table((0, 1))
     free = {(row["method"], row["modes"]): row["free-free"] for row in rows}
@@ -198,3 +207,18 @@ def test_scenes_for_advice_are_fixed():
         parts = {*model.nodes, *(one.name for one in model.elements())}
         assert {quantity.rpartition(".")[0] for quantity in scene.quantities
                 if quantity != "frequency 1"} <= parts
+
+
+def test_struck_frames_beside_beams(monkeypatch, capsys):
+    bench = imported("bench_frames")
+    monkeypatch.setattr(bench, "STEPS", (1e-3,))
+    monkeypatch.setattr(bench, "OTHERS", {})
+    monkeypatch.setattr(bench, "T_END", 0.1)
+    measure = bench.measure
+    monkeypatch.setattr(bench, "measure",
+                        lambda struck, options: measure(struck, options, (1e-3,), 0.1))
+    bench.main(["--json", "--random", "0", "T"])
+    row = json.loads(capsys.readouterr().out)["T"]
+    assert list(row) == ["default", "on rotations", "beams"]
+    assert row["default"]["0.001"]["gain"] < 1e-2 and row["beams"]["0.001"]["gain"] < 1e-2
+    assert row["default"]["0.001"]["end"] == pytest.approx(0.1)

@@ -2,9 +2,9 @@
 
 import pytest
 
-from sebody.derive.__main__ import parse_variant
 from sebody.derive.kernels.layouts import Layout, LayoutError
 from sebody.derive.kernels.superelement import superelement
+from sebody.derive.names import kernel_of
 from sebody.kernels.names import superelement_name
 
 
@@ -77,22 +77,25 @@ def test_layouts_a_frame_cannot_carry(name, frame, message):
     ("f2", ("f2", "converged_mean", "b")), ("t8", ("t8", "positions", "b")),
     ("f3:mean", ("f3", "mean", "b")), ("planar-f02::a", None),
     ("f2t1:positions:a", ("f2t1", "positions", "a")), ("any", ("any", "converged_mean", "b")),
-    ("planar-f2", ("planar-f2", "converged_mean", "b"))])
+    ("planar-f2", ("planar-f2", "converged_mean", "b")), ("distance", "distance"),
+    ("planar_body_load_positions", "planar_body_load_positions")])
 def test_variant_of_the_command_line(text, variant):
     if variant is None:
         with pytest.raises(LayoutError, match="frame '' is unknown: use one of"):
-            parse_variant(text)
+            kernel_of(text)
     else:
-        assert parse_variant(text) == variant
+        assert kernel_of(text) == variant
 
 
 @pytest.mark.parametrize("text, message", [
     ("f2:mine", "frame 'mine' is unknown: use one of converged_mean, mean, mean_small, positions"),
     ("f2:mean:z", "inertia option 'z' is unknown: use one of a, b"),
-    ("r2:mean", "keeps no position")])
+    ("r2:mean", "keeps no position"),
+    ("distanse", "there is no kernel 'distanse' in the catalogue: is it distance or planar_dist"),
+    ("sail", "layout 'sail' is unknown: .* or the name of a joint, rigid body or load, such as")])
 def test_variant_that_cannot_be_read(text, message):
     with pytest.raises(LayoutError, match=message):
-        parse_variant(text)
+        kernel_of(text)
 
 
 def test_kernel_name_is_a_module_name():

@@ -5,7 +5,7 @@ import pytest
 from sebody.derive.compiler import Variant, compile_kernel
 from sebody.derive.formulas.inertia import floating_field
 from sebody.derive.kernels.layouts import LayoutError
-from sebody.derive.symbolic.steps import cross
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import DerivationError
 
 

@@ -1,28 +1,37 @@
-"""The printer: expressions, lines, loops, linear equations, imports and tables of constants."""
+"""The target for Numba: expressions, lines, imports, tables of constants and of traits."""
 
 import ast
 
+import numpy as np
 import pytest
 import sympy as sp
 
-from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.kernels.layouts import Layout
-from sebody.derive.printing import options, parts
-from sebody.derive.printing.expressions import code, indented, offset
-from sebody.derive.printing.imports import import_lines
-from sebody.derive.printing.step_printer import StepPrinter
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import (
-    Product,
-    Scaling,
-    Search,
-    Shift,
-    Solve,
-    Stage,
-    Tail,
-    Values,
-    cross,
+from sebody.derive.form import counts
+from sebody.derive.form.arrays import pointed, scratch
+from sebody.derive.form.functions import CLEAR, INVERSE_3, PACKED_TIMES
+from sebody.derive.form.kernel import Kernel, Operations
+from sebody.derive.form.spaces import Space
+from sebody.derive.form.statements import (
+    Change,
+    For,
+    If,
+    Let,
+    Point,
+    Remark,
+    Return,
+    Set,
+    Update,
+    Zero,
+    compared,
+    invoked,
 )
+from sebody.derive.formulas.frames.frame import Condition
+from sebody.derive.formulas.quantities import Quantities
+from sebody.derive.printing.numba import options, parts
+from sebody.derive.printing.numba.expressions import code
+from sebody.derive.printing.numba.imports import import_lines
+from sebody.derive.printing.numba.statements import lines
+from sebody.derive.symbolic.rotations import skew
 from sebody.kernels.layout import FrameTraits, InertiaTraits, Part
 
 x, y, z = sp.symbols("x y z")
@@ -47,181 +56,105 @@ def test_code_means_the_expression(expression):
     assert value == pytest.approx(float(expression.subs(point)), rel=1e-14)
 
 
-def test_offset():
-    assert [offset("i3", k) for k in range(3)] == ["i3", "i3 + 1", "i3 + 2"]
+def test_statements_as_lines():
+    table, work, row = pointed("table", whole=True), pointed("work"), scratch("row")
+    i, n = counts.i, counts.n
+    found = lines((
+        Let((counts.N, counts.hN), (n + 1, counts.padded(n + 1))), Point(row, work.at(2 * n)),
+        Point(scratch("same"), work), Remark("what follows"), Zero((x, y)),
+        For(i, counts.FIRST_MODE, n, (
+            Set((x, y), (row[i], row[n + i])), Update(row[table[i]], Change.SUBTRACT, x * y))),
+        If(compared(counts.task, "==", counts.agreed("TANGENT")), (
+            invoked(CLEAR, (row.at(n), n)),), (Set((x,), (sp.S.Zero,)),)),
+        Return(counts.agreed("OK"))), 1)
+    assert found == [
+        "    N, hN = n + 1, padded(n + 1)", "    row = at(work, 2*n)", "    same = work",
+        "    # what follows", "    x = y = 0.0", "    for i in range(MODES, n):",
+        "        x, y = row[i], row[n + i]", "        row[table[i]] -= x*y",
+        "    if task == TANGENT:", "        clear(at(row, n), n)", "    else:", "        x = 0.0",
+        "    return OK"]
 
 
 def test_long_assignments_are_broken_and_mean_the_same():
     """In parentheses, after an operator, at most 100 columns; a sum goes on with `+=`."""
-    tail = " + ".join(f"variable_{k}*other_{k}" for k in range(12))
-    for operator in ("=", "+="):
-        text = indented([f"total {operator} {tail}"], 2)
-        lines = text.split("\n")
-        assert len(lines) > 2 and max(map(len, lines)) <= 100
-        assert lines[0].startswith(f"        total {operator} (variable_0*other_0 + ")
-        assert all(line.startswith("            ") for line in lines[1:])
-        whole = ast.parse(f"total {operator} {tail}")
-        assert ast.dump(ast.parse(text.strip())) == ast.dump(whole)
+    total = sum(sp.Symbol(f"variable_{k}") * sp.Symbol(f"other_{k}") for k in range(12))
+    for statement in (Set((x,), (total,)), Update(x, Change.ADD, total)):
+        found = lines([statement], 2)
+        operator = "+=" if isinstance(statement, Update) else "="
+        assert len(found) > 2 and max(map(len, found)) <= 100
+        assert found[0].startswith(f"        x {operator} (other_0*variable_0 + ")
+        assert all(line.startswith("            ") for line in found[1:])
+        whole = ast.parse(f"x {operator} {code(total)}")
+        assert ast.dump(ast.parse("\n".join(found).strip())) == ast.dump(whole)
 
 
-@pytest.mark.parametrize("line", ["# " + "word " * 30, "call(" + "argument, " * 12 + ")"])
-def test_other_long_lines_are_left_alone(line):
-    assert indented([line], 0) == line
+def test_long_calls_are_broken_between_operands():
+    names = [f"value_{k}" for k in range(9)]
+    symbols = [sp.Symbol(name) for name in names]
+    call = lines([invoked(INVERSE_3, tuple(symbols), tuple(symbols))])
+    assert max(map(len, call)) <= 100 and len(call) > 1
+    assert ast.unparse(ast.parse("\n".join(call))) == (
+        f"{', '.join(names)} = inverse_3({', '.join(names)})")
+    long = [scratch(f"a_rather_long_name_of_an_array_{k}") for k in range(3)]
+    first, *others = lines([invoked(PACKED_TIMES, (*long, counts.n))], 1)
+    assert first.startswith("    packed_times(a_rather")
+    assert others and all(line.startswith(" " * len("    packed_times(")) for line in others)
 
 
-def printer(layout="f2"):
-    layout = Layout.parse(layout)
-    q = Quantities(Space(layout.planar))
-    return q, StepPrinter(q.space, layout, {q.e0.symbols[0]: q.e0.symbols[0]})
+def kernel(*body):
+    nothing = Operations(0, 0, 0, 0)
+    return Kernel("k", body, {}, 0, 0, nothing, nothing)
 
 
-def test_stage_over_positions():
-    """Loads, the formula, a sum from zero: a product for each component and node."""
-    q, p = printer()
-    stage = Stage("scaled", "position", adds=((q.F, q.alpha.symbols[0] * q.x.symbols),))
-    assert p.lines([stage]) == [
-        "# scaled", "F_x = F_y = F_z = 0.0", "for i in range(N_POSITIONS):", "    i3 = 3*i",
-        "    alpha = alphas[i]", "    x_x, x_y, x_z = qe[i3], qe[i3 + 1], qe[i3 + 2]",
-        "    F_x += alpha*x_x", "    F_y += alpha*x_y", "    F_z += alpha*x_z"]
-    assert p.operations == {"position": 3}
-    assert p.lines([stage._replace(continues=True)])[1] == "for i in range(N_POSITIONS):"
-
-
-def test_planar_stage_has_the_components_of_a_plane():
-    q, p = printer("planar-f2")
-    turned = Stage("turned", "rotation", sets=((q.w, 2 * q.Om.symbols),))
-    assert p.lines([turned]) == [
-        "# turned", "for j in range(N_ROTATIONS):", "    j3 = ROTATIONS + j", "    Om_z = ve[j3]",
-        "    yd[j3] = 2*Om_z"]
-    arm = Stage("arm", "position", adds=((q.W, cross(q.X.symbols, q.f.symbols)),))
-    assert p.lines([arm])[-1] == "    W_z += X_x*f_y - X_y*f_x"
-
-
-def test_stages_of_modes_and_of_the_element():
-    q, p = printer()
-    modes = Stage("modes", "mode", sets=((q.ym, q.qm.symbols),))
-    assert p.lines([modes]) == ["# modes", "for k in range(MODES, n):", "    qm = qe[k]",
-                                "    y[k] = qm"]
-    local = Stage("local", "element", sets=((q.v0, 2 * q.dx0.symbols),))
-    assert p.lines([local])[1:] == ["v0_x = 2*dx0_x", "v0_y = 2*dx0_y", "v0_z = 2*dx0_z"]
-
-
-def test_what_adds_nothing_is_not_printed():
-    q, p = printer()
-    nothing = Stage("nothing", "position", adds=((q.F, sp.zeros(3, 1)),), continues=True)
-    assert p.lines([nothing]) == []
-
-
-def test_common_subexpressions_are_numbered_through():
-    """Names are used once in a kernel."""
-    q, p = printer()
-    product = q.x.symbols.dot(q.X.symbols)
-    stage = Stage("s", "position", sets=((q.u, product**2 * sp.Matrix([1, 1, 1])),))
-    first, second = (set(line.split(" =")[0].strip() for line in p.lines([stage])
-                         if line.strip().startswith("t")) for _ in range(2))
-    assert first and second and not first & second
-
-
-def equation(q, weight, matrix):
-    """``sum weight (matrix rate - Om) = 0``."""
-    return Solve("mean", q.Om0, "rotation",
-                 q.alpha_r.symbols[0] * (matrix * q.Om0.symbols - q.Om.symbols), sp.zeros(3, 1),
-                 "B", invert=True, weight=weight)
-
-
-def test_solve_with_a_sum_that_is_known():
-    """Weights add up to one: nothing is summed for the matrix, nothing inverted."""
-    q, p = printer()
-    lines = p.lines([equation(q, q.alpha_r.symbols[0], 2 * sp.eye(3))])
-    assert lines[1] == "rhs_x = rhs_y = rhs_z = 0.0"
-    assert lines[-3:] == ["Om0_x = (0.5)*rhs_x", "Om0_y = (0.5)*rhs_y", "Om0_z = (0.5)*rhs_z"]
-    assert not any("B_" in line or "inverse_3" in line for line in lines)
-
-
-def test_solve_with_a_matrix_to_be_inverted():
-    q, p = printer()
-    known = equation(q, None, sp.eye(3))
-    lines = p.lines([known])
-    assert lines[1] == "B_00 = B_01 = B_02 = B_10 = B_11 = B_12 = B_20 = B_21 = B_22 = 0.0"
-    assert "    B_00 += alpha_r" in lines
-    names = "Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz"
-    assert any(line.startswith(f"{names} = inverse_3(B_00, B_01, ") for line in lines)
-    assert lines[-3] == "Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z"
-    back = p.lines([known._replace(invert=False, transposed=True)])
-    assert back[-3] == "Om0_x = Bxx*rhs_x + Byx*rhs_y + Bzx*rhs_z"
-    assert not any("inverse_3" in line for line in back)
-
-
-def test_solve_in_a_plane_is_a_division():
-    q, p = printer("planar-f2")
-    lines = p.lines([equation(q, None, sp.eye(3))])
-    assert lines[1:3] == ["B_00 = 0.0", "rhs_z = 0.0"]
-    assert lines[-2:] == ["Bzz = 1.0/B_00", "Om0_z = Bzz*rhs_z"]
-
-
-def test_searches_values_and_rows():
-    q, p = printer()
-    search = Search("find", "fit", ("N_ROTATIONS", "R", Tail("y", "ROTATIONS")), 7, q.R0)
-    assert p.lines([search]) == [
-        "# find", "status = fit(N_ROTATIONS, R, at(y, ROTATIONS))", "if status != 0:",
-        "    return status", "R0_xx, R0_xy, R0_xz = frame[0], frame[1], frame[2]",
-        "R0_yx, R0_yy, R0_yz = frame[3], frame[4], frame[5]",
-        "R0_zx, R0_zy, R0_zz = frame[6], frame[7], frame[8]"]
-    assert p.operations == {"element": 7}
-    values = Values("coefficients", (q.e0, q.e1), "series", q.psi, 5)
-    square = "y[j3] * y[j3] + y[j3 + 1] * y[j3 + 1] + y[j3 + 2] * y[j3 + 2]"
-    assert p.lines([values])[-1] == f"    e0s[j], e1s[j] = series({square})"
-    assert p.operations == {"element": 7, "rotation": 5}
-    assert p.lines([Shift("off", "s", "weight", "-")])[1:] == ["for i in range(n):",
-                                                             "    s[i] -= weight[i]"]
-    assert p.lines([Scaling("held", ("dy",), (q.dth0,), "c")])[1:] == [
-        "for i in range(n):", "    dy[i] *= c", "dth0_x *= c", "dth0_y *= c", "dth0_z *= c"]
-    assert p.lines([Product("p", "M", "yd", "p")])[1:] == ["arrow_times(M, yd, p, n, filled)"]
-    assert p.products == 1
-
-
-def test_frame_in_a_plane():
-    q, p = printer("planar-f2")
-    assert p.lines([Search("find", "mean", (), 1, q.R0)])[-1] == (
-        "R0_cos, R0_sin = frame[0], frame[3]")
-
-
-def test_steps_report_what_they_use():
-    q, _ = printer()
-    names = {}
-    stage = Stage("s", "position", sets=((q.h, q.alpha.symbols[0] * q.f.symbols),))
-    assert stage.uses(q.space, names) == (("alphas", "s", "h"), ())
-    product = Product("p", "M", "yd", "p").differential()
-    assert product.uses(q.space, names) == (("M", "dyd", "dp"), ("arrow_times",))
-    inverted, known = equation(q, None, sp.eye(3)), equation(q, q.alpha_r.symbols[0], sp.eye(3))
-    assert inverted.uses(q.space, names).calls == ("inverse_3",)
-    assert known.uses(q.space, names) == (("alpha_rs", "ve"), ())
-
-
-def test_imports_are_sorted_and_wrapped():
-    assert import_lines({"at", "padded", "inverse_3"}) == (
-        "from sebody.kernels.abi import at, padded\nfrom sebody.kernels.dense import inverse_3")
-    wide = import_lines({"Part", "AT_CONSTANTS", "SUPERELEMENT_CONSTANTS", "DAMPING_CONSTANTS",
-                         "ACCELERATION", "VELOCITY"})
-    assert wide.split("\n") == [
+def test_imports_are_what_is_used_sorted_and_wrapped():
+    row = pointed("row")
+    used = kernel(invoked(INVERSE_3, (x,) * 9, (x, y)), Point(row, row.at(counts.padded(3))),
+                  Set((x,), (sp.sin(y) + sp.sqrt(x),)))
+    assert import_lines(used) == (
+        "from math import sin, sqrt\n\nfrom sebody.kernels.abi import at, padded\n"
+        "from sebody.kernels.dense import inverse_3\n"
+        "from sebody.kernels.pipeline import kernel_function")
+    many = ("AT_CONSTANTS", "ACCELERATION", "VELOCITY", "C_STIFFNESS", "C_CONSTRAINT", "HEADER")
+    wide = kernel(*(Return(counts.agreed(name)) for name in many))
+    assert import_lines(wide, ("SUPERELEMENT_CONSTANTS",), ("Part",)).split("\n")[:-1] == [
         "from sebody.kernels.layout import (", "    ACCELERATION,", "    AT_CONSTANTS,",
-        "    DAMPING_CONSTANTS,", "    SUPERELEMENT_CONSTANTS,", "    VELOCITY,", "    Part,", ")"]
-    with pytest.raises(KeyError, match="no_such_function"):
-        import_lines({"no_such_function"})
+        "    C_CONSTRAINT,", "    C_STIFFNESS,", "    HEADER,", "    SUPERELEMENT_CONSTANTS,",
+        "    VELOCITY,", "    Part,", ")"]
 
 
 def test_constants_are_printed_as_they_are_declared():
-    declared = (Part("k"), Part("e", (3,), "axis"), Part("C", ("n", "n"), columns=True))
+    declared = (Part("k"), Part("e", (3,), "axis"), Part("C", ("n", "n"), columns=True),
+                Part("long", ("n", 2), "a meaning that is so long that it needs another line",
+                     packed=True))
     assert eval(parts.table(declared), {"Part": Part}) == declared
+    assert max(map(len, parts.table(declared, 2).split("\n"))) <= 100
     assert parts.table(()) == "()"
-    assert parts.chain((*declared[1:], Part("D", ("D",))), planar=True) == [
-        "e = at(constants, index[first + AT_CONSTANTS])", "C = at(e, 3)",
-        "D = at(C, n*padded(n))"]
 
 
 def test_traits_are_printed_as_they_are_declared():
     frames = {"f": FrameTraits("a frame", planar=False, constants=(Part("w", ("N_POSITIONS",)),))}
     inertia = {"i": InertiaTraits("an option", material=True)}
     scope = {}
-    exec(options.options_text(frames, inertia), scope)
+    exec(options.options_text(frames, inertia, {}), scope)
     assert scope["FRAMES"] == frames and scope["INERTIA_OPTIONS"] == inertia
+    assert scope["CONDITIONS"] == {}
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_conditions_are_printed_as_functions_of_the_constants(planar):
+    """A vector condition of displacements, and a scalar one of rotations."""
+    q = Quantities(Space(planar))
+    found = {("fit", planar): Condition(q.u, 2 * q.fit.symbols[0] * skew(q.X.symbols),
+                                        (q.fit, q.X)),
+             ("mean", planar): Condition(q.psi, q.alpha_r.symbols[0] * sp.eye(3), (q.alpha_r,))}
+    scope, X = {}, np.array([0.3, -0.7, 1.1])[:2 if planar else 3]
+    exec(options.options_text({}, {}, found), scope)
+    fit, mean = (scope["CONDITIONS"][name, planar] for name in ("fit", "mean"))
+    assert (fit.of, fit.constants) == ("position", ("fits", "X"))
+    assert (mean.of, mean.constants) == ("rotation", ("alpha_rs",))
+    u, moment = np.arange(1.0, 4.0)[:len(X)], [0, 0, 0]
+    moment[3 - (1 if planar else 3):] = np.atleast_1d(
+        X[0] * u[1] - X[1] * u[0] if planar else np.cross(X, u))
+    assert np.array(fit.coefficients(0.25, X)) @ u == pytest.approx(
+        0.5 * np.array(moment[2:] if planar else moment))
+    assert np.array_equal(mean.coefficients(0.5), 0.5 * np.eye(1 if planar else 3))

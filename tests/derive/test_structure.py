@@ -8,16 +8,17 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from sebody.derive.compiler import Variant, compile_kernel, file_name
+from sebody.derive.compiler import Variant, compile_kernel, file_name, statements_of
+from sebody.derive.form import steps
+from sebody.derive.form.arrays import constant, scratch
 from sebody.derive.formulas.frames import converged_mean
 from sebody.derive.formulas.inertia import option_b
-from sebody.derive.kernels import linearize, options, resources, superelement
-from sebody.derive.kernels.layouts import Layout
-from sebody.derive.symbolic import steps
+from sebody.derive.kernels import linearize, options, superelement
 from sebody.kernels.layout import Part
 
 ROOT = Path(__file__).parents[2]
-FOLDERS = ("symbolic", "formulas", "kernels", "printing")     # each imports from those before it
+# each imports from those before it
+FOLDERS = ("symbolic", "form", "passes", "formulas", "kernels", "printing")
 FILES = sorted((ROOT / "derive").rglob("*.py"))
 
 
@@ -77,7 +78,7 @@ def test_titles_are_comments(variant, monkeypatch, fresh):
 def weighted(q):
     """Option B with a mass of its own at every node, for a test."""
     exact = option_b.option_b(q)
-    extra = q.space.quantity("extra", "scalar", "position", "extras").symbols[0]
+    extra = q.space.quantity("extra", "scalar", "position", constant(EXTRAS)).symbols[0]
     return exact._replace(position=exact.position + extra * q.acc.symbols)
 
 
@@ -102,22 +103,20 @@ def test_a_frame_declares_its_constants_and_scratch_rows(monkeypatch):
     """A quantity in an array of its own gets a row of scratch memory, and so does its rate."""
     def derive(q):
         frame = converged_mean.converged_mean(q)
-        trace = q.space.quantity("trace", "scalar", "rotation", "traces")
-        extra = q.space.quantity("extra", "scalar", "position", "extras").symbols[0]
+        trace = q.space.quantity("trace", "scalar", "rotation", scratch("traces"))
+        extra = q.space.quantity("extra", "scalar", "position", constant(EXTRAS)).symbols[0]
         stored = steps.Stage("kept", "rotation", sets=((trace, sp.Matrix([q.psi.symbols[2]])),))
         return frame._replace(locate=(*frame.locate, stored), position=extra * q.x.symbols)
     toy = converged_mean.FRAME._replace(
         traits=converged_mean.FRAME.traits._replace(constants=(EXTRAS,)), derive=derive)
     monkeypatch.setitem(options.FRAMES, "toy", toy)
-    kernel = linearize.linearized(superelement.superelement(Layout.parse("planar-f2"), "toy", "b"))
-    plain = linearize.linearized(superelement.superelement(Layout.parse("planar-f2"),
-                                                           "converged_mean", "b"))
-    rows, usual = (resources.resources(k).rows for k in (kernel, plain))
-    assert set(rows) - set(usual) == {"traces"}
+    made, usual = (statements_of(Variant("planar-f2", frame, "b"))
+                   for frame in ("toy", "converged_mean"))
+    assert made.rows == usual.rows + 1
     text = compile_kernel(Variant("planar-f2", "toy", "b"))
     assert "        extras = at(masses, 1)\n" in text
     assert re.search(r"^        traces = at\(work, \d+\*row\)$", text, re.M)
-    assert f"WORK_ROWS = {len(rows)}\n" in text
+    assert f"WORK_ROWS = {made.rows}\n" in text
 
 
 @pytest.mark.parametrize("variant, name", [
@@ -134,5 +133,48 @@ def test_no_scratch_row_is_idle(layout):
     path = ROOT / "generated" / f"superelement_{layout.replace('-', '_')}_{frame}_b.py"
     tree = ast.parse(path.read_text())
     used = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
-    rows = re.findall(r"^ +(\w+) = at\(work", path.read_text(), re.M)
+    rows = re.findall(r"^ +(\w+) = (?:at\(work|work$)", path.read_text(), re.M)
     assert rows and all(used.count(row) > 1 for row in rows)
+
+
+# what cuts text, or asks what is in it
+CUTTING = {"split", "rsplit", "splitlines", "partition", "rpartition", "replace", "startswith",
+           "endswith", "find", "rfind", "strip", "lstrip", "rstrip", "removeprefix",
+           "removesuffix", "isupper", "islower", "isdigit", "isalpha", "isidentifier", "upper",
+           "lower", "translate", "fullmatch", "findall"}
+READING = {"re", "ast", "tokenize", "string"}       # modules that read text
+# what users type is read, and lines of text are divided: nothing is decided by that in a kernel
+TEXTS = {"names.py", "kernels/layouts.py", "__main__.py", "printing/lines.py"}
+
+
+def cuts(tree: ast.AST) -> list[str]:
+    """What a module does to text beyond putting it together."""
+    found = []
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(func=ast.Attribute(attr=name)) if name in CUTTING:
+                found.append(f"line {node.lineno}: .{name}()")
+            case ast.Subscript(value=ast.Call(func=ast.Name(id="str" | "repr"))):
+                found.append(f"line {node.lineno}: part of a text")
+            case ast.Compare(left=ast.Constant(value=str()), ops=[ast.In() | ast.NotIn()]):
+                found.append(f"line {node.lineno}: search in a text")
+            case ast.Import() | ast.ImportFrom():
+                names = [a.name for a in node.names] + [getattr(node, "module", "")]
+                found += [f"imports {name}" for name in names if name in READING]
+            case ast.Call(func=ast.Name(id="eval" | "exec")):
+                found.append(f"line {node.lineno}: executes text")
+    return found
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_no_text_is_parsed_searched_or_cut(path):
+    """Decisions are made by types: what a step reads and writes is in its operands."""
+    if path.relative_to(ROOT / "derive").as_posix() not in TEXTS:
+        assert cuts(ast.parse(path.read_text())) == []
+
+
+@pytest.mark.parametrize("text", [
+    "a.split('(')[-1]", "line.startswith('#')", "', filled)' in line", "str(symbol)[-1]",
+    "import re", "from ast import parse", "index.removesuffix(' + 0')", "eval('1')"])
+def test_what_cuts_text_is_found(text):
+    assert len(cuts(ast.parse(text))) >= 1

@@ -3,16 +3,17 @@
 import pytest
 import sympy as sp
 
+from sebody.derive.form.spaces import Space
+from sebody.derive.form.steps import Stage
 from sebody.derive.formulas import elastic, elements, forces, joints, kinematics
 from sebody.derive.formulas.frames import positions
 from sebody.derive.formulas.inertia import option, option_a, option_b, rigid_part
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.kernels import linearize, superelement
 from sebody.derive.kernels.layouts import Layout
+from sebody.derive.passes.linearize import Linearizer
 from sebody.derive.symbolic import rotations, variation
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Stage, cross
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import (
     DerivationError,
     along,

@@ -22,7 +22,6 @@ from sebody.kernels.layout import (
     POWERS,
     RECORD,
     STRAIN,
-    SUPERELEMENT_CONSTANTS,
     ContractError,
     Part,
     Row,
@@ -49,15 +48,6 @@ def test_parts_follow_each_other():
 def test_place_behind_a_part_of_no_fixed_size():
     with pytest.raises(KeyError):
         ROW.first("X")
-
-
-def test_size_is_what_the_expression_says():
-    """The kernel computes offsets from the text, the packer from the counts."""
-    counts = superelement_counts(3, 2, False, 17)
-    for part in (*SUPERELEMENT_CONSTANTS, *ROW.parts):
-        for known in ({}, {"D": 3}, counts):
-            assert eval(part.expression(known), {"padded": whole_vectors}, counts) == part.size(
-                counts)
 
 
 def values():

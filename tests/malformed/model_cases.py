@@ -110,7 +110,7 @@ BODIES = {
                   *have("superelement 'new': the nodes do not lie where", ["b", "a"], ["a", "a"]),
                   *have("node is", [None, "b"], ["a", 3]), (["a", "x"], "node 'x' is unknown"),
                   (["a", "place"], "node 'place' has no rotation")],
-        "frame": have("frame", "middle", None, 3, [], {}),
+        "frame": have("frame", "middle", 3, [], {}),
         "inertia": have("inertia", "z", 3, []),
         "stiffening": are("superelement 'new': stiffening", 1, "yes"),
         "rotation": [*are("rotation", "abc", 3j),
@@ -150,7 +150,7 @@ BODIES = {
         "up": [pair for pair in vectors("up", 3) if pair[0] is not None] + [
             (Y, "lies along a beam")],
         "damping": not_negative("beam 'new': damping"),
-        "frame": have("frame", "middle", None), "inertia": have("inertia", "z")}),
+        "frame": have("frame", "middle", 3), "inertia": have("inertia", "z")}),
     "element": Right(Model.element, {"name": "ball"}, {
         "name": have("is unknown", "bal", "", None, 3, [])}),
 }

@@ -2,8 +2,14 @@
 
 import sympy as sp
 
+from sebody.derive.form.counts import FIRST_ROTATION, ROTATIONS
+from sebody.derive.form.functions import CONVERGED_MEAN, PLANAR_MEAN
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.steps import Search, Solve, search
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
+    Condition,
     Frame,
     FrameOption,
     inverse_tangent_values,
@@ -15,8 +21,6 @@ from sebody.derive.symbolic.rotations import (
     inverse_tangent_times,
     inverse_tangent_transposed_times,
 )
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import Search, Solve, Tail
 from sebody.derive.symbolic.variation import check_same
 from sebody.kernels.layout import FrameTraits
 
@@ -48,19 +52,27 @@ def converged_mean(q: Quantities) -> Frame:
         variation=(angular_rate(q.dth0, q.dth, False),),
         pull=(pulled_back(q, alpha * inverse_tangent_times(psi, wp), equation(q.wp, q.dth),
                           "rotation", alpha),),
-        work=virtual_work, position=sp.zeros(3, 1), origin=sp.zeros(3, 1), rotation=back)
+        work=virtual_work, position=sp.zeros(3, 1), origin=sp.zeros(3, 1), rotation=back,
+        condition=condition(q))
+
+
+def condition(q: Quantities) -> Condition:
+    """What the elastic rotations obey."""
+    return Condition(q.psi, -q.alpha_r.symbols[0] * sp.eye(3), (q.alpha_r,))
 
 
 def mean_search(q: Quantities, operations: int) -> Search:
     """The search for the frame; in a plane the mean of the angles."""
-    psi = Tail(q.psi.array, "ROTATIONS")
+    psi, weights = arrays.y.at(FIRST_ROTATION), arrays.alpha_rs
     title = "rotation of the frame: sum alpha_j psi_j = 0"
     if q.space.planar:
-        return Search(title, "planar_mean", ("N_ROTATIONS", "alpha_rs", Tail("qe", "ROTATIONS"),
-                                             "frame", psi), operations, q.R0)
-    return Search(title, "converged_mean", ("N_ROTATIONS", "nodes", "alpha_rs", "R", "frame", psi),
-                  operations, q.R0)
+        angles = arrays.qe.at(FIRST_ROTATION)
+        return search(title, PLANAR_MEAN, ROTATIONS, weights, angles, arrays.frame, psi,
+                      operations=operations, finds=q.R0)
+    return search(title, CONVERGED_MEAN, ROTATIONS, arrays.nodes, weights, arrays.R, arrays.frame,
+                  psi, operations=operations, finds=q.R0)
 
 
 FRAME = FrameOption(
-    FrameTraits("weighted mean of the node rotations, iterated until it is one"), converged_mean)
+    FrameTraits("weighted mean of the node rotations, iterated until it is one"), converged_mean,
+    condition)

@@ -9,12 +9,26 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Place
+from sebody.derive.form.functions import INVERSE_TANGENT
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.steps import Solve, Stage, Step, Values
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import VirtualWork
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import Solve, Stage, Step, Values
 from sebody.derive.symbolic.variation import check_same
 from sebody.kernels.layout import FrameTraits
+
+
+class Condition(NamedTuple):
+    """What the local coordinates obey in a frame: ``sum_j weight_j of_j = 0``.
+
+    Beside it the weighted displacements add up to zero in every frame, (14).
+    """
+
+    of: Quantity                        # displacements of the nodes, or their rotation vectors
+    weight: sp.Matrix                   # 3 x 3, of constants of a node
+    constants: tuple[Quantity, ...]     # these
 
 
 class Frame(NamedTuple):
@@ -29,6 +43,8 @@ class Frame(NamedTuple):
     origin: sp.Matrix               # force of wp on R0^T delta x_0, summed over positions
     rotation: sp.Matrix             # force of wp on delta Theta_j
     differentials: tuple[Stage, ...] = ()   # of what `locate` computes, once dth0 is known
+    # linear, and of the sign of the equation in `velocity`; None of a frame without one
+    condition: Condition | None = None
 
 
 class FrameOption(NamedTuple):
@@ -36,6 +52,8 @@ class FrameOption(NamedTuple):
 
     traits: FrameTraits
     derive: Callable[[Quantities], Frame]
+    # that of its `Frame`; of frames that depend on the last step to first order
+    condition: Callable[[Quantities], Condition] | None = None
 
 
 def origin_stage(q: Quantities, result: Quantity, of: Quantity) -> Stage:
@@ -44,12 +62,21 @@ def origin_stage(q: Quantities, result: Quantity, of: Quantity) -> Stage:
                  adds=((result, q.alpha.symbols[0] * of.symbols),))
 
 
+def kept_rotation(q: Quantities) -> Stage:
+    """A rotation of the frame that was computed by stages, where the caller finds it."""
+    R0 = q.R0.symbols
+    places = (0, 1, 3, 4) if q.space.planar else range(9)
+    entries = [(q.space.quantity(f"frame_{k}", "scalar", "element", arrays.frame, Place(k)),
+                sp.Matrix([R0[k]])) for k in places]
+    return Stage("rotation of the frame, kept", "element", sets=tuple(entries))
+
+
 def inverse_tangent_values(q: Quantities, of: Quantity,
                            outputs: tuple[Quantity, Quantity]) -> tuple[Step, ...]:
     """Coefficients of ``T^-1`` and their derivatives, once per node; none in a plane."""
     if q.space.planar:
         return ()
-    return (Values("coefficients of T^-1", outputs, "inverse_tangent_coefficients", of, 30),)
+    return (Values("coefficients of T^-1", outputs, INVERSE_TANGENT, of, 30),)
 
 
 def pulled_back(q: Quantities, short: sp.Matrix, equation: sp.Matrix, over: str,

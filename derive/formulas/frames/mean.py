@@ -2,17 +2,22 @@
 
 import sympy as sp
 
+from sebody.derive.form.counts import FIRST_ROTATION, ROTATIONS
+from sebody.derive.form.functions import STUMPFF_2345, WEIGHTED_MEAN
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.steps import Stage, Step, Values, search
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import virtual_work
+from sebody.derive.formulas.frames.converged_mean import condition
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, inverse_tangent_values
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import (
+    cross,
     exp,
     inverse_tangent_times,
     inverse_tangent_transposed_times,
     tangent,
 )
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import Search, Stage, Step, Tail, Values, cross
 from sebody.derive.symbolic.variation import along, check_same, differential
 from sebody.kernels.layout import FrameTraits
 
@@ -28,15 +33,16 @@ def mean(q: Quantities) -> Frame:
                       adds=((part, alpha * inverse_tangent_times(beta, of.symbols)),)),
                 Stage("rate of the frame, (19)", "element", sets=((rate, T0 * part.symbols),)))
 
-    search = Search("rotation of the frame, (15)-(16)", "weighted_mean", (
-        "N_ROTATIONS", "nodes", "alpha_rs", "R", "reference", "frame",
-        Tail(q.beta.array, "ROTATIONS"), Tail(q.psi.array, "ROTATIONS")), 250, q.R0)
+    found = search(
+        "rotation of the frame, (15)-(16)", WEIGHTED_MEAN, ROTATIONS, arrays.nodes,
+        arrays.alpha_rs, arrays.R, arrays.reference, arrays.frame, arrays.beta.at(FIRST_ROTATION),
+        arrays.y.at(FIRST_ROTATION), operations=250, finds=q.R0)
     total = Stage("weighted mean of the rotation increments, (16)", "rotation",
                   adds=((q.beta0, alpha * beta),))
     return Frame(
-        locate=(search, *inverse_tangent_values(q, q.psi, (q.e0, q.e1)),
+        locate=(found, *inverse_tangent_values(q, q.psi, (q.e0, q.e1)),
                 *inverse_tangent_values(q, q.beta, (q.b0, q.b1)), total,
-                Values("coefficients of T(beta_0)", (q.c2, q.c3, q.c4, q.c5), "stumpff_2345",
+                Values("coefficients of T(beta_0)", (q.c2, q.c3, q.c4, q.c5), STUMPFF_2345,
                        q.beta0, 60)),
         velocity=angular_rate(q.Om0, q.Om, q.mean),
         variation=angular_rate(q.dth0, q.dth, q.space.quantity("mean_dth0", "axial", "element")),
@@ -65,4 +71,4 @@ def _check_variation(q: Quantities) -> None:
 
 FRAME = FrameOption(
     FrameTraits("the paper's weighted mean of rotation increments since the last step",
-                planar=False, incremental=True), mean)
+                planar=False, incremental=True), mean, condition)

@@ -4,11 +4,13 @@ The forces are no gradient of the energy; they differ from those of (19) by term
 in psi where beta_0 = 0. The tangent is the exact differential of these forces.
 """
 
+from sebody.derive.form.steps import Stage
 from sebody.derive.formulas.elastic import virtual_work_small
+from sebody.derive.formulas.frames.converged_mean import condition
 from sebody.derive.formulas.frames.frame import Frame, FrameOption
 from sebody.derive.formulas.frames.mean import mean
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.steps import Stage, cross
+from sebody.derive.symbolic.rotations import cross
 from sebody.kernels.layout import FrameTraits
 
 
@@ -23,4 +25,4 @@ def mean_small(q: Quantities) -> Frame:
 
 FRAME = FrameOption(
     FrameTraits("the paper's mean of rotation increments since the last step, varied for small "
-                "increments", planar=False, exact=False, incremental=True), mean_small)
+                "increments", planar=False, exact=False, incremental=True), mean_small, condition)

@@ -2,8 +2,19 @@
 
 import sympy as sp
 
+from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS
+from sebody.derive.form.functions import (
+    BEST_FIT,
+    PLANAR_FIT,
+    RELATIVE_ANGLES,
+    RELATIVE_ROTATIONS,
+)
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.steps import Search, Solve, search
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
+    Condition,
     Frame,
     FrameOption,
     inverse_tangent_values,
@@ -11,8 +22,7 @@ from sebody.derive.formulas.frames.frame import (
     pulled_back,
 )
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import Search, Solve, Tail, cross
+from sebody.derive.symbolic.rotations import cross, skew
 from sebody.derive.symbolic.variation import along, check_same, differential, rotating
 from sebody.kernels.layout import FrameTraits
 
@@ -50,22 +60,30 @@ def positions(q: Quantities) -> Frame:
         pull=(pulled_back(q, fit * cross(r, cross(X, q.wp.symbols)),
                           equation(q.wp, q.dx, q.dx0), "position"),),
         work=virtual_work, position=-conjugate_to(work, q.dx.symbols),
-        origin=-conjugate_to(work, q.dx0.symbols), rotation=sp.zeros(3, 1))
+        origin=-conjugate_to(work, q.dx0.symbols), rotation=sp.zeros(3, 1),
+        condition=condition(q))
+
+
+def condition(q: Quantities) -> Condition:
+    """What the displacements obey."""
+    return Condition(q.u, q.fit.symbols[0] * skew(q.X.symbols), (q.fit, q.X))
 
 
 def _searches(q: Quantities) -> tuple[Search, Search]:
     """The fit, and the rotations of the nodes in the frame."""
-    psi, planar = Tail(q.psi.array, "ROTATIONS"), q.space.planar
-    fit = Search("rotation of the frame: best fit of the positions",
-                 "planar_fit" if planar else "best_fit",
-                 ("N_POSITIONS", "fits", "X", "alphas", "qe", "frame"), 300, q.R0)
+    psi, planar = arrays.y.at(FIRST_ROTATION), q.space.planar
+    fit = search("rotation of the frame: best fit of the positions",
+                 PLANAR_FIT if planar else BEST_FIT, POSITIONS, arrays.fits, arrays.X,
+                 arrays.alphas, arrays.qe, arrays.frame, operations=300, finds=q.R0)
     title = "elastic rotations, (11)"
     if planar:
-        return fit, Search(title, "planar_relative_angles",
-                           ("N_ROTATIONS", Tail("qe", "ROTATIONS"), "frame", psi), 60)
-    return fit, Search(title, "relative_rotations", ("N_ROTATIONS", "nodes", "R", "frame", psi), 60)
+        angles = arrays.qe.at(FIRST_ROTATION)
+        return fit, search(title, RELATIVE_ANGLES, ROTATIONS, angles, arrays.frame, psi,
+                           operations=60)
+    return fit, search(title, RELATIVE_ROTATIONS, ROTATIONS, arrays.nodes, arrays.R, arrays.frame,
+                       psi, operations=60)
 
 
 FRAME = FrameOption(
     FrameTraits("rotation of best fit of the node positions", needs_rotations=False,
-                fewest_positions=(3, 2)), positions)
+                fewest_positions=(3, 2)), positions, condition)

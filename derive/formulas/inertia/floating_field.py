@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.spaces import PAIRS
 from sebody.derive.formulas.elastic import conjugate_to
-from sebody.derive.symbolic.spaces import PAIRS
-from sebody.derive.symbolic.steps import cross
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import along, check_same, differential
 
 

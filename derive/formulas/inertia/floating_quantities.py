@@ -6,14 +6,18 @@ the most zeros.
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Array, Place
+from sebody.derive.form.counts import N, hN, i
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.steps import Stage
+from sebody.derive.formulas.inertia import floating_arrays as at
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia.resultants import resultants
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import Stage
 from sebody.kernels.layout import axes_of
 
-PLACE, RATE, SECOND = "Lz", "Lv", "La"      # local tangents, and the rows they multiply
+PLACE, RATE, SECOND = at.Lz, at.Lv, at.La       # local tangents by z, zd and zdd
+BESIDE = Place(N)       # behind the coordinates: motion of the frame, forces on it
 GEOMETRY = sp.Symbol("c_geo")
 
 
@@ -24,13 +28,14 @@ class FloatingQuantities:
         self.q, self.stress = q, resultants(q.space)
         counts = axes_of(q.space.planar)
         self.D, self.turns, self.pairs = counts["D"], counts["turns"], counts["pairs"]
-        self.lines, self.force_rows = counts["lines"], f"N + {counts['motions']}"
-        self.turn = self.of_element("turn", "rotation", "turn").symbols
-        self.felt = self.of_element("felt", "vector", "zdd", "N + {k}")
-        self.turning = self.of_element("turning", "axial", "zdd", "N + {k}", self.D)
-        self.spin = self.of_element("spin", "axial", "zd", "N + {k}")
-        self.on_origin = self.of_element("Rt", "vector", "local", "N + {k}")
-        self.on_frame = self.of_element("Rr", "axial", "local", "N + {k}", self.D)
+        self.lines, self.force_rows = counts["lines"], N + counts["motions"]
+        behind = Place(N, first=self.D)
+        self.turn = self.of_element("turn", "rotation", at.turn).symbols
+        self.felt = self.of_element("felt", "vector", at.zdd, BESIDE)
+        self.turning = self.of_element("turning", "axial", at.zdd, behind)
+        self.spin = self.of_element("spin", "axial", at.zd, BESIDE)
+        self.on_origin = self.of_element("Rt", "vector", at.local, BESIDE)
+        self.on_frame = self.of_element("Rr", "axial", at.local, behind)
         self.sums, self.integrals = self.make_sums()
         self.quantities, self.groups = self.make_row()
         self.row = field.Row(*(quantity.symbols for quantity in self.quantities))
@@ -43,26 +48,27 @@ class FloatingQuantities:
             sets=((self.felt, back * (q.a0.symbols - q.gamma.symbols)),
                   (self.turning, back * q.Om0d.symbols), (self.spin, back * q.Om0.symbols)))
 
-    def of_element(self, name: str, kind: str, array: str = "", place: str = "{k}",
-                   first: int = 0) -> Quantity:
+    def of_element(self, name: str, kind: str, array: Array | None = None,
+                   place: Place | None = None) -> Quantity:
         """A quantity of the element."""
-        return self.q.space.quantity(name, kind, "element", array, place, first)
+        return self.q.space.quantity(name, kind, "element", array, place)
 
     def make_sums(self) -> tuple[field.Sums, Stage]:
         """The integrals, from their parts at rest, linear and quadratic."""
         after_turns, D = self.D + self.turns, self.D
 
         def part(name, kind, array, first=0):
-            return self.of_element(name, kind, array, first=first).symbols
-        at_rest = part("c0", "vector", "c0"), part("J0", "inertia", "J0")
+            return self.of_element(name, kind, array, Place(first)).symbols
+        at_rest = part("c0", "vector", at.c0), part("J0", "inertia", at.J0)
         linear = [(part(f"S1z{t}", "vector", array), part(f"gz{t}", "axial", array, D),
                    part(f"hz{t}", "inertia", array, after_turns))
-                  for t, array in enumerate(("line0", "line1", "line2"))]
-        jz = part("jz", "inertia", "product0")
-        jzd = part("jzd", "inertia", "product1")
-        uzd = part("uzd", "axial", "product1", self.pairs)
-        vzd = part("vzd", "axial", "product1", self.pairs + self.turns)
-        uzdd = part("uzdd", "axial", "product2")
+                  for t, array in enumerate(at.lines)]
+        of_z, of_zd, of_zdd = at.quadratic
+        jz = part("jz", "inertia", of_z)
+        jzd = part("jzd", "inertia", of_zd)
+        uzd = part("uzd", "axial", of_zd, self.pairs)
+        vzd = part("vzd", "axial", of_zd, self.pairs + self.turns)
+        uzdd = part("uzdd", "axial", of_zdd)
         values = field.Sums(
             at_rest[0] + linear[0][0], linear[1][0], linear[2][0], at_rest[1] + linear[0][2] + jz,
             linear[1][2] + 2 * jzd, linear[1][1] + uzd, linear[2][1] + uzdd, vzd)
@@ -73,27 +79,29 @@ class FloatingQuantities:
         return field.Sums(*(k.symbols for k in kept)), Stage(
             "integrals over the body", "element", sets=tuple(zip(kept, values, strict=True)))
 
-    def make_row(self) -> tuple[field.Row, dict[str, list[Quantity]]]:
+    def make_row(self) -> tuple[field.Row, dict[Array, list[Quantity]]]:
         """Quantities that belong to a coordinate: columns of constants and of products."""
         kinds = {"S1": "vector", "h": "inertia", "j": "inertia", "jd": "inertia"}
-        arrays = {"moment_columns": "S1 g h", "products": "j u v w", "more": "jd ua wa"}
+        columns = {at.moment_columns: ("S1", "g", "h"), at.products: ("j", "u", "v", "w"),
+                   at.more: ("jd", "ua", "wa")}
         size = {"vector": self.D, "axial": self.turns, "inertia": self.pairs}
         found, groups = {}, {}
-        for array, names in arrays.items():
+        for array, names in columns.items():
             first, groups[array] = 0, []
-            for name in names.split():
+            for name in names:
                 kind = kinds.get(name, "axial")
                 found[name] = self.q.space.quantity(f"row_{name}", kind, "shape", array,
-                                                    "{k}*hN + i", first)
+                                                    Place(i, hN, first))
                 groups[array].append(found[name])
                 first += size[kind]
         return field.Row(**found), groups
 
-    def factors(self, out: str, rows: list[Quantity], scale: sp.Expr = sp.S.One) -> tuple:
+    def factors(self, out: Array, rows: list[Quantity], scale: sp.Expr = sp.S.One) -> tuple:
         """Coefficients of some rows in the force on a coordinate, one after the other."""
         pairs, first = [], 0
         for quantity in rows:
-            factor = self.of_element(f"{out}_{quantity.name}", quantity.kind, out, first=first)
+            factor = self.of_element(f"{out.name}_{quantity.name}", quantity.kind, out,
+                                     Place(first))
             derivative = quantity.symbols.applyfunc(
                 lambda s: self.force.diff(s) if isinstance(s, sp.Symbol) else sp.S.Zero)
             pairs.append((factor, scale * derivative))

@@ -2,9 +2,22 @@
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Array, Place
+from sebody.derive.form.counts import N, b, deep, free, hN, i
+from sebody.derive.form.functions import (
+    ADD_BLOCK_TIMES,
+    ADD_PACKED,
+    BLOCK_TIMES,
+    CLEAR,
+    Function,
+)
+from sebody.derive.form.steps import Call, Stage, Step, call
+from sebody.derive.form.whole import Whole
+from sebody.derive.formulas import arrays
+from sebody.derive.formulas.inertia import floating_arrays as at
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import slaved
-from sebody.derive.formulas.inertia.floating_forces import ROWS, conjugate, free, stacked
+from sebody.derive.formulas.inertia.floating_forces import ROWS, conjugate, stacked, to_free
 from sebody.derive.formulas.inertia.floating_quantities import (
     GEOMETRY,
     PLACE,
@@ -13,34 +26,32 @@ from sebody.derive.formulas.inertia.floating_quantities import (
     FloatingQuantities,
 )
 from sebody.derive.formulas.inertia.rates import second_derivatives
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.steps import Call, Stage, Step
+from sebody.derive.passes.linearize import Linearizer
 
 
 def prepared(f: FloatingQuantities) -> tuple[Step, ...]:
     """Local tangents, once for all columns."""
     q, row, pairs, turns = f.q, f.quantities, f.pairs, f.turns
-    one = f.of_element("one", "scalar", "ones")
-    followed = q.space.quantity("followed", "scalar", "slaved", "by_followers")
-    on_eta = q.space.quantity("on_eta", "scalar", "slaved", "local", "free + b")
+    one = f.of_element("one", "scalar", at.ones)
+    followed = q.space.quantity("followed", "scalar", "slaved", at.by_followers)
+    on_eta = q.space.quantity("on_eta", "scalar", "slaved", at.local, Place(free + b))
     return (
-        slaved.stacked("zdd", "Za"), *second_derivatives(q),
-        stacked("J2_kl zdot", "of_place", "zd", "more", 0, pairs + turns),
-        stacked("K_k^T zddot and (K_k^T - K_k) zddot", "of_rate", "zdd", "more", pairs, 2 * turns),
+        slaved.stacked(at.zdd, at.Za), *second_derivatives(q),
+        stacked("J2_kl zdot", at.of_place, at.zd, at.more, pairs + turns),
+        stacked("K_k^T zddot and (K_k^T - K_k) zddot", at.of_rate, at.zdd,
+                at.more.at(pairs * hN), 2 * turns),
         Stage("factors of the local tangents", "element",
-              sets=(*f.factors("by_place", [row.j, row.u], GEOMETRY),
-                    *f.factors("by_rate", [row.v, row.w]), (one, sp.ones(1, 1)))),
+              sets=(*f.factors(at.by_place, [row.j, row.u], GEOMETRY),
+                    *f.factors(at.by_rate, [row.v, row.w]), (one, sp.ones(1, 1)))),
         Stage("forces on eta as factors", "slaved", sets=((followed, GEOMETRY * on_eta.symbols),)),
-        *(Call("local tangents", "clear", (out, "N*deep"), (out,))
-          for out in (PLACE, RATE, SECOND)),
-        *(Call(title, "add_packed", (matrices, factors, out, "deep"),
-               (matrices, factors.split("(")[-1].split(",")[0], out))
+        *(call("local tangents", CLEAR, out, N * deep) for out in (PLACE, RATE, SECOND)),
+        *(call(title, ADD_PACKED, matrices, factors, out, deep)
           for title, matrices, factors, out in (
-              ("by z: J2_kl and K_k^T", "of_place", "by_place", PLACE),
-              ("forces on eta", "followers", "by_followers", PLACE),
-              ("by zdot: K_k^T and K_k^T - K_k", "of_rate", "by_rate", RATE),
-              ("structural damping", "Cz", "ones", RATE),
-              ("by zddot", "Mz", "ones", SECOND))),
+              ("by z: J2_kl and K_k^T", at.of_place, at.by_place, PLACE),
+              ("forces on eta", at.followers, at.by_followers, PLACE),
+              ("by zdot: K_k^T and K_k^T - K_k", at.of_rate, at.by_rate, RATE),
+              ("structural damping", at.Cz, at.ones, RATE),
+              ("by zddot", at.Mz, at.ones, SECOND))),
         *f.stress.stiffness, *_borders(f))
 
 
@@ -50,20 +61,21 @@ def _borders(f: FloatingQuantities) -> tuple[Stage, ...]:
     totals = {"Rt": (field.on_origin, "vector", 0), "Rr": (field.on_frame, "axial", f.D)}
     rows, corner, columns = [], [], []
     for change, array in zip(field.gradients(f.row), (PLACE, RATE, SECOND), strict=True):
-        scale = GEOMETRY if array == PLACE else 1
+        scale = GEOMETRY if array is PLACE else 1
         for name, (force, kind, first) in totals.items():
-            row = q.space.quantity(f"{name}_{array}", kind, "shape", array,
-                                   "i*deep + N + {k}", first)
+            row = q.space.quantity(f"{name}_{array.name}", kind, "shape", array,
+                                   Place(i * deep + N, first=first))
             rows.append((row, scale * field.by_sums(force(f.motion, f.sums), f.sums, change)))
     for array, vector, first in ((RATE, f.spin, 0), (SECOND, f.felt, 0),
                                  (SECOND, f.turning, f.D)):
         for c, symbol in enumerate(vector.kept):
-            at = f"(N + {first + c})*deep" if first + c else "N*deep"
-            column = q.space.quantity(f"{array}_{symbol}", "scalar", "shape", array, f"{at} + i")
+            begin = (N + (first + c)) * deep
+            column = q.space.quantity(f"{array.name}_{symbol}", "scalar", "shape", array,
+                                      Place(begin + i))
             columns.append((column, sp.Matrix([f.force.diff(symbol)])))
             for name, (force, kind, below) in totals.items():
-                entry = f.of_element(f"{name}_{array}_{symbol}", kind, array,
-                                     f"{at} + N + {{k}}", below)
+                entry = f.of_element(f"{name}_{array.name}_{symbol}", kind, array,
+                                     Place(begin + N, first=below))
                 corner.append((entry, force(f.motion, f.sums).diff(symbol)))
     return (Stage("local tangents: force and moment on the frame", "shape", sets=tuple(rows)),
             Stage("local tangents: motion of the frame", "shape", sets=tuple(columns)),
@@ -73,7 +85,8 @@ def _borders(f: FloatingQuantities) -> tuple[Stage, ...]:
 
 def held(f: FloatingQuantities) -> tuple[Step, ...]:
     """Of a column: local forces by changed local coordinates."""
-    return free("dy", "dz"), *slaved.varied(), _times(f, "block_times", PLACE, "dz", "N")
+    return (to_free(arrays.y.d, at.z.d), *slaved.varied(),
+            _times(f, BLOCK_TIMES, PLACE, at.z.d, N))
 
 
 def column(f: FloatingQuantities, chain: Linearizer, velocities: tuple[Step, ...]
@@ -81,17 +94,17 @@ def column(f: FloatingQuantities, chain: Linearizer, velocities: tuple[Step, ...
     """A column of the matrix, once everything local has moved."""
     q = f.q
     steps: list[Step] = [chain.step(step) for step in velocities]
-    steps += [*(free("d" + row, "d" + to) for row, to in ROWS[1:]), *slaved.rates_varied(),
+    steps += [*(to_free(row.d, to.d) for row, to in ROWS[1:]), *slaved.rates_varied(),
               chain.stage(f.moving),
-              _times(f, "add_block_times", RATE, "dzd", f"N + {f.turns}"),
-              _times(f, "add_block_times", SECOND, "dzdd", f.force_rows),
-              slaved.pulled_back("dlocal"), conjugate("dlocal", "ds")]
+              _times(f, ADD_BLOCK_TIMES, RATE, at.zd.d, N + f.turns),
+              _times(f, ADD_BLOCK_TIMES, SECOND, at.zdd.d, f.force_rows),
+              slaved.pulled_back(at.local.d), conjugate(at.local.d, arrays.s.d)]
     for quantity in (q.f, q.m, q.fm, f.on_origin, f.on_frame):
         chain.move(quantity)
     return tuple(steps)
 
 
-def _times(f: FloatingQuantities, function: str, matrix: str, row: str, columns: str) -> Call:
-    return Call(f"differential of the local forces by {row}", function,
-                (matrix, row, "dlocal", f.force_rows, columns, "deep"),
-                (matrix, row, "dlocal"), 1)
+def _times(f: FloatingQuantities, function: Function, matrix: Array, row: Array, columns: Whole
+           ) -> Call:
+    return call(f"differential of the local forces by {row.name}", function, matrix, row,
+                at.local.d, f.force_rows, columns, deep, products=1)

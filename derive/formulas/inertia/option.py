@@ -10,17 +10,21 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Array
+from sebody.derive.form.statements import Let
+from sebody.derive.form.steps import Product, Stage, Step
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.kinematics import unknown_rules
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.steps import Product, Stage, Step, cross
+from sebody.derive.passes.linearize import Linearizer
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 from sebody.kernels.layout import InertiaTraits
 
-PRODUCTS = (Product("momentum, p = Mbar ydot", "M", "yd", "p"),
-            Product("inertia force, pd = Mbar yddot", "M", "ydd", "pd"))
+PRODUCTS = (Product("momentum, p = Mbar ydot", arrays.M, arrays.yd, arrays.p),
+            Product("inertia force, pd = Mbar yddot", arrays.M, arrays.ydd, arrays.pd))
 
 
 class Local(NamedTuple):
@@ -49,7 +53,7 @@ class Inertia(NamedTuple):
     spin: sp.Matrix                 # conjugate to Omega_j: material angular momentum of the node
     rules: Rules                    # differentials of its own quantities
     products: tuple[Product, ...]   # momenta and inertia forces
-    kinetic: tuple[str, str] | None     # rows whose product is twice the kinetic energy
+    kinetic: tuple[Array, Array] | None     # rows whose product is twice the kinetic energy
     local: Callable[[Quantities, Frame], Local] | None = None   # if not by momenta of the nodes
 
 
@@ -58,6 +62,9 @@ class InertiaOption(NamedTuple):
 
     traits: InertiaTraits
     derive: Callable[[Quantities], Inertia]
+    # counts that it reads from its constants, by their array: in a plane or in space
+    read: Callable[[bool], dict[Array, tuple[Let, ...]]] = lambda planar: {}
+    transposes: tuple[tuple[Array, Array], ...] = ()    # constants stored beside their transpose
 
 
 def position_part(q: Quantities) -> tuple[Stage, sp.Matrix, sp.Matrix]:

@@ -2,6 +2,8 @@
 
 import sympy as sp
 
+from sebody.derive.form.steps import Role, Stage
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.formulas.inertia.option import (
     PRODUCTS,
@@ -11,8 +13,7 @@ from sebody.derive.formulas.inertia.option import (
 )
 from sebody.derive.formulas.kinematics import angular_velocity_variation
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.rotations import skew
-from sebody.derive.symbolic.steps import Role, Stage, cross
+from sebody.derive.symbolic.rotations import cross, skew
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential
 from sebody.kernels.layout import InertiaTraits
 
@@ -40,12 +41,14 @@ def option_a(q: Quantities) -> Inertia:
     on_frame_w = cross(w, p)
     check_same("frame term of option A (45)", on_frame_w.subs(meaning),
                -conjugate_to(form, dth0), frames)
+    # an angle in a plane has the same axis in all frames
+    relative = () if q.space.planar else (relative_rotation(q),)
     return Inertia(
-        (relative_rotation(q),
+        (*relative,
          Stage("angular velocities in frame axes, (36)", "rotation", sets=((q.w, Q * Om),))),
         (accelerate, Stage("their rates, (46)", "rotation", sets=((q.wd, w_rate),))),
         force, short, on_frame, on_frame_w, conjugate, relative_rotating(Q, dth, dth0), PRODUCTS,
-        ("yd", "p"))
+        (arrays.yd, arrays.p))
 
 
 def relative_rotation(q: Quantities) -> Stage:

@@ -2,6 +2,8 @@
 
 import sympy as sp
 
+from sebody.derive.form.steps import Stage
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.formulas.inertia.option import (
     PRODUCTS,
@@ -11,7 +13,7 @@ from sebody.derive.formulas.inertia.option import (
 )
 from sebody.derive.formulas.kinematics import angular_velocity_variation
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.steps import Stage, cross
+from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import along, check_same, differential
 from sebody.kernels.layout import InertiaTraits
 
@@ -29,7 +31,7 @@ def option_b(q: Quantities) -> Inertia:
     return Inertia(
         (Stage("material angular velocities, (52)", "rotation", sets=((q.w, q.Om.symbols),)),),
         (accelerate, Stage("their rates, (58)", "rotation", sets=((q.wd, q.A.symbols),))),
-        force, short, on_frame, sp.zeros(3, 1), conjugate, {}, PRODUCTS, ("yd", "p"))
+        force, short, on_frame, sp.zeros(3, 1), conjugate, {}, PRODUCTS, (arrays.yd, arrays.p))
 
 
 INERTIA = InertiaOption(

@@ -23,11 +23,12 @@ import sympy as sp
 from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import floating_forces, floating_tangents
+from sebody.derive.formulas.inertia.floating_arrays import PARTS, TRANSPOSES, counts_of_body
 from sebody.derive.formulas.inertia.floating_quantities import FloatingQuantities
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
 from sebody.derive.formulas.inertia.rates import frame_motion, on_frame_stage
 from sebody.derive.formulas.quantities import Quantities
-from sebody.kernels.layout import InertiaTraits, Part
+from sebody.kernels.layout import InertiaTraits
 
 
 def option_c(q: Quantities) -> Inertia:
@@ -53,23 +54,5 @@ INERTIA = InertiaOption(
     InertiaTraits(
         "the displacement field of the body, with slaved load modes (option C)", material=True,
         rates=True, field=True,
-        constants=(
-            Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
-            Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
-            Part("axes", ("bound_free", "bound"), "boundary coordinates that determine the others",
-                 columns=True),
-            Part("axes_back", ("bound", "bound_free"), "its transpose", columns=True),
-            Part("order", ("free",), "where these and the modes are among themselves"),
-            Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
-            Part("J0", ("pairs",), "moments of inertia at rest"),
-            Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-            Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-            Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
-            Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
-            Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
-            Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
-            Part("lam", ("resultants",), "eigenvalues of the resultants"),
-            Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
-            Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness",
-                 packed=True))),
-    option_c)
+        constants=PARTS),
+    option_c, counts_of_body, TRANSPOSES)

@@ -14,6 +14,14 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Array, Place, constant, scratch
+from sebody.derive.form.counts import damped, n, padded
+from sebody.derive.form.functions import ADD_BLOCK_TIMES, STUMPFF_1_TO_7
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.statements import Let
+from sebody.derive.form.steps import Call, Product, Role, Shift, Stage, Step, Values, call
+from sebody.derive.form.whole import Number, Truncated
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import ELASTIC
 from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.inertia import rigid_part as rigid
@@ -21,6 +29,7 @@ from sebody.derive.formulas.inertia.floating_field import Motion
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
 from sebody.derive.formulas.inertia.rates import (
     MOVING,
+    RIGID,
     STRAINED,
     Form,
     energies_stage,
@@ -31,14 +40,22 @@ from sebody.derive.formulas.inertia.rates import (
     second_derivatives,
 )
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import Call, Product, Role, Shift, Stage, Step, Values
+from sebody.derive.passes.linearize import Linearizer
 from sebody.kernels.layout import InertiaTraits, Part, axes_of
 
-INERTIAL = Product("inertia force of deformation, Mbar yddot", "M", "etad", "pd")
-ADDED = Shift("force conjugate to y, elastic and of inertia", "s", "pd", "+")
-ROWS = ("y", "rigid0"), ("eta", "rigid1"), ("etad", "rigid2")
+INERTIAL = Product("inertia force of deformation, Mbar yddot", arrays.M, arrays.etad,
+                   arrays.pd)
+ADDED = Shift("force conjugate to y, elastic and of inertia", arrays.s, arrays.pd)
+ROWS = tuple(zip((arrays.y, arrays.eta, arrays.etad), RIGID, strict=True))
+PARTS = (
+    Part("columns", (1,), "columns of C: n of a damped body, else none"),
+    Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
+    Part("rigid_rows", ("motions", "n"),
+         "S1, then Gam: first moment of mass and mean rotation of y", columns=True),
+    Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
+    Part("C", ("n", "damped"), "reduced damping", columns=True))
+COLUMNS, JC, RIGID_ROWS, RIGID_COLUMNS, DAMPING = map(constant, PARTS)
+CARRIED = scratch("carried")        # forces on the rigid parts
 
 
 def option_d(q: Quantities) -> Inertia:
@@ -66,7 +83,7 @@ class _Carried:
     def __init__(self, q: Quantities, frame: Frame):
         self.q, self.frame = q, frame
         axes = axes_of(q.space.planar)
-        self.motions, D = str(axes["motions"]), axes["D"]
+        self.motions, D = Number(axes["motions"]), axes["D"]
         self.parts = [_Rigid(self.of_element(f"first{t}", "vector", out),
                              self.of_element(f"angle{t}", "axial", out, D))
                       for t, (_, out) in enumerate(ROWS)]
@@ -75,16 +92,16 @@ class _Carried:
         self.y = rigid.Deformation(q.mc.symbols + d, dd, ddd, phi, phi_d, phi_dd)
         self.motion = Motion(q.mass.symbols[0], q.v0.symbols, q.a0.symbols - q.gamma.symbols,
                              q.Om0.symbols, q.Om0d.symbols)
-        self.J = self.of_element("Jc", "inertia", "Jc").symbols
+        self.J = self.of_element("Jc", "inertia", JC).symbols
         self.w, self.wd, self.moment, self.on_frame = (
             q.space.quantity(name, "axial", "element") for name in ("wc", "wcd", "Mc", "Rr"))
         self.on_origin = q.space.quantity("Rt", "vector", "element")
         self.turning = rigid.Turning(self.w.symbols, self.wd.symbols, self.moment.symbols)
-        self.pull = (self.of_element("on_first", "vector", "carried"),
-                     self.of_element("on_angle", "axial", "carried", D))
+        self.pull = (self.of_element("on_first", "vector", CARRIED),
+                     self.of_element("on_angle", "axial", CARRIED, D))
 
-    def of_element(self, name: str, kind: str, array: str, first: int = 0) -> Quantity:
-        return self.q.space.quantity(name, kind, "element", array, "{k}", first)
+    def of_element(self, name: str, kind: str, array: Array, first: int = 0) -> Quantity:
+        return self.q.space.quantity(name, kind, "element", array, Place(first))
 
     def local(self) -> Local:
         """All steps."""
@@ -98,12 +115,13 @@ class _Carried:
     def forces(self) -> tuple[Step, ...]:
         """Elastic and inertia forces conjugate to y, and those on the frame."""
         return (ELASTIC, INERTIAL, ADDED, *self.rigid_rows(), *self.coefficients(),
-                *self.stages(), *self.added("s", "carried", "eta"))
+                *self.stages(), *self.added(arrays.s, CARRIED, arrays.eta))
 
-    def rigid_rows(self, of: str = "") -> tuple[Product, ...]:
+    def rigid_rows(self, differential: bool = False) -> tuple[Product, ...]:
         """First moment of mass and mean rotation of y and its rates, or of their differentials."""
-        return tuple(Product(f"rigid part of {of}{row}", "rigid_rows", of + row, of + out,
-                             (self.motions, "n")) for row, out in ROWS)
+        rows = [(row.d, out.d) for row, out in ROWS] if differential else ROWS
+        return tuple(Product(f"rigid part of {row.name}", RIGID_ROWS, row, out, self.motions, n)
+                     for row, out in rows)
 
     def coefficients(self) -> tuple[Values, ...]:
         """Of exp and T, in space."""
@@ -111,7 +129,7 @@ class _Carried:
         if q.space.planar:
             return ()
         return (Values("coefficients of exp(phi) and T(phi), and for their derivatives",
-                       tuple(getattr(q, f"r{k}") for k in range(1, 8)), "stumpff_1_to_7",
+                       tuple(getattr(q, f"r{k}") for k in range(1, 8)), STUMPFF_1_TO_7,
                        self.parts[0].angle, 60),)
 
     def stages(self) -> tuple[Stage, ...]:
@@ -130,19 +148,19 @@ class _Carried:
                         (self.pull[0], rigid.on_first(m, y, force)),
                         (self.pull[1], rigid.on_phi(y, J, t)))))
 
-    def added(self, to: str, carried: str, rate: str) -> tuple[Call, ...]:
+    def added(self, to: Array, carried: Array, rate: Array) -> tuple[Call, ...]:
         """The rigid part's forces, and damping."""
-        return (Call("forces of the rigid part, conjugate to y", "add_block_times",
-                     ("rigid_columns", carried, to, "n", self.motions, "padded(n)"),
-                     ("rigid_columns", carried, to)),
-                Call("damping force, Cbar ydot", "add_block_times",
-                     ("C", rate, to, "n", "damped", "padded(n)"), ("C", rate, to)))
+        return (call("forces of the rigid part, conjugate to y", ADD_BLOCK_TIMES, RIGID_COLUMNS,
+                     carried, to, n, self.motions, padded(n)),
+                call("damping force, Cbar ydot", ADD_BLOCK_TIMES, DAMPING, rate, to, n, damped,
+                     padded(n)))
 
     def column(self, chain: Linearizer, velocities: tuple[Step, ...]) -> tuple[Step, ...]:
         """A column of the matrix, once the local coordinates have moved."""
         q = self.q
         steps: list[Step] = [chain.step(s) for s in velocities if s.role is not Role.BY_RULE]
-        steps += [INERTIAL.differential(), ADDED.differential(), *self.rigid_rows("d")]
+        steps += [INERTIAL.differential(), ADDED.differential(),
+                  *self.rigid_rows(differential=True)]
         for part in self.parts:
             chain.move(part.first)
             chain.move(part.angle)
@@ -150,33 +168,34 @@ class _Carried:
         steps += [chain.stage(stage) for stage in self.stages()[q.space.planar:]]
         for quantity in (q.f, q.m, q.fm):
             chain.move(quantity)
-        return (*steps, *self.added("ds", "dcarried", "deta"))
+        return (*steps, *self.added(arrays.s.d, CARRIED.d, arrays.eta.d))
 
     def energy(self) -> tuple[Step, ...]:
         """Energies; momentum and its moment about the global origin."""
         q, m, y, w = self.q, self.motion, self.y, self.w.symbols
         squared, elastic = (form_value(q, name, k).symbols[0]
                             for name, k in (("moving", MOVING), ("elastic", STRAINED)))
-        size = "n", "n", "padded(n)"
+        size = n, n, padded(n)
         return (
             *quadratic_forms(
-                Form("momentum of deformation, Mbar ydot", "twice its energy", "M", "eta", *size),
-                Form("elastic force, Sbar y", "twice its energy", "S", "y", *size),
-                Form("damping force, Cbar ydot", "its power", "C", "eta", "n", "damped", size[2])),
+                Form("momentum of deformation, Mbar ydot", "twice its energy", arrays.M, arrays.eta,
+                     *size),
+                Form("elastic force, Sbar y", "twice its energy", arrays.S, arrays.y, *size),
+                Form("damping force, Cbar ydot", "its power", DAMPING, arrays.eta, n, damped,
+                     size[2])),
             energies_stage(q, rigid.kinetic_energy(m, y, self.J, w, squared), elastic / 2,
                            rigid.momentum(m, y), rigid.moment_of_momentum(m, y, self.J, w),
                            y.first))
+
+
+def counts_of_body(planar: bool) -> dict[Array, tuple[Let, ...]]:
+    """Columns of damping, which a body tells."""
+    return {COLUMNS: (Let((damped,), (Truncated(COLUMNS[0]),)),)}
 
 
 INERTIA = InertiaOption(
     InertiaTraits(
         "the rigid part of the motion, and rates of deformation (option D)", material=True,
         rates=True,
-        constants=(
-            Part("columns", (1,), "columns of C: n of a damped body, else none"),
-            Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
-            Part("rigid_rows", ("motions", "n"),
-                 "S1, then Gam: first moment of mass and mean rotation of y", columns=True),
-            Part("rigid_columns", ("n", "motions"), "their transpose", columns=True),
-            Part("C", ("n", "damped"), "reduced damping", columns=True))),
-    option_d)
+        constants=PARTS),
+    option_d, counts_of_body)

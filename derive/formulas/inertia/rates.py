@@ -4,67 +4,72 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import Array, Place, scratch
+from sebody.derive.form.functions import BLOCK_TIMES, INVERSE_TANGENT_SECOND, ROWS_TIMES
+from sebody.derive.form.spaces import Quantity
+from sebody.derive.form.steps import Call, Solve, Stage, Step, Values, call, solve_matrix
+from sebody.derive.form.whole import Whole
 from sebody.derive.formulas import gravity
 from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.frames.frame import Frame, origin_stage
+from sebody.derive.formulas.motion import SECOND, rate_of, time_rules
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.symbolic.linearize import Linearizer
-from sebody.derive.symbolic.rotations import skew
-from sebody.derive.symbolic.spaces import Quantity
-from sebody.derive.symbolic.steps import (
-    Call,
-    Solve,
-    Stage,
-    Step,
-    Values,
-    cross,
-    solve_matrix,
+from sebody.derive.passes.linearize import Linearizer
+from sebody.derive.symbolic.rotations import cross
+from sebody.derive.symbolic.variation import (
+    DerivationError,
+    Rules,
+    along,
+    check_same,
+    differential,
 )
-from sebody.derive.symbolic.variation import Rules, along, check_same, differential
 from sebody.kernels.layout import axes_of
 
-MOVING, STRAINED = range(2)      # places in the array `squares`; then the power lost
+RATES = {"u": "eu", "psi": "ep"}     # of local coordinates, by name
+MOVING, STRAINED, LOST = range(3)       # places among the squares: energies, power lost
+SQUARES, MOVED = scratch("squares"), scratch("moved")
+RIGID = tuple(map(scratch, ("rigid0", "rigid1", "rigid2")))     # rigid parts of y and its rates
 
 
 def frame_motion(q: Quantities, frame: Frame) -> tuple[Step, ...]:
     """Rates of the local coordinates and of the frame, twice; gravity."""
-    Om0 = q.Om0.symbols
-    second = {"eu": "eud", "ep": "epd", "em": "emd"}
-    in_time = (along(q.vs.symbols, q.acc.symbols + cross(q.vs.symbols, Om0))
-               | along(q.v0.symbols, q.a0.symbols + cross(q.v0.symbols, Om0))
-               | along(q.u.symbols, q.eu.symbols) | along(q.psi.symbols, q.ep.symbols)
-               | along(q.Om.symbols, q.A.symbols) | along(q.vm.symbols, q.am.symbols))
-    in_time |= along(Om0, q.Om0d.symbols)
-    clock = Linearizer(q.space, in_time, lambda quantity: getattr(q, second[quantity.name]))
+    rules = time_rules(q) | along(q.Om0.symbols, q.Om0d.symbols)
+    clock = Linearizer(q.space, rules, lambda quantity: rate_of(q, quantity))
     of_y = [step for step in rates(q) if step.sets]
     modes = Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),))
-    found = [step for step in frame.velocity if isinstance(step, Solve)]
     return (*frame.velocity, modes, origin_stage(q, q.v0, q.vs), origin_stage(q, q.a0, q.acc),
-            *of_y, *_accelerations(q, found[0], in_time, [clock.step(step) for step in of_y]),
+            *of_y, *_accelerations(q, frame, rules, [clock.step(step) for step in of_y]),
             gravity.in_frame_axes(q))
 
 
-def _accelerations(q: Quantities, rate: Solve, in_time: Rules, stages: list[Stage]
+def _accelerations(q: Quantities, frame: Frame, rules: Rules, stages: list[Stage]
                    ) -> tuple[Step, ...]:
     """Second rates of the local coordinates, and the frame's, which closes their sum.
 
     The frame is where a sum over the local coordinates is zero: so is that of their rates and of
     their second rates, ``sum L(k_j + M_j Omega_0') = 0``. What does not depend on Omega_0' is
     computed once, for the sum and for the second rates.
+
+    Raises
+    ------
+    DerivationError
+        A frame that declares no linear condition, or has no equation for its rate.
     """
-    name, weighted = (("epd", -rate.weight * sp.eye(3)) if rate.over == "rotation" else
-                      ("eud", q.fit.symbols[0] * skew(q.X.symbols)))
-    target, Om0d = getattr(q, name), q.Om0d
+    solves = [step for step in frame.velocity if isinstance(step, Solve)]
+    if frame.condition is None or not solves:
+        raise DerivationError("inertia options with rates of the frame need one that declares the "
+                              "linear `condition` of its local coordinates and solves for its rate")
+    rate, (of, weight, _) = solves[0], frame.condition
+    target, Om0d = getattr(q, SECOND[RATES[of.name]]), q.Om0d
     closing = next(stage for stage in stages if stage.sets[0][0] is target)
     value, turning = closing.sets[0][1], sp.Matrix(Om0d.kept)
     by_turning = value.jacobian(turning) * turning
     equation = solve_matrix(rate) * Om0d.symbols
-    check_same("rate of the frame's equation", weighted * value,
-               differential(rate.summand, in_time))
-    check_same("the part of the frame in it", weighted * by_turning, equation)
+    check_same("rate of the frame's equation", weight * value, differential(rate.summand, rules))
+    check_same("the part of the frame in it", weight * by_turning, equation)
     known = closing._replace(title=closing.title + ", the frame held",
                              sets=((target, value.subs({s: 0 for s in Om0d.kept})),))
-    solve = Solve("rate: " + rate.title, Om0d, rate.over, equation + weighted * target.symbols,
+    solve = Solve("rate: " + rate.title, Om0d, rate.over, equation + weight * target.symbols,
                   sp.zeros(3, 1), rate.inverse)
     whole = closing._replace(sets=((target, target.symbols + by_turning),))
     return known, solve, whole, *(stage for stage in stages if stage is not closing)
@@ -75,7 +80,7 @@ def second_derivatives(q: Quantities) -> tuple[Values, ...]:
     if q.space.planar:
         return ()
     return (Values("second derivative of the coefficients of T^-1", (q.e2,),
-                   "inverse_tangent_second", q.psi, 30),)
+                   INVERSE_TANGENT_SECOND, q.psi, 30),)
 
 
 def on_frame_stage(q: Quantities, force: sp.Matrix, moment: sp.Matrix) -> Stage:
@@ -85,34 +90,31 @@ def on_frame_stage(q: Quantities, force: sp.Matrix, moment: sp.Matrix) -> Stage:
 
 
 class Form(NamedTuple):
-    """A matrix and the row on both sides of it: titles of product and value; counts as text."""
+    """A matrix and the row on both sides of it: titles of product and value."""
 
     title: str
     value: str
-    matrix: str
-    row: str
-    rows: str
-    columns: str
-    height: str
+    matrix: Array
+    row: Array
+    rows: Whole
+    columns: Whole
+    height: Whole
 
 
 def quadratic_forms(mass: Form, stiffness: Form, damping: Form) -> tuple[Call, ...]:
     """Twice the kinetic energy of deformation and the strain energy, and the power lost."""
     steps = []
     for k, form in enumerate((mass, stiffness, damping)):
-        out = f"at(squares, {k})" if k else "squares"
-        steps += [Call(form.title, "block_times",
-                       (form.matrix, form.row, "moved", form.rows, form.columns, form.height),
-                       (form.matrix, form.row, "moved")),
-                  Call(form.value, "rows_times",
-                       ("moved", form.row, out, form.rows, "1", form.height),
-                       ("moved", form.row, "squares"))]
+        steps += [call(form.title, BLOCK_TIMES, form.matrix, form.row, MOVED, form.rows,
+                       form.columns, form.height),
+                  call(form.value, ROWS_TIMES, MOVED, form.row, SQUARES.at(k), form.rows, 1,
+                       form.height)]
     return tuple(steps)
 
 
 def form_value(q: Quantities, name: str, k: int) -> Quantity:
     """The value of a form, by its place."""
-    return q.space.quantity(name, "scalar", "element", "squares", "{k}", k)
+    return q.space.quantity(name, "scalar", "element", SQUARES, Place(k))
 
 
 def energies_stage(q: Quantities, kinetic: sp.Expr, strain: sp.Expr, momentum: sp.Matrix,
@@ -136,5 +138,5 @@ def energies_stage(q: Quantities, kinetic: sp.Expr, strain: sp.Expr, momentum: s
 
 def rigid_angle(q: Quantities) -> Quantity:
     """Mean rotation of the local coordinates, of option D."""
-    return q.space.quantity("angle0", "axial", "element", "rigid0", "{k}",
-                            axes_of(q.space.planar)["D"])
+    return q.space.quantity("angle0", "axial", "element", RIGID[0],
+                            Place(axes_of(q.space.planar)["D"]))

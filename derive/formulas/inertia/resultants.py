@@ -9,8 +9,13 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from sebody.derive.symbolic.spaces import Space
-from sebody.derive.symbolic.steps import Call, Repeat, Stage, Step
+from sebody.derive.form.arrays import Array, Place
+from sebody.derive.form.counts import deep, e, free, hn, j, stretching
+from sebody.derive.form.counts import resultants as counted
+from sebody.derive.form.functions import ADD_BLOCKS_TIMES, ADD_PACKED, PACKED_TIMES, ROWS_TIMES
+from sebody.derive.form.spaces import Quantity, Space
+from sebody.derive.form.steps import Repeat, Stage, Step, call
+from sebody.derive.formulas.inertia import floating_arrays as at
 from sebody.derive.symbolic.variation import check_same
 
 
@@ -26,40 +31,38 @@ def resultants(space: Space) -> Resultants:
     """Derive the forces and their tangent from the energy."""
     _prove()
 
-    def of_one(name):
-        return space.quantity(f"{name}_e", "scalar", "resultant", name)
-    lam, r, twice = (of_one(n).symbols[0] for n in ("lam", "along", "twice"))
+    def of_one(array: Array) -> Quantity:
+        return space.quantity(f"{array.name}_e", "scalar", "resultant", array)
+    lam, r, twice = (of_one(array).symbols[0] for array in (at.lam, at.along, at.twice))
     half = twice / 2
     extra = space.quantity("stiffened", "scalar", "element")
-    E = space.quantity("E_j", "scalar", "resultant", "E", "e*hn + j").symbols[0]
-    Gy = space.quantity("Gy_j", "scalar", "resultant", "Gy", "e*hn + j").symbols[0]
-    by_E, by_Gy, of_E, of_Gy = map(of_one, ("by_E", "by_Gy", "of_E", "of_Gy"))
-    one = space.quantity("by_stiffness", "scalar", "element", "by_Gy", "resultants")
-    size = ("free", "resultants", "hn")
+    E, Gy = (space.quantity(f"{array.name}_j", "scalar", "resultant", array,
+                            Place(e * hn + j)).symbols[0] for array in (at.E, at.Gy))
+    by_E, by_Gy, of_E, of_Gy = map(of_one, (at.by_E, at.by_Gy, at.of_E, at.of_Gy))
+    one = space.quantity("by_stiffness", "scalar", "element", at.by_Gy, Place(counted))
+    size = free, counted, hn
     return Resultants(
         forces=(
-            Call("Ghat_e y of all e, and Sbar y", "packed_times",
-                 ("stretched", "z", "Gy", "stretching*hn"), ("stretched", "z", "Gy")),
-            Call("E_e . y", "rows_times", ("E", "z", "along", *size), ("E", "z", "along")),
-            Call("y . Ghat_e y", "rows_times", ("Gy", "z", "twice", *size), ("Gy", "z", "twice")),
+            call("Ghat_e y of all e, and Sbar y", PACKED_TIMES, at.stretched, at.z, at.Gy,
+                 stretching * hn),
+            call("E_e . y", ROWS_TIMES, at.E, at.z, at.along, *size),
+            call("y . Ghat_e y", ROWS_TIMES, at.Gy, at.z, at.twice, *size),
             Stage("stress resultants: factors of their gradients", "resultant",
                   sets=((by_E, sp.Matrix([half])), (by_Gy, sp.Matrix([r + half / lam]))),
                   adds=((extra, sp.Matrix([half * (r + half / (2 * lam))])),)),
             Stage("and of Sbar y", "element", sets=((one, sp.ones(1, 1)),)),
-            Call("forces of the resultants and their geometric stiffness, with Sbar y",
-                 "add_blocks_times", ("E", "by_E", "Gy", "by_Gy", "local", "free", "resultants",
-                                      "stretching", "hn"),
-                 ("E", "by_E", "Gy", "by_Gy", "local"))),
+            call("forces of the resultants and their geometric stiffness, with Sbar y",
+                 ADD_BLOCKS_TIMES, at.E, at.by_E, at.Gy, at.by_Gy, at.local, free, counted,
+                 stretching, hn)),
         energy=extra.symbols[0],
         stiffness=(
-            Call("stiffness and geometric stiffness", "add_packed",
-                 ("stretched", "by_Gy", "Lz", "deep"), ("stretched", "by_Gy", "Lz")),
-            Repeat("changes of the resultants", "j", "free", (
+            call("stiffness and geometric stiffness", ADD_PACKED, at.stretched, at.by_Gy, at.Lz,
+                 deep),
+            Repeat("changes of the resultants", j, free, (
                 Stage("factors of the column", "resultant",
                       sets=((of_E, sp.Matrix([Gy])), (of_Gy, sp.Matrix([E + Gy / lam])))),
-                Call("their forces", "add_blocks_times",
-                     ("E", "of_E", "Gy", "of_Gy", "at(Lz, j*deep)", "free", "resultants",
-                      "resultants", "hn"), ("E", "of_E", "Gy", "of_Gy", "Lz"))))))
+                call("their forces", ADD_BLOCKS_TIMES, at.E, at.of_E, at.Gy, at.of_Gy,
+                     at.Lz.at(j * deep), free, counted, counted, hn)))))
 
 
 def _prove() -> None:
@@ -74,6 +77,6 @@ def _prove() -> None:
     force = push * E + pull * G * y
     check_same("force of a resultant", force, sp.Matrix([V.diff(v) for v in y]))
     Gy = G * y
-    for j in range(2):
-        column = Gy[j] * E + (E[j] + Gy[j] / lam) * Gy + pull * G[:, j]
-        check_same("stiffness of a resultant", column, force.diff(y[j]))
+    for k in range(2):
+        column = Gy[k] * E + (E[k] + Gy[k] / lam) * Gy + pull * G[:, k]
+        check_same("stiffness of a resultant", column, force.diff(y[k]))

@@ -17,8 +17,7 @@ import sympy as sp
 
 from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.formulas.inertia.floating_field import Motion
-from sebody.derive.symbolic.rotations import exp, skew, stumpff, tangent
-from sebody.derive.symbolic.steps import cross
+from sebody.derive.symbolic.rotations import cross, exp, skew, stumpff, tangent
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 

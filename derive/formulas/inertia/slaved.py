@@ -6,44 +6,50 @@ the transpose of ``delta eta_b = (Q_b y) . delta y``.
 
 import sympy as sp
 
-from sebody.derive.symbolic.steps import Call
+from sebody.derive.form.arrays import Array
+from sebody.derive.form.counts import free, hn, slaved
+from sebody.derive.form.functions import (
+    ADD_BLOCK_TIMES,
+    FOLLOW,
+    FOLLOW_CHANGES,
+    PACKED_TIMES,
+    ROWS_TIMES,
+)
+from sebody.derive.form.steps import Call, call
+from sebody.derive.formulas.inertia import floating_arrays as at
 from sebody.derive.symbolic.variation import along, check_same, differential
 
-_BY_Y = ("free", "slaved", "hn")    # products of the vectors Q_b y with vectors like y
+_BY_Y = free, slaved, hn    # products of the vectors Q_b y with vectors like y
 
 
-def stacked(vector: str, out: str) -> Call:
+def stacked(vector: Array, out: Array) -> Call:
     """``Q_b x`` of all b, one after the other."""
-    return Call(f"Q_b {vector}, all b", "packed_times",
-                ("followers", vector, out, "slaved*hn"), ("followers", vector, out))
+    return call(f"Q_b {vector.name}, all b", PACKED_TIMES, at.followers, vector, out, slaved * hn)
 
 
 def slaving() -> tuple[Call, ...]:
     """Values and rates behind the coordinates y and theirs."""
     _prove()
     return (
-        stacked("z", "Zq"), stacked("zd", "Zd"),
-        Call("eta_b = y . Q_b y / 2, their rates and second rates", "follow",
-             ("Zq", "Zd", "z", "zd", "zdd", *_BY_Y), ("Zq", "Zd", "z", "zd", "zdd")))
+        stacked(at.z, at.Zq), stacked(at.zd, at.Zd),
+        call("eta_b = y . Q_b y / 2, their rates and second rates", FOLLOW,
+             at.Zq, at.Zd, at.z, at.zd, at.zdd, *_BY_Y))
 
 
 def varied() -> tuple[Call, ...]:
     """Differentials of the values; of y first."""
-    return (Call("differential: eta_b", "rows_times", ("Zq", "dz", "at(dz, free)", *_BY_Y),
-                 ("Zq", "dz")),)
+    return (call("differential: eta_b", ROWS_TIMES, at.Zq, at.z.d, at.z.d.at(free), *_BY_Y),)
 
 
 def rates_varied() -> tuple[Call, ...]:
     """Differentials of the rates."""
-    rows = "Zq", "Zd", "Za", "dz", "dzd", "dzdd"
-    return (Call("differential: rates of eta, accelerations of eta", "follow_changes",
-                 (*rows, *_BY_Y), rows),)
+    return (call("differential: rates of eta, accelerations of eta", FOLLOW_CHANGES,
+                 at.Zq, at.Zd, at.Za, at.z.d, at.zd.d, at.zdd.d, *_BY_Y),)
 
 
-def pulled_back(force: str) -> Call:
+def pulled_back(force: Array) -> Call:
     """Forces on eta, added to those on y in the same row."""
-    return Call("forces on eta, pulled back", "add_block_times",
-                ("Zq", f"at({force}, free)", force, "free", "slaved", "hn"), ("Zq", force))
+    return call("forces on eta, pulled back", ADD_BLOCK_TIMES, at.Zq, force.at(free), force, *_BY_Y)
 
 
 def _prove() -> None:

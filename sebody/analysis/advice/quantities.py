@@ -46,7 +46,9 @@ class Quantities:
         if not given:
             raise InputError("quantities: none is given; give names of quantities")
         for name in given:
-            inputs.name(name, "name of a quantity")
+            if inputs.name(name, "name of a quantity") == "t":
+                raise InputError("quantity 't' is the time, which all models keep: name a "
+                                 "position, a force or the like")
         self.names = list(given)
         numbers = [FREQUENCY.fullmatch(name) for name in given]
         self.histories = [n for n, number in zip(given, numbers, strict=True) if number is None]

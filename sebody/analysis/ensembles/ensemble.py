@@ -7,7 +7,7 @@ from threading import Lock
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.analysis.ensembles.changes import Handle
 from sebody.analysis.ensembles.handles import given, handles
 from sebody.analysis.ensembles.images import Image
@@ -15,7 +15,8 @@ from sebody.analysis.ensembles.member import kinematic_quantities
 from sebody.analysis.ensembles.outcome import Outcome
 from sebody.analysis.ensembles.outputs import Output, outputs_of
 from sebody.analysis.ensembles.work import Work, processors
-from sebody.analysis.simulation import Simulation
+from sebody.analysis.progress import showing
+from sebody.analysis.simulation import MOST_STEPS, Simulation
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.model.model import Model
@@ -72,7 +73,7 @@ class Ensemble:
 
     def run(self, parameters: Mapping[str, Values], t_end: float,
             outputs: Mapping[str, Output | str], threads: int | None = None,
-            progress: Callable[[float], None] | None = None) -> Outcome:
+            progress: Callable[[float], None] | bool | None = None) -> Outcome:
         """Run the model once for each set of values.
 
         Results do not depend on the number of threads, bit for bit, nor on which runs are asked for
@@ -90,8 +91,8 @@ class Ensemble:
             `maximum`, `minimum`, `rms`, `integral`, `final` or `at_time` return.
         threads : int, optional
             By default one for each processor.
-        progress : callable, optional
-            Called with the part of the runs that is done.
+        progress : callable or bool, optional
+            Called with the part of the runs that is done; True shows a bar.
 
         Raises
         ------
@@ -107,7 +108,8 @@ class Ensemble:
         began = time.perf_counter()
         work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
                     self._lock)
-        work.go(min(threads, max(runs, 1)), progress)
+        with showing(progress, None) as show:
+            work.go(min(threads, max(runs, 1)), show)
         outcome.seconds = time.perf_counter() - began
         return outcome
 
@@ -127,7 +129,9 @@ class Ensemble:
                  outputs: Mapping[str, Output | str]
                  ) -> tuple[dict[str, Handle], int, int, dict[str, Output]]:
         """Handles, number of runs, last step, outputs."""
-        found, runs = given(self.model, parameters) if parameters != {} else ({}, 1)
+        parameters = inputs.mapping(parameters, "parameters",
+                                    "give a dict of names and arrays of values")
+        found, runs = given(self.model, parameters) if parameters else ({}, 1)
         if placing := [name for name in found if self._template.begun and name.endswith(PLACING)]:
             raise InputError(f"{placing[0]} cannot be varied: all runs begin at the start that was "
                              "given; leave it out, or build an ensemble without a start")
@@ -136,6 +140,9 @@ class Ensemble:
 
     def _last_step(self, t_end: float) -> int:
         t_end = inputs.number(t_end, "t_end", above=0)
+        if t_end / self.h > MOST_STEPS:
+            raise InputError(f"t_end is {t_end:g}: that is {t_end / self.h:.3g} steps of "
+                             f"{self.h:g}, give an earlier time or a longer step")
         last = round(t_end / self.h)
         if last < 1 or abs(t_end / self.h - last) > 1e-6:
             raise InputError(f"t_end is {t_end:g}, which is no multiple of the step {self.h:g}: "
@@ -150,9 +157,22 @@ class Ensemble:
                 self._images[key] = Image(self._template, found)
             return self._images[key]
 
+    def _check_memory(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
+                      runs: int, count: int) -> None:
+        """Refuse outputs that do not fit, before they are asked for."""
+        sizes = {name: 8.0 * runs * (count if one.kind == "history" else 1)
+                 * (1 if one.norm else np.prod(shapes[one.quantity], initial=1.0))
+                 for name, one in outputs.items()}
+        largest = max(sizes, key=sizes.get)
+        memory.check(sum(sizes.values()) + 8.0 * count, f"output {largest!r} of {runs} runs of "
+                     f"{count} recorded states, with the others,",
+                     "keep a maximum or the like in place of a history, fewer states with "
+                     "output_every, or make fewer runs at a time")
+
     def _empty(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
                runs: int, last: int) -> Outcome:
         count = last // self.every + 1
+        self._check_memory(outputs, shapes, runs, count)
         values = {}
         for name, one in outputs.items():
             shape = () if one.norm else shapes[one.quantity]

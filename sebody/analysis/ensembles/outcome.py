@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 
 
@@ -43,8 +44,9 @@ class Outcome:
         InputError
             No output has this name.
         """
-        if name not in self.values:
-            raise InputError(f"output {name!r} is unknown: there are {', '.join(self.values)}")
+        if not isinstance(name, str) or name not in self.values:
+            raise InputError(f"output {inputs.shown(name)} is unknown: there are "
+                             f"{', '.join(self.values)}")
         return self.values[name]
 
     @property

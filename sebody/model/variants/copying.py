@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.names import body_load_kind
 from sebody.model.bodies import superelement
@@ -27,7 +28,13 @@ def copied(model: Mechanism) -> Mechanism:
 
     Reduced bodies, sections, histories and compiled functions of users never change: both models
     have them.
+
+    Raises
+    ------
+    InputError
+        No model.
     """
+    checked(model)
     elements = (*model.constraints, *model.loads)
     constant = [body.body for body in model.bodies.values()]
     constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
@@ -35,6 +42,17 @@ def copied(model: Mechanism) -> Mechanism:
                  if one is not None]
     constant += [motion.history for triplet in model.triplets() for motion in triplet.motions]
     return deepcopy(model, {id(one): one for one in constant})
+
+
+def checked(model: Mechanism) -> Mechanism:
+    """A model.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    return inputs.instance(model, "model", Mechanism, "give a sebody.Model")
 
 
 def unknowns(model: Mechanism) -> int:
@@ -58,9 +76,9 @@ def placed(model: Mechanism, name: str) -> Superelement:
     InputError
         There is none of this name.
     """
-    if not isinstance(name, str) or name not in model.bodies:
-        raise InputError(f"superelement {name!r} is unknown: the model has "
-                         f"{', '.join(model.bodies) or 'none'}")
+    if not isinstance(name, str) or name not in checked(model).bodies:
+        raise InputError(f"superelement {inputs.shown(name)} is unknown: the model has "
+                         f"{', '.join(checked(model).bodies) or 'none'}")
     return model.bodies[name]
 
 

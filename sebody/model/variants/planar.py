@@ -13,7 +13,7 @@ from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
-from sebody.model.variants.copying import Variant, load_name, unknowns
+from sebody.model.variants.copying import Variant, checked, load_name, unknowns
 from sebody.model.variants.flat_beams import flat_beams
 from sebody.model.variants.flat_elements import flat_element, flat_joint
 from sebody.model.variants.flattening import Flattening
@@ -52,7 +52,7 @@ def planar(model: Mechanism) -> Variant:
         A planar model, what is not symmetric about the plane (the first thing that was found), or
         no planar kernel for a body.
     """
-    if model.planar:
+    if checked(model).planar:
         raise InputError("the model is planar already")
     if not model.nodes:
         raise InputError("the model has no nodes, so it is in no plane")
@@ -129,7 +129,7 @@ class _Flat(NamedTuple):
         InputError
             What is not symmetric.
         """
-        made = type(model)(planar=True)
+        made = type(model)(planar=True, units=model.units)
         made.plane = flat.plane
         made.nodes = {name: flat.node(node) for name, node in model.nodes.items()}
         made.grounds = [flat.node(node) for node in model.grounds]

@@ -7,7 +7,7 @@ from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Joint, Node, Triplet
 from sebody.model.sharing import can_share, share
-from sebody.model.variants.copying import Variant, copied, fewer
+from sebody.model.variants.copying import Variant, checked, copied, fewer
 
 _TOGETHER = ("weld", "prismatic")       # joints whose nodes turn together
 _NAMES = {"position": "positions", "rotation": "rotations"}
@@ -34,6 +34,7 @@ def shared(model: Mechanism, name: str | None = None) -> Variant:
     InputError
         No such joint, or one without equations that sharing replaces.
     """
+    checked(model)
     if name is not None:
         inputs.name(name, "name of a joint")
         if name not in (joint.name for joint in model.joints):

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from sebody.analysis.first_run import PARTS, compile_missing
 from sebody.errors import InputError, LimitWarning
 from sebody.kernels.names import element_name, superelement_name
-from sebody.studies.atlas import geometry, inertia, integration, spin, torsion
+from sebody.studies.atlas import frames, geometry, inertia, integration, spin, torsion
 from sebody.studies.atlas.draw import draw
 from sebody.studies.atlas.finding import Finding, Row
 
@@ -26,6 +26,7 @@ CASES: dict[str, Callable[[], Finding]] = {
     "damping": integration.damping_of_constraints,
     "newton": integration.newton,
     "million-steps": integration.million_steps,
+    "struck-frame": frames.struck_frame,
     "half-turn": geometry.half_turn,
     "collinear": geometry.collinear,
     "massless": geometry.massless_rotations,

@@ -9,10 +9,11 @@ from collections.abc import Iterable
 from sebody.analysis.first_run import compile_missing
 from sebody.errors import InputError
 from sebody.kernels.loader import load
-from sebody.kernels.names import SUPERELEMENT
+from sebody.kernels.names import MOTION, SUPERELEMENT
 from sebody.studies.catalogue import kernel_files
 from sebody.studies.check.body_loads import check_body_load
 from sebody.studies.check.elements import check_element
+from sebody.studies.check.motions import check_motion
 from sebody.studies.check.report import summary, table, verdict
 from sebody.studies.check.states import CheckRow
 from sebody.studies.check.superelements import check_superelement
@@ -37,6 +38,7 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
     for name in chosen:
         module = load(name)
         check = (check_superelement if name.startswith(SUPERELEMENT) else
+                 check_motion if name.startswith(MOTION) else
                  check_body_load if hasattr(module, "FRAME") else check_element)
         rows += check(name, module)
     return rows

@@ -11,7 +11,7 @@ from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.layout import axes_of
 from sebody.kernels.packed import unpack
 from sebody.reduction.invariants import InertiaInvariants
-from sebody.studies.check.definitions import frame_rotation, frame_traits, local_coordinates
+from sebody.studies.check.definitions import frame_rotation, local_coordinates
 from sebody.studies.check.states import Case, along_path, constants_of, derivative
 
 FOLLOWING = (3, 2), (0, 0)      # slaved coordinates and resultants, by state: gamma and plain C
@@ -46,7 +46,7 @@ def generic_constants(random: np.random.Generator, case: Case,
     """Values of the constants of option C by name, with the conditions of the frame."""
     free, D = case.counts["free"], case.dimension
     A, B = random.normal(size=(2, free, free))
-    conditions = frame_conditions(frame_traits(case.module), case.counts, values)
+    conditions = frame_conditions(case.module.FRAME, case.counts, values)
     axes = random.normal(size=3) * ([0, 0, 1] if case.planar else 1)
     coordinates = free_coordinates(conditions, case.counts,
                                    Rotation.from_rotvec(axes).as_matrix()[:D, :D])[0]

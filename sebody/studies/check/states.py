@@ -168,6 +168,11 @@ def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Ar
         energies=np.zeros(POWERS + 1))
 
 
+def called(case: Case, task: int, given: Arguments) -> int:
+    """Call the kernel of a case; returns its status."""
+    return _call(case.module.kernel.address, task, len(case.index), case.n, given)
+
+
 def scratch(case: Case) -> int:
     """Scratch memory of a kernel; elements have no squares."""
     squares = getattr(case.module, "WORK_SQUARES", 0)
@@ -177,10 +182,11 @@ def scratch(case: Case) -> int:
 def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)
              ) -> tuple[NDArray, NDArray, NDArray]:
     """Forces, matrix and energies of a kernel in the state of a case."""
-    n, module, given = case.n, case.module, arguments(case, coefficients)
-    status = _call(module.kernel.address, task, len(case.index), n, given)
+    n, given = case.n, arguments(case, coefficients)
+    status = called(case, task, given)
     if status:
-        raise InputError(f"kernel {module.__name__} refuses the check's state (status {status})")
+        raise InputError(f"kernel {case.module.__name__} refuses the check's state (status "
+                         f"{status})")
     return (given.forces, _in_global_axes(given.matrices.reshape(n, n), given.frames, case),
             given.energies)
 

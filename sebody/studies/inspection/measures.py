@@ -76,7 +76,7 @@ def matrices_of(file: BodyFile) -> Matrices:
     parts = file.parts
     coordinates, keeps = np.asarray(parts["coordinates"], dtype=float), tuple(parts["keeps"])
     check_layout(coordinates, keeps)
-    names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0))
+    names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0), file.names)
     found, asymmetry = {}, {}
     for name in ("stiffness", "mass"):
         matrix = np.asarray(parts[name], dtype=float)
@@ -172,6 +172,23 @@ def frequencies(body: Matrices) -> dict:
     return {"rigid": hertz[:rigid], "flexible": flexible[:SHOWN], "count": len(flexible),
             "highest": float(last), "step_first": 1 / (PERIOD * first) if first > 0 else np.inf,
             "step_highest": 1 / (PERIOD * last) if last > 0 else np.inf}
+
+
+def free_modes(body: Matrices, most: int) -> tuple[NDArray, NDArray]:
+    """Frequencies (k,) in Hz of the lowest free vibrations, and their motions (n, k)."""
+    size = np.sqrt(unit_scale(body.mass, body.names))
+    stiffness, mass = (matrix / np.outer(size, size) for matrix in (body.stiffness, body.mass))
+    rigid = body.rigid.shape[1]
+    shift = np.trace(np.abs(stiffness)) / max(np.trace(mass), 1e-300) * 1e-6
+    try:        # the inverse problem: coordinates may be massless
+        inverse, shapes = eigh(mass, stiffness + shift * mass)
+    except LinAlgError:
+        return np.zeros(0), np.zeros((len(size), 0))
+    inverse, shapes = inverse[::-1], shapes[:, ::-1]
+    there = inverse[rigid:] > 1e-14 * inverse[0]
+    squares = 1 / inverse[rigid:][there] - shift
+    found = shapes[:, rigid:][:, there] / size[:, None]
+    return np.sqrt(np.maximum(squares, 0.0))[:most] / (2 * np.pi), found[:, :most]
 
 
 def _massless(stiffness: NDArray, mass: NDArray) -> NDArray:

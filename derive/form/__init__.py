@@ -1,0 +1,1 @@
+"""What a kernel is made of: typed numbers, arrays, functions, steps and statements."""

@@ -1,0 +1,105 @@
+"""What files of kernels say of themselves, by what the kernels are of."""
+
+from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS, WIDTH
+from sebody.derive.form.kernel import Kernel
+from sebody.derive.formulas.elements import Constant, Element
+from sebody.derive.kernels.body_load import BodyLoad
+from sebody.derive.kernels.layouts import Layout
+from sebody.derive.kernels.motion import FrameMotion
+from sebody.derive.kernels.superelement import Superelement
+from sebody.derive.printing.numba.files import Head, counts, operations
+from sebody.derive.printing.numba.parts import table
+from sebody.kernels.layout import Part
+
+SPACES = {False: "motion in space", True: "motion in a plane"}
+PART = "Part"
+
+
+def superelement_head(given: Superelement, kernel: Kernel) -> Head:
+    """Of a superelement: the frame and the inertia option are in the names."""
+    layout, (frame, inertia) = given.layout, given.options
+    damped = None if inertia.traits.rates else layout.damped
+    rows = ("SUPERELEMENT_CONSTANTS", *["DAMPING_CONSTANTS"] * layout.damped)
+    own = [table(given.declared)] if given.declared else []
+    modes = "any number of" if layout.modes is None else layout.modes
+    return Head(
+        f"Superelement kernel: layout {layout.name}, frame {given.frame}, inertia option "
+        f"{given.inertia}",
+        (f"{_nodes(layout)} of {SPACES[layout.planar]}; {modes} internal modes.",
+         f"Frame: {frame.traits.summary}.", f"Inertia: {inertia.traits.summary}.",
+         "Cardona (2000), equations (11), (14)-(19), (30), (31), (36)-(51) or (52)-(63)."),
+        (f'LAYOUT = "{layout.name}"', f'FRAME = "{given.frame}"', f'INERTIA = "{given.inertia}"',
+         *counts(layout.planar, (layout.positions, layout.rotations)),
+         f"ROTATIONS = {layout.first_rotation}      # first rotation among the local coordinates",
+         f"MODES = {layout.first_mode}          # first internal mode",
+         f"DAMPED = {damped}        # has structural damping, None where a body tells",
+         f"N_MODES = {layout.modes}        # their number, None where it is read at run time",
+         f"WORK_ROWS = {kernel.rows}", f"WORK_SQUARES = {kernel.squares}",
+         "# arithmetic of one evaluation: of the element, of each position and of each rotation; "
+         "then the", "# number of products with n x n matrices", *operations(kernel),
+         f"CONSTANTS = {' + '.join([*rows, *own])}"),
+        rows, (PART,) if own else ())
+
+
+def body_load_head(given: BodyLoad, kernel: Kernel) -> Head:
+    """Of a load on a body: any layout, one frame."""
+    planar = given.layout.planar
+    return Head(
+        "Element kernel: load on a body that turns with its frame",
+        (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
+         "modes.", f"Frame: {given.option.traits.summary}."),
+        (f'FRAME = "{given.frame}"', *counts(planar, (None, None)),
+         f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}", "MULTIPLIERS = 0",
+         "WIDTH = None            # any number",
+         "INERTIAL = False        # has kinetic energy",
+         "POWER = True        # does work on the system: a load, damper or drive",
+         "DRIVEN = False        # a constraint that depends on time",
+         f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
+        ("FRAME_CONSTANTS",), (PART,))
+
+
+def _nodes(layout: Layout) -> str:
+    """Its counts in words."""
+    if layout.nodes is None:
+        return "Any number of positions and rotations"
+    return f"{layout.positions} position(s) and {layout.rotations} rotation(s)"
+
+
+def motion_head(given: FrameMotion, kernel: Kernel) -> Head:
+    """Of the motion of bodies: any layout, one frame."""
+    planar, own = given.layout.planar, given.option.traits.constants
+    table_of_own = f" + {table(own)}" if own else ""
+    return Head(
+        "Motion of bodies: their frame and local coordinates, twice derived in time",
+        (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
+         "modes.", f"Frame: {given.option.traits.summary}.",
+         "Writes rows MOTION of sebody/kernels/layout.py."),
+        (f'FRAME = "{given.frame}"', *counts(planar, (None, None)), "N_MODES = None",
+         f"CONSTANTS = FRAME_CONSTANTS{table_of_own}", f"WORK_ROWS = {kernel.rows}"),
+        ("FRAME_CONSTANTS",), (PART,) if own else ())
+
+
+def element_head(given: Element, kernel: Kernel) -> Head:
+    """Of a joint, rigid body or force."""
+    multipliers, power = len(given.multipliers), given.power is not None
+    known, planar = kernel.known, given.space.planar
+    constants = [_part(constant) for constant in given.constants]
+    return Head(
+        f"Element kernel: {given.summary}",
+        (f"{given.coordinates} coordinates, {multipliers} multipliers.",),
+        (*counts(planar, (known[POSITIONS], known[ROTATIONS])),
+         f"ROTATIONS = {known[FIRST_ROTATION]}      # first rotation among the local coordinates",
+         f"CONSTANTS = {table(constants)}", f"MULTIPLIERS = {multipliers}",
+         f"WIDTH = {known[WIDTH]}",
+         f"INERTIAL = {bool(given.sums.get('kinetic'))}        # has kinetic energy",
+         f"POWER = {power}        # does work on the system: a load, damper or drive",
+         f"DRIVEN = {multipliers > 0 and power}        # a constraint that depends on time",
+         f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
+        (), (PART,) if constants else ())
+
+
+def _part(constant: Constant) -> Part:
+    """A constant as a part of the row: a number, or the components that are stored."""
+    quantity, meaning = constant
+    shape = () if quantity.kind == "scalar" else (len(quantity.kept),)
+    return Part(quantity.name, shape, meaning)
