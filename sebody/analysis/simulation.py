@@ -19,7 +19,7 @@ from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen, untold
 from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import checked, generalized_alpha
-from sebody.analysis.tolerance import Tolerance, given
+from sebody.analysis.tolerance import UNSIZED, Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import placed, rotational
 from sebody.engine.loop import advance
@@ -250,8 +250,11 @@ class Simulation:
         """Switch on variable steps; the first step is short against the accelerations."""
         n, state = self.numbering.free, self.state
         own = np.flatnonzero(placed(self.model, self.numbering)[:n])
+        sizes = self.system.magnitude[own]
+        if tolerance.position == 0.0 and not np.all(sizes):
+            self.watch.say("unsized", UNSIZED)
         state.error_weights[own] = 1.0 / tolerance.allowed(
-            self.system.magnitude[own], rotational(self.model, self.numbering)[own])
+            sizes, rotational(self.model, self.numbering)[own])
         bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
         state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock[LARGEST_ERROR] = 0.0

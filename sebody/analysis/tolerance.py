@@ -8,13 +8,17 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.errors import InputError
 
+UNSIZED = ("nothing in the model has a length: errors of positions are relative to one unit of "
+           "length; give an absolute one, such as Tolerance(1e-3, position=1e-6)")
 FINEST = 1e-9       # relative error of a run below which Newton's tolerance and rounding decide
 
 
 class Tolerance(NamedTuple):
     """Allowed errors of positions and rotations, relative ones added to absolute ones.
 
-    Relative means of the model's extent for positions and of one radian for rotations.
+    Relative means of the model's extent for positions and of one radian for rotations. Where
+    nothing in the model has a length, as in a single mass without a moment of inertia, it means one
+    unit of length, and a run warns.
     """
 
     relative: float = 1e-3
@@ -59,17 +63,12 @@ class Tolerance(NamedTuple):
     def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
         """Allowed error of positions and rotations of a magnitude.
 
-        Raises
-        ------
-        InputError
-            None at all: of positions in a model in which nothing has a length.
+        Where nothing in a model has a length, which is a magnitude of 0, a relative error alone is
+        relative to one unit of length (`UNSIZED`).
         """
         absolute = np.where(rotational, self.rotation, self.position)
         found = absolute + self.relative * np.asarray(magnitude)
-        if np.any(found == 0.0):
-            raise InputError("nothing in the model has a length, so a relative tolerance says "
-                             "nothing about positions: give an absolute one, too, such as "
-                             "Tolerance(1e-3, position=1e-6)")
+        found = np.where(found == 0.0, self.relative, found)
         return found
 
 
