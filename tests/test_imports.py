@@ -12,13 +12,17 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
            "examples": "sebody.scenes"}
 # every room, lowest first, and which others its files may import; those in OPEN are open to all
-OPEN = {"errors", "inputs", "memory", "files", "units"}
+OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "spelling", "tabular", "version"}
 ROOMS = {
     "errors": set(),
     "inputs": set(),
     "memory": set(),
     "files": set(),
     "units": set(),
+    "lazy": set(),
+    "spelling": set(),
+    "tabular": set(),
+    "version": set(),
     "kernels": set(),
     "generated": {"kernels"},
     "engine": {"kernels"},
@@ -37,8 +41,8 @@ ROOMS = {
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}
-PACKAGES = {"errors": set(), "inputs": {"numpy"}, "memory": set(), "units": set(),
-            "files": {"numpy"},
+PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory": set(),
+            "units": set(), "files": {"numpy"}, "lazy": set(), "spelling": set(), "version": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib

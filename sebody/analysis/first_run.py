@@ -117,8 +117,8 @@ def _compile(kernels: dict[str, Path], parts: list[str], seconds: float,
     what = [f"{len(kernels)} kernel{'s' * (len(kernels) > 1)}"] if kernels else []
     what = " and ".join([*["the time loop"] * bool(parts), *what])
     if not store.writable(Path(loop.__file__)):
-        print(f"compiling {what}, about {seconds:.0f} s, at every start: there is no folder to "
-              "keep the machine code in", file=sys.stderr, flush=True)
+        print(f"compiling {what}, about {seconds:.0f} s, at every start: "
+              f"{store.not_writable(Path(loop.__file__))}", file=sys.stderr, flush=True)
         return
     seconds /= workers.PROCESSES
     print(f"first run: compiling {what} in {workers.PROCESSES} processes, about {seconds:.0f} s",

@@ -37,11 +37,12 @@ def take(model: Mechanism, numbering: Numbering, state: State, given: Result) ->
         if id(triplet) not in numbering.triplets:
             continue
         own, k = stretch(numbering, triplet), numbering.rotations.get(id(triplet))
-        if triplet.given or not triplet.solved:
+        is_given = triplet.given or bool(triplet.rate.any())
+        if is_given or not triplet.solved:
             v[own] = state.v[own]
         if k is not None:
             q[own] = 0.0        # in space R has the rotation, and q the increment in a step
-            if triplet.given:   # in global axes
+            if is_given:        # in global axes
                 v[own] = R[9 * k:9 * k + 9].reshape(3, 3).T @ state.v[own]
     for body in model.bodies.values():
         if np.any(body.mode_rates):

@@ -93,8 +93,8 @@ def _check(values: NDArray, size: NDArray | float, what: str, multipliers: NDArr
         excess = np.abs(values) / np.maximum(size, 1e-300)
         worst = int(np.argmax(excess))
         if not excess[worst] <= SMALL:
-            raise InputError(f"the initial {what} violates "
-                             f"{numbering.names[multipliers[worst]]} by {abs(values[worst]):.3g}: "
+            of = numbering.names[multipliers[worst]].partition(" of ")[2]
+            raise InputError(f"the initial {what} violates {of!r} by {abs(values[worst]):.3g}: "
                              f"{remedy}")
 
 
@@ -128,13 +128,19 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     for triplet in given:
         change = np.abs(answer[coordinates(numbering, triplet)]).max()
         if change > 1e-6 * size:
-            raise InputError(f"the given initial velocity of {triplet.name} does not fit the "
-                             "joints and the other given ones, it would have to change by "
-                             f"{change:.3g}: leave some of them out, they are solved for")
+            demanded = _shown(state.v[coordinates(numbering, triplet)])
+            raise InputError(f"the given initial velocity of {triplet.name}, "
+                             f"{_shown(triplet.rate)}, does not fit the joints, drives and other "
+                             f"given ones, which demand {demanded}: leave some of them out, they "
+                             "are solved for")
     _check(_rates(system, state, multipliers), size, "velocity", multipliers, numbering,
-           "no velocities fit this joint and the given ones; give others")
+           "no velocities fit this joint or drive, the others and those given; change one of them")
     changes = {t.name: float(np.abs(answer[coordinates(numbering, t)]).max()) for t in triplets}
     return {name: change for name, change in changes.items() if change > SMALL * size}
+
+
+def _shown(value: NDArray) -> str:
+    return "(" + ", ".join(f"{number:.6g}" for number in value) + ")"
 
 
 def _with_mass(masses: csc_matrix, held: NDArray) -> csc_matrix:

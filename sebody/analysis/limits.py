@@ -3,6 +3,8 @@
 Only few of the recorded states are checked, after the compiled loop, which is not slowed down.
 """
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Iterable
 
@@ -95,10 +97,17 @@ class Watch:
                     row = int(np.argmax(speeds[:, k]))
                     self._compare(model.bodies[name], spins[row, k], speeds[row, k])
 
-    def judge(self, run: Recording) -> None:
-        """Compare energies, steps, vibrations and constraints of a whole run with their limits."""
-        for key, message in remarks(run).items():
-            self.say(key, message)
+    def judge(self, run: Recording) -> tuple[str, ...]:
+        """All warnings of a run as far as it has come, with those of its energies and steps.
+
+        These may pass while a run goes on: an energy that is small at first is kept to less well.
+        """
+        now = remarks(run)
+        for key, message in now.items():
+            if key not in self._said:
+                self._said.add(key)
+                warnings.warn(message, LimitWarning, stacklevel=3)
+        return *self.messages, *now.values()
 
     def _compare(self, body: Superelement, spin: NDArray, speed: float) -> None:
         keys = f"spin {body.name}", f"fast {body.name}"

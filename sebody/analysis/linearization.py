@@ -1,5 +1,7 @@
 """Small motion about a state, at rest or in steady rotation: exact matrices and eigenvalues."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +10,7 @@ from scipy.linalg import LinAlgError, eig, eigh, null_space
 from scipy.sparse import csc_matrix
 
 from sebody import inputs
-from sebody.analysis import user_faults
+from sebody.analysis import mode_tables, user_faults
 from sebody.analysis.evaluation import matrix
 from sebody.analysis.limits import Watch
 from sebody.analysis.shapes import Shapes
@@ -18,6 +20,7 @@ from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import EVALUATED, WANTED
 from sebody.errors import InputError
 from sebody.results.result import Result
+from sebody.tabular import brief
 
 
 def derivative(run: Simulation | Result, mass: float, damping: float,
@@ -99,6 +102,8 @@ class Linearization(NamedTuple):
     stiffness: NDArray
     free: NDArray
 
+    __repr__ = brief
+
 
 def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linearization:
     """Matrices of small motion about the state a run, or an equilibrium, has reached.
@@ -132,6 +137,18 @@ class Vibrations(NamedTuple):
     omega: NDArray      # (m,) angular frequencies, ascending [1/time]
     shapes: NDArray     # (unknowns, m) mass-normalised, in the axes of the unknowns
     of_names: Shapes
+
+    def __repr__(self) -> str:
+        return mode_tables.text(f"{len(self.omega)} undamped vibrations", 1j * self.omega)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return mode_tables.html(f"{len(self.omega)} undamped vibrations", 1j * self.omega)
+
+    @property
+    def frequency(self) -> NDArray:
+        """Frequencies, (m,), in cycles per unit of time: Hz where it is the second."""
+        return self.omega / (2 * np.pi)
 
     def shape(self, name: str) -> NDArray:
         """Part of all shapes, (size, m): ``shape("tip.position")`` in global axes.
@@ -180,6 +197,23 @@ class Modes(NamedTuple):
     values: NDArray     # (m,) complex, by ascending frequency [1/time]
     shapes: NDArray     # (unknowns, m) complex, of unit length
     of_names: Shapes
+
+    def __repr__(self) -> str:
+        return mode_tables.text(f"{len(self.values)} modes of small motion", self.values)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return mode_tables.html(f"{len(self.values)} modes of small motion", self.values)
+
+    @property
+    def frequency(self) -> NDArray:
+        """Frequencies, (m,), in cycles per unit of time: Hz where it is the second."""
+        return mode_tables.frequencies(self.values)
+
+    @property
+    def damping(self) -> NDArray:
+        """Damping over critical damping, (m,); NaN of rigid motions."""
+        return mode_tables.damping_ratios(self.values)
 
     def shape(self, name: str) -> NDArray:
         """Part of all shapes, (size, m): see `Vibrations.shape`."""

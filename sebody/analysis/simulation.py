@@ -1,5 +1,7 @@
 """Simulations: a consistent initial state, then calls of the compiled loop."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable
 from functools import cache
@@ -14,11 +16,13 @@ from sebody.analysis.failures import explained
 from sebody.analysis.first_run import prepare
 from sebody.analysis.given_start import take
 from sebody.analysis.initial_state import begin
+from sebody.analysis.initial_velocities import refuse_contradicted
 from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
 from sebody.analysis.pulses import unseen, untold
 from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import checked, generalized_alpha
+from sebody.analysis.start_remarks import start_remarks
 from sebody.analysis.tolerance import UNSIZED, Tolerance, given
 from sebody.assembly.build import build
 from sebody.assembly.numbering import placed, rotational
@@ -44,6 +48,7 @@ from sebody.engine.state import (
 from sebody.engine.step import write_record
 from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.model.model import Model
+from sebody.model.tables import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 
@@ -85,7 +90,8 @@ class Simulation:
     Raises
     ------
     InputError
-        Bad step or tolerance, singular mass, contradicting constraints, an initial state that
+        Bad step or tolerance, functions that read what has changed since they were compiled,
+        singular mass, contradicting constraints, an initial state that
         violates them, or variable steps with constraints of index 3.
     """
 
@@ -99,6 +105,7 @@ class Simulation:
         if scheme is not None:
             checked(scheme)
         tolerance = given(tolerance)
+        user_faults.refuse_changed(model)
         prepare([model])
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
@@ -115,6 +122,10 @@ class Simulation:
         if start is not None:
             take(model, self.numbering, self.state, start)
         self.start: Start = begin(model, self.system, self.numbering, self.state)
+        refuse_contradicted(model, self.numbering, self.state)
+        if start is None:
+            for key, message in start_remarks(model, self.numbering, self.state).items():
+                self.watch.say(key, message)
         self.tolerance = tolerance
         self._accelerate()
         if tolerance is not None:
@@ -124,13 +135,17 @@ class Simulation:
         write_record(self.state, first)
         self.rows.append(first.rows)
 
+    def __repr__(self) -> str:
+        return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
+                f"{self.h:.6g}, t = {self.time:.6g}>")
+
     @property
     def time(self) -> float:
         """Time reached."""
         return float(self.state.clock[TIME])
 
     def run_to(self, t_end: float,
-               progress: Callable[[float], None] | bool | None = None) -> "Simulation":
+               progress: Callable[[float], None] | bool | None = None) -> Simulation:
         """Advance to the grid step nearest to `t_end`.
 
         Parameters
@@ -142,12 +157,16 @@ class Simulation:
 
         Raises
         ------
+        InputError
+            A time that is past, or a function of a load or drive that reads a value which has
+            changed since it was compiled.
         SimulationError
             When a step does not converge however small; what was computed is kept, also in the
             error's `result`.
         Interrupted
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
+        user_faults.refuse_changed(self.model)
         last = self._last_step(t_end)
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
@@ -231,9 +250,8 @@ class Simulation:
         """The results computed so far."""
         found = Result(self.model, self.numbering, self.system, self.state,
                        np.concatenate(self.rows), self.seconds, self.failure, self.start)
-        if found.steps:
-            self.watch.judge(found)
-        found.warnings = tuple(self.watch.messages)
+        found.warnings = (self.watch.judge(found) if found.steps else
+                          tuple(self.watch.messages))
         return found
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:

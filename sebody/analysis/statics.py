@@ -1,5 +1,7 @@
 """Static equilibrium under loads applied in steps, also in a steadily rotating frame."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

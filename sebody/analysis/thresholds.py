@@ -1,7 +1,7 @@
 """The table of limits that runs, equilibria and linearisations are compared with.
 
 None of them is reached in any of the shipped scenes but those that are there to show it. Those of
-balances and constraints, which reports judge by, too, are in `sebody.results.audit`.
+constraints and of the energy balance, which reports judge by, too, are in `sebody.results`.
 """
 
 LINEAR = 0.3        # rad, local rotation: linear stiffness misses its square, a tenth

@@ -1,5 +1,7 @@
 """What error is allowed."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +27,7 @@ class Tolerance(NamedTuple):
     position: float = 0.0       # [length]
     rotation: float = 0.0       # [rad]
 
-    def check(self) -> "Tolerance":
+    def check(self) -> Tolerance:
         """The tolerance itself.
 
         Raises
@@ -72,7 +74,7 @@ class Tolerance(NamedTuple):
         return found
 
 
-def given(tolerance: "Tolerance | None") -> "Tolerance | None":
+def given(tolerance: Tolerance | None) -> Tolerance | None:
     """The tolerance a user gives, checked; None stays None.
 
     Raises

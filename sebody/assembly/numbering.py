@@ -92,6 +92,7 @@ def number(model: Mechanism) -> Numbering:
             order.place(triplet)
             order.place_multipliers(triplet)
     _refuse_loose(model, last)
+    _refuse_idle_drives(model)
     free, used = len(order.names), _used(model)
     for triplet in used:
         if id(triplet) not in order.at and triplet.root is None:
@@ -162,6 +163,19 @@ def _refuse_loose(model: Mechanism, held: dict) -> None:
         borne = parents(load.triplets)
         if borne and load.history is not None and not any(id(p) in held for p in borne):
             raise InputError(f"{load.name}: no body is there to bear it: attach one")
+
+
+def _refuse_idle_drives(model: Mechanism) -> None:
+    for joint in model.joints:
+        if joint.kind != "drive":
+            continue
+        driven = list({id(t): t for c in joint.constraints for t in parents(c.triplets)}.values())
+        if not any(one.solved for one in driven):
+            held = [one.name for one in driven if not one.name.startswith("ground.")]
+            raise InputError(f"drive {joint.name!r} has nothing to move: {' and '.join(held)} "
+                             f"{'are' if len(held) > 1 else 'is'} fixed or prescribed; leave out "
+                             "the drive, or what holds them (fix(..., 'position') leaves the "
+                             "rotation free)")
 
 
 def _used(model: Mechanism) -> list[Triplet]:

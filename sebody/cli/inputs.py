@@ -8,10 +8,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sebody import inputs
 from sebody.cli import scene_files
 from sebody.errors import InputError
-from sebody.studies.catalogue import builder
 
 if TYPE_CHECKING:
     from sebody.results.result import Result
@@ -37,6 +35,8 @@ def source(scene: str) -> Source:
     if scene_files.is_file(scene):
         module = scene_files.load(scene)
         return Source(module.build, _first_line(module), module.__file__)
+    from sebody.studies.catalogue import builder
+
     build = builder(scene)
     return Source(build, _first_line(sys.modules[build.__module__]), "")
 
@@ -64,7 +64,7 @@ def checked_scene(scene: object, name: str) -> "Scene":
     InputError
         It is none.
     """
-    from sebody import Model
+    from sebody import Model, inputs
     from sebody.scenes.scene import Scene
 
     what = f"what build of {name} returned"

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from sebody.cli.inputs import check_distinct, check_picture
 from sebody.errors import InputError
-from sebody.files import check_target
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -25,6 +24,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Inspect, perhaps repair; 1 if the body has a defect."""
+    from sebody.files import check_target
     from sebody.io.body_file import TARGET, read_body_file, write_body_file
     from sebody.studies import inspection
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 from sebody.cli import interrupts
 from sebody.cli.inputs import build_scene, check_distinct, check_picture
 from sebody.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
-from sebody.files import check_target
 
 if TYPE_CHECKING:
     from sebody.analysis.simulation import Simulation
@@ -173,6 +172,7 @@ def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulatio
 def _check(options: argparse.Namespace, scene: "Scene") -> None:
     """Refuse before the run what cannot be written, and options that contradict others."""
     from sebody.analysis.restart import TARGET
+    from sebody.files import check_target
     from sebody.results.result import check_output
 
     if options.output:

@@ -1,5 +1,7 @@
 """Beams and frames of two-node elements, spatial and planar."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import pairwise
 

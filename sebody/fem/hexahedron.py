@@ -1,5 +1,7 @@
 """A rectangular block of 8-node hexahedra with incompatible modes (translation DOFs only)."""
 
+from __future__ import annotations
+
 from itertools import product
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What an FE program hands over: matrices, node coordinates and the meaning of the DOFs."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -91,6 +93,13 @@ class FEModel:
     missing: Mapping[str, str] = field(default_factory=dict)
     materials: Sequence[Material] = ()
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
+
+    def __repr__(self) -> str:
+        known = {"mass field": self.mass_field, "geometric stiffness": self.geometric_stiffness,
+                 "cells": self.cells, "stress": self.stress, "node sets": self.node_sets}
+        has = ", ".join(name for name, value in known.items() if value)
+        return (f"<FEModel: {len(self.coordinates)} nodes, {self.stiffness.shape[0]} DOFs"
+                + f"; {has}" * bool(has) + ">")
 
     def __post_init__(self) -> None:
         self._check_nodes()

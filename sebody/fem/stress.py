@@ -8,6 +8,8 @@ the tensor's. Those of solids are along the axes of the FE model, those of beams
 the section.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,6 +21,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem import mesh
 from sebody.fem.isoparametric import SOLID_KINDS, element_kind
+from sebody.tabular import brief
 
 FLAT = 1e-10        # volume of an element, of its size cubed, that is none
 
@@ -47,6 +50,8 @@ class SolidStress:
     coordinates: NDArray
     elasticity: NDArray
     strains: NDArray | None = None
+
+    __repr__ = brief
 
     @property
     def points_per_element(self) -> int:
@@ -98,7 +103,7 @@ class SolidStress:
         n, g, c, s = values.shape
         return (to_nodes @ values.reshape(n, g, c * s)).reshape(n, -1, c, s)
 
-    def restricted(self, place: NDArray, coordinates: NDArray) -> "SolidStress":
+    def restricted(self, place: NDArray, coordinates: NDArray) -> SolidStress:
         """Of the elements whose nodes are kept: `place` has their new numbers, -1 for others."""
         kept = np.all(place[self.nodes] >= 0, axis=1)
         law = self.elasticity if self.elasticity.ndim == 2 else self.elasticity[kept]
@@ -142,6 +147,8 @@ class StressModes:
     modes: NDArray
     nodes: NDArray
 
+    __repr__ = brief
+
     def __post_init__(self) -> None:
         points = inputs.array(self.points, "points of stress modes", (None, 3))
         modes = inputs.array(self.modes, "stress modes", (len(points), 6, None))
@@ -149,7 +156,7 @@ class StressModes:
         for name, value in (("points", points), ("modes", modes), ("nodes", nodes)):
             object.__setattr__(self, name, value)
 
-    def restricted(self, place: NDArray, coordinates: NDArray) -> "StressModes":
+    def restricted(self, place: NDArray, coordinates: NDArray) -> StressModes:
         """Of the points that belong to kept nodes."""
         own = np.where(self.nodes < 0, -1, place[self.nodes])
         return StressModes(self.points[own >= 0], self.modes[own >= 0], own[own >= 0])

@@ -5,6 +5,8 @@ Arrays are members by name (``stiffness``, ``mass``, ``coordinates``, ``invarian
 format and version, layout, names of the boundary nodes, units, provenance.
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
@@ -27,6 +29,7 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.missing import lacks, sentences
 from sebody.reduction.recovery import Recovery
+from sebody.tabular import brief
 from sebody.units import parsed_units
 
 FORMAT, VERSION = "sebody body", 1
@@ -60,6 +63,8 @@ class BodyFile:
     units: str = ""
     provenance: Mapping[str, str] = field(default_factory=dict)
     changed: tuple[str, ...] = ()
+
+    __repr__ = brief
 
     @property
     def mesh(self) -> tuple[NDArray, tuple[tuple[str, NDArray], ...]] | None:

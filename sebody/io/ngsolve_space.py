@@ -1,5 +1,7 @@
 """NGSolve: an FE model of a space of displacements and the matrices assembled with it."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

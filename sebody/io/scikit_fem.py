@@ -1,5 +1,7 @@
 """scikit-fem: an FE model of a basis and the matrices that were assembled with it."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -13,6 +13,8 @@ each ``M0 + sum_j M1(row, j, column) q_j``; ``x = X + Phi q`` and what follows i
 which is the geometric stiffness of accelerations and spin.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Straight beams as superelements."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from copy import deepcopy
 from functools import lru_cache

@@ -1,5 +1,7 @@
 """Bodies of a model: superelements, rigid bodies and point masses."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Drives: prescribed motions of nodes, and of joints by an equation."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -7,11 +9,11 @@ from sebody.errors import InputError
 from sebody.model import motions
 from sebody.model.inputs import (
     along,
-    axes,
     chosen_name,
     known,
     rotation_vector,
     triplet,
+    turning_axes,
     vector,
 )
 from sebody.model.mechanism import Mechanism
@@ -45,7 +47,7 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
     """
     a, b = pair(model, node, to, "drive", ("rotation",))
     history = motions.motion(motion)
-    vectors = None if model.planar else axes(model, axis, "drive", a)
+    vectors = turning_axes(model, axis, "drive", a, signed=True)
     constants = dict(zip(("n", "m"), vectors[1:], strict=True)) if vectors else {}
     name = chosen_name(model, name, f"angle at {a.name}")
     equation = Element(name, model.kind_of("turn_drive"), rotations(a, b), constants, 1, history)

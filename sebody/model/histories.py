@@ -4,10 +4,13 @@ A history of pieces is on each of its intervals a polynomial of degree five at m
 see `History`. Loads need the value alone, drives its first two derivatives, too.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from math import cos, sin
+from numbers import Number
 
 import numpy as np
 from numba import njit
@@ -16,7 +19,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.kernels.layout import CLOCK
 from sebody.kernels.user_functions import UserFunction, compile_history
-from sebody.model.functions import with_compiled_helpers
+from sebody.model.functions import compilable, compiled_history
 from sebody.model.history_rows import linear, table
 
 LOAD, MOTION = "load history", "motion of a drive"
@@ -90,6 +93,17 @@ class History:
             found += A * np.array([s, w * c, -w * w * s])
         return found
 
+    def described(self) -> str:
+        """What it is, in a few words."""
+        if self.functions:
+            return f"function {getattr(self.functions[0].function, '__name__', '')}".rstrip()
+        if len(self.pieces) == 1 and not self.waves and not any(self.pieces[0][1:]):
+            return f"constant {self.pieces[0][0]:.6g}"
+        return f"{len(self.pieces)} pieces, t = {self.times[0]:.6g} to {self.times[-1]:.6g}"
+
+    def __repr__(self) -> str:
+        return f"<History: {self.described()}>"
+
     def _summands(self, k: int, t: float) -> NDArray:
         """Sums of the sizes of what is added up in `of_piece`: they may cancel but for rounding."""
         x, polynomial = abs(t - self.times[k]), np.polynomial.Polynomial(np.abs(self.pieces[k]))
@@ -122,23 +136,23 @@ class History:
             return [t for t, before, after in self.jumps() if before[rate] != after[rate]]
         return [t for t in self.corners if t > 0.0 and _jumps(self.functions[rate].ctypes, t)]
 
-    def with_corners(self) -> "History":
+    def with_corners(self) -> History:
         """This history of pieces, its corners where its value or a rate jumps."""
         return replace(self, corners=tuple(t for t, *_ in self.jumps()))
 
-    def from_zero(self) -> "History":
+    def from_zero(self) -> History:
         """The same less its value at t = 0."""
         value = self.at(0.0)[0]
         if value == 0.0 or not np.isfinite(value):
             return self
         if self.functions:
-            return replace(self, functions=(_less(self.functions[0].function, value),
+            return replace(self, functions=(_less(self.functions[0], value),
                                             *self.functions[1:]))
         return replace(self, pieces=tuple((c[0] - value, *c[1:]) for c in self.pieces))
 
 
 def history(source: Source) -> History:
-    """A load history from None (constant 1), a table, a function of time or a ready profile.
+    """A load history from None (1), a number, a table, a function of time or a ready profile.
 
     A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; two
     rows of one time are a jump. A function is compiled, of a tuple of a function and its rates the
@@ -151,12 +165,14 @@ def history(source: Source) -> History:
     """
     if source is None:
         return History()
+    if isinstance(source, Number):
+        return History(pieces=((inputs.number(source, LOAD),),))
     if isinstance(source, History):
         return source
     if is_function_with_rates(source):
         source = source[0]
     if callable(source):
-        return History(functions=(compiled(source, LOAD),))
+        return History(functions=(compiled_history(source, LOAD),))
     times, pieces, corners = linear(*table(source, LOAD, jumping=True))
     return History(times, pieces, corners=corners)
 
@@ -182,7 +198,7 @@ def with_corners(function: Callable[[float], float] | tuple[Callable, Callable, 
     given = function if is_function_with_rates(function) else (function,)
     for one in given:
         inputs.function(one, "function", "give a function of time")
-    return History(functions=tuple(compiled(one, LOAD) for one in given), corners=times)
+    return History(functions=tuple(compiled_history(one, LOAD) for one in given), corners=times)
 
 
 def corners_of(given: Sequence[float]) -> tuple[float, ...]:
@@ -229,17 +245,14 @@ def is_function_with_rates(source: object) -> bool:
     return isinstance(source, tuple) and len(source) == 3 and all(map(callable, source))
 
 
-def compiled(function: Callable[[float], float], what: str) -> UserFunction:
-    return compile_history(with_compiled_helpers(function), what)
-
-
-def _less(function: Callable[[float], float], value: float) -> UserFunction:
-    inner = njit(function)
+def _less(function: UserFunction, value: float) -> UserFunction:
+    inner = njit(compilable(function.function))
 
     def less(t):
         return inner(t) - value
-    less.__name__ = getattr(function, "__name__", "function")
-    return compile_history(less, MOTION)
+    made = compile_history(less, MOTION)
+    made.function, made.read = function.function, function.read
+    return made
 
 
 def _jumps(function: Callable[[float], float], t: float) -> bool:

@@ -1,9 +1,10 @@
 """The data of a model, and how its parts are found by name."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +22,11 @@ from sebody.model.parts import (
     Triplet,
 )
 from sebody.model.plane import Plane
+from sebody.spelling import unknown
 from sebody.units import parsed_units
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Mechanism:
     """A mechanism: nodes, superelements, rigid bodies, joints and forces.
 
@@ -105,8 +107,5 @@ class Mechanism:
         if found:
             raise InputError(f"{len(found)} elements are called {name!r}: build them with name= to "
                              "tell them apart")
-        names = list(dict.fromkeys(e.name for e in self.elements()))
-        near = get_close_matches(str(name), names)
-        raise InputError(f"element {inputs.shown(name)} is unknown: " + (
-            f"did you mean {' or '.join(map(repr, near))}?" if near else
-            f"the model has {', '.join(map(repr, names)) or 'none'}"))
+        raise unknown("element", name, (e.name for e in self.elements()), "the model has",
+                      "the model has none")

@@ -2,15 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from numbers import Number
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.user_functions import UserFunction
 from sebody.model.derivatives import rates_of
+from sebody.model.functions import compiled_history
 from sebody.model.histories import (
     MOTION,
     History,
     Source,
-    compiled,
     is_function_with_rates,
     spline_of,
 )
@@ -38,7 +40,7 @@ def motion(source: Source) -> History:
     if isinstance(source, History):
         if len(source.functions) == 1:
             value = source.functions[0]
-            rates = (compiled(f, MOTION) for f in rates_of(value.function, MOTION))
+            rates = (compiled_history(f, MOTION) for f in rates_of(value.function, MOTION))
             source = replace(source, functions=(value, *rates))
         _check_rates(source.functions)
         _refuse_jumps(source)
@@ -46,9 +48,12 @@ def motion(source: Source) -> History:
     if callable(source):
         source = (source, *rates_of(source, MOTION))
     if is_function_with_rates(source):
-        functions = tuple(compiled(f, MOTION) for f in source)
+        functions = tuple(compiled_history(f, MOTION) for f in source)
         _check_rates(functions)
         return History(functions=functions).from_zero()
+    if isinstance(source, Number):
+        raise InputError(f"motion of a drive is {inputs.shown(source)}, always the same: give a "
+                         "table, a function of time or a ready profile, or fix the node")
     times, values = table(source, MOTION)
     if len(times) < 2:
         raise InputError("the motion of a drive has one row: give at least two rows (t, value), "

@@ -1,11 +1,13 @@
 """Springs and dampers of a model: between two points, about an axis, along and about all axes."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import axes, chosen_name, known
+from sebody.model.inputs import chosen_name, known, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
 from sebody.model.parts import Element, Node, Place, positions, rotations
@@ -53,8 +55,8 @@ def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
     rest = inputs.number(rest, f"torsion spring at {a.name!r}: rest", remedy="give a number")
     _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
     constants = {"k": stiffness, "k3": cubic, "c": damping, "rest": rest}
-    if not model.planar:
-        constants |= zip(("n", "m"), axes(model, axis, what, a)[1:], strict=True)
+    if vectors := turning_axes(model, axis, what, a, signed=True):
+        constants |= zip(("n", "m"), vectors[1:], strict=True)
     return _add(model, name, what, a, rotations(a, b), constants)
 
 

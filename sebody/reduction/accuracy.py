@@ -8,6 +8,8 @@ Estimates for the same purpose: S.-H. Boo, J.-G. Kim and P.-S. Lee, Int. J. Nume
 modes neither an expansion in the unknown frequency nor samples are needed.
 """
 
+from __future__ import annotations
+
 import time
 from dataclasses import dataclass
 

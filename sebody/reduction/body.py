@@ -1,5 +1,7 @@
 """The superelement in the form the multibody code takes: reduced matrices and their layout."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -21,6 +23,7 @@ from sebody.reduction.recovery import Recovery
 from sebody.reduction.recovery_checks import check_recovery
 from sebody.reduction.rigid import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
+from sebody.tabular import counted
 from sebody.units import parsed_units
 
 
@@ -196,6 +199,11 @@ class ReducedBody:
     def _stressed(self) -> bool:
         return self.recovery is not None and bool(self.recovery.stress)
 
+    def __repr__(self) -> str:
+        nodes = ", ".join(self.keeps)
+        return (f"<ReducedBody: mass {self.total_mass:.6g}, nodes {nodes}, "
+                f"{counted(self.modes, 'mode')}>")
+
     def summary(self) -> str:
         """Order, mass, frequencies and effective masses of the internal modes, and the notes."""
         nodes, n = len(self.coordinates), len(self.mass)
@@ -236,7 +244,7 @@ class ReducedBody:
             return y
         return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
 
-    def recovering(self, nodes: Iterable[int]) -> "ReducedBody":
+    def recovering(self, nodes: Iterable[int]) -> ReducedBody:
         """The same body with the shapes of some FE nodes alone.
 
         Parameters
@@ -260,7 +268,7 @@ class ReducedBody:
         return replace(self, recovery=self.recovery.restricted(np.array(found)))
 
     def damped(self, ratio: float | Sequence[float] = 0.0, *, mass: float = 0.0,
-               stiffness: float = 0.0) -> "ReducedBody":
+               stiffness: float = 0.0) -> ReducedBody:
         """The same body with structural damping of its deformation.
 
         Parameters
@@ -282,7 +290,7 @@ class ReducedBody:
             self.stiffness, self.mass, self.rigid_modes,
             strainless_coordinates(self.keeps, self.coordinates.shape[1]), ratio, mass, stiffness))
 
-    def rotated(self, rotation: ArrayLike) -> "ReducedBody":
+    def rotated(self, rotation: ArrayLike) -> ReducedBody:
         """The same body rotated by `rotation` about the FE origin, in the old axes.
 
         Parameters

@@ -1,5 +1,7 @@
 """Interfaces that are sets of FE nodes: tied rigidly to a boundary node, or their mean motion."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +13,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.faces import surface_mass
 from sebody.fem.model import FEModel
+from sebody.tabular import brief
 
 _LINE = 1e-6  # spread beside a line, relative to that along it, that does not hold a rotation
 
@@ -37,6 +40,8 @@ class RigidFace:
     point: NDArray
     nodes: tuple[int, ...]
     name: str = ""
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         point = inputs.vector(self.point, f"point of {self.called}")
@@ -79,6 +84,8 @@ class MeanFace:
     point: NDArray | None = None
     weights: str | NDArray = "area"
     name: str = ""
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "nodes", _nodes(self.nodes, self.called, "it is the mean of"))

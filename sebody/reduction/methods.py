@@ -21,6 +21,8 @@ R.J. Guyan, AIAA J. 3, 1965; R.R. Craig and M.C.C. Bampton, AIAA J. 6, 1968; R.H
 Struct. 1, 1971; S. Rubin, AIAA J. 13, 1975.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any

@@ -9,6 +9,7 @@ from scipy.linalg import block_diag
 
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.stress import SolidStress, StressModes
+from sebody.tabular import brief
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +55,8 @@ class Recovery:
     stress: tuple[SolidStress | BeamStress | StressModes, ...] = ()
     static: NDArray | None = None
     nodes: NDArray | None = None
+
+    __repr__ = brief
 
     @property
     def dimension(self) -> int:

@@ -41,8 +41,8 @@ def check_recovery(recovery: Recovery, planar: bool, n: int, held: int,
     if recovery.static is not None:
         _check("static", recovery.static, (rows, None))
         if recovery.static.shape[1] < held:
-            raise InputError(f"recovery.static has {recovery.static.shape[1]} columns, the boundary "
-                             f"has {held} coordinates: {_REMEDY}")
+            raise InputError(f"recovery.static has {recovery.static.shape[1]} columns, the "
+                             f"boundary {held} coordinates: {_REMEDY}")
     if (recovery.axes is None) != (recovery.by is None):
         raise InputError(f"recovery.axes and recovery.by belong together: {_REMEDY}")
     if recovery.axes is not None:

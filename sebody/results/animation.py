@@ -7,6 +7,7 @@ from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.results import film
 from sebody.results.drawing import overview
+from sebody.results.notebook import Page, ShownFile
 from sebody.results.page_data import page, speed_of
 from sebody.results.result import Result
 from sebody.results.scenery import scenery
@@ -16,10 +17,10 @@ COLOURS = "body", "displacement", "von_mises"
 LONGEST = 30.0          # seconds of a film without a speed
 
 
-def animate(result: Result, output: str | Path, *quantities: str, title: str = "",
+def animate(result: Result, output: str | Path | None = None, *quantities: str, title: str = "",
             speed: float | None = None, colour: str | None = None,
-            reference: str | None = None) -> Path:
-    """Write an animation of a result.
+            reference: str | None = None) -> ShownFile | Page:
+    """An animation of a result, which a notebook shows, written to a file if one is given.
 
     A page shows the model from any side, at any speed, with deformations to scale or enlarged,
     coloured by displacement or stress, with paths of nodes, loads, and plots of any quantity; it
@@ -29,8 +30,9 @@ def animate(result: Result, output: str | Path, *quantities: str, title: str = "
     Parameters
     ----------
     result : Result
-    output : str or Path
-        File to write: html, or a film, gif (extra ``plot``) or mp4 (extra ``film``).
+    output : str or Path, optional
+        File to write: html, or a film, gif (extra ``plot``) or mp4 (extra ``film``). Without one
+        a page is returned.
     *quantities : str
         What a page plots first, by names as for `sebody.results.plot`; an overview by default.
     title : str
@@ -47,8 +49,8 @@ def animate(result: Result, output: str | Path, *quantities: str, title: str = "
 
     Returns
     -------
-    Path
-        The file written.
+    ShownFile or Page
+        The path of the file written; without one the page, with a method `save`.
 
     Raises
     ------
@@ -59,12 +61,16 @@ def animate(result: Result, output: str | Path, *quantities: str, title: str = "
         Writing fails; an older file is unchanged.
     """
     inputs.instance(result, "result", Result, "give the Result of a run")
-    path = check_animation(output)
     if speed is not None:
         speed = inputs.number(speed, "speed", above=0)
     if colour is not None:
         _check_colour(result, inputs.choice(colour, "colour", COLOURS))
-    title = inputs.text(title, "title") or path.stem
+    title = inputs.text(title, "title")
+    if output is None:
+        return Page(page(result, quantities or overview(result), title or "animation", speed,
+                         colour, reference))
+    path = ShownFile(check_animation(output))
+    title = title or path.stem
     if path.suffix == ".html":
         text = page(result, quantities or overview(result), title, speed, colour, reference)
         with replacing(path, "animation") as file:

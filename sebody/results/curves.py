@@ -5,23 +5,17 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.results.naming import AXES, NORM, Values, is_known, values
 from sebody.results.result import Result
 from sebody.results.units import with_unit
 from sebody.units import Units
 
-AXES = "xyz"
-NORM = "norm"                   # component: the length of a vector
-GROUPS = {"energy": ("energy.kinetic", "energy.strain", "energy.potential",
-                     "energy.external_work"),
-          "constraints": ("constraints.position", "constraints.velocity")}
 SEGMENTS = 4                    # at least, of a history in Welch's method, each half overlapping
 FEWEST = 16                     # samples of a spectrum
 UNEVEN = 1e-6                   # of a step: by how much times of a spectrum may differ from a grid
-SMALL_ANGLE = 1e-6              # rad: below, the axis of a rotation is that of the sample before
 
 
 class Curve(NamedTuple):
@@ -40,14 +34,6 @@ class Panel(NamedTuple):
     y_label: str
     curves: list[Curve]
     kind: str = "history"       # history, phase or spectrum
-
-
-class Values(NamedTuple):
-    """Components of a history."""
-
-    name: str
-    labels: tuple[str, ...]     # of the components; one that is empty for a number
-    numbers: NDArray            # (n, components)
 
 
 def panels(results: Mapping[str, Result], words: Sequence[str], spectrum: bool = False
@@ -84,79 +70,14 @@ def panels(results: Mapping[str, Result], words: Sequence[str], spectrum: bool =
     return [_spectrum(panel, _units(results)) for panel in found] if spectrum else found
 
 
-def values(result: Result, word: str) -> Values:
-    """Components of a quantity, of a component, or of a group of numbers.
-
-    Rotations are given by their rotation vector, which is followed through full turns.
-
-    Raises
-    ------
-    InputError
-        A quantity or component there is not.
-    """
-    if word in GROUPS:
-        return Values(word, tuple(name.partition(".")[2].replace("_", " ")
-                                  for name in GROUPS[word]),
-                      np.column_stack([result[name] for name in GROUPS[word]]))
-    name, _, component = word.rpartition(".")
-    if ("." in name or name in GROUPS) and (component in (*AXES, NORM) or component.isdecimal()):
-        return _component(values(result, name), component)
-    history = result[word]
-    if history.ndim == 3:
-        history = rotation_vectors(history)
-    if history.ndim == 1:
-        return Values(word, ("",), history[:, None])
-    count = history.shape[1]
-    labels = tuple(AXES[:count]) if count in (2, 3) and not word.endswith(
-        (".modes", ".multipliers", ".forces")) else tuple(map(str, range(count)))
-    return Values(word, labels, history)
-
-
-def _component(whole: Values, component: str) -> Values:
-    name = f"{whole.name}.{component}"
-    if whole.labels == ("",):
-        raise InputError(f"{name} is unknown: {whole.name} is one number, it has no components")
-    if component == NORM:
-        return Values(name, ("",), np.linalg.norm(whole.numbers, axis=1)[:, None])
-    if component not in whole.labels:
-        raise InputError(f"{name} is unknown: {whole.name} has the components "
-                         f"{', '.join((*whole.labels, NORM))}")
-    k = whole.labels.index(component)
-    return Values(name, ("",), whole.numbers[:, k:k + 1])
-
-
-def rotation_vectors(matrices: NDArray) -> NDArray:
-    """Rotation vectors (n, 3) of matrices (n, 3, 3), continued through full turns."""
-    vectors = Rotation.from_matrix(matrices).as_rotvec()
-    angles = np.linalg.norm(vectors, axis=1)
-    known = angles > SMALL_ANGLE
-    if not known.any():
-        return vectors
-    # the axis of a small rotation is that of the last larger one, of the first ones the first's
-    last = np.maximum.accumulate(np.where(known, np.arange(len(angles)), -1))
-    last[last < 0] = np.flatnonzero(known)[0]
-    axes = (vectors / np.maximum(angles, SMALL_ANGLE)[:, None])[last]
-    rotated = np.einsum("ni,ni->n", axes[1:], axes[:-1]) < 0
-    signs = np.concatenate([[1.0], np.cumprod(np.where(rotated, -1.0, 1.0))])
-    return np.unwrap(signs * angles)[:, None] * signs[:, None] * axes
-
-
 def _pair(result: Result, word: str) -> tuple[str, str] | None:
     """The two sides of the colon of a phase plot; colons in names of parts are none."""
     for at, letter in enumerate(word):
-        if letter == ":" and _is_known(result, word[:at]):
+        if letter == ":" and is_known(result, word[:at]):
             return word[:at], word[at + 1:]
-    if word.count(":") == 1 and not _is_known(result, word):
+    if word.count(":") == 1 and not is_known(result, word):
         return tuple(word.split(":"))
     return None
-
-
-def _is_known(result: Result, word: str) -> bool:
-    try:
-        values(result, word)
-    except InputError:
-        return False
-    return True
 
 
 def _phase(results: Mapping[str, Result], word: str, across: str, up: str) -> list[Panel]:

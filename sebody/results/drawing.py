@@ -11,6 +11,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target
 from sebody.results.curves import Panel, panels, values
+from sebody.results.notebook import shown
 from sebody.results.palette import CURVES
 from sebody.results.plots import (
     PALE,
@@ -72,7 +73,7 @@ def plot(results: Result | Mapping[str, Result] | Sequence[Result], *quantities:
     figure = draw(panels(labelled, quantities or overview(first), spectrum), len(labelled) > 1)
     if output is not None:
         write_picture(figure, output, 150)
-    return figure
+    return shown(figure)
 
 
 def overview(result: Result) -> list[str]:

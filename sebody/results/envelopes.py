@@ -10,6 +10,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.stress import principal, von_mises
 from sebody.results.field_states import FieldStates
+from sebody.tabular import brief
 
 AT_ONCE = 64        # states whose displacements are computed together
 
@@ -22,6 +23,8 @@ class Envelope(NamedTuple):
     largest: float
     node: int           # where, its number in the FE model
     time: float         # and when
+
+    __repr__ = brief
 
 
 def envelope(field: FieldStates, quantity: str, static: bool,

@@ -1,5 +1,7 @@
 """Fields inside a superelement: what its FE nodes do in the recorded states."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,6 +39,9 @@ class Field(FieldStates):
     InputError
         No such superelement, or one without the shapes of an FE model.
     """
+
+    def __repr__(self) -> str:
+        return f"<Field of {self.name!r}: {self.count} FE nodes, {len(self.t)} states>"
 
     def position(self, step: int | None = None, t: float | None = None,
                  axes: str = "global") -> NDArray:

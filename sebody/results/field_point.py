@@ -20,6 +20,10 @@ class FieldPoint:
         self._axes = inputs.choice(axes, "axes", AXES)
         self._states = np.arange(len(field.t))
 
+    def __repr__(self) -> str:
+        number = self._field.number(int(self._nodes[0]))
+        return f"<FE node {number} of {self._field.name!r}: {len(self._states)} states>"
+
     @property
     def position(self) -> NDArray:
         """Place; in body axes from the origin of the frame."""

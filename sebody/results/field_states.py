@@ -1,5 +1,7 @@
 """What the FE nodes of a superelement do in recorded states: kinematics, many states at once."""
 
+from __future__ import annotations
+
 from functools import cached_property
 
 import numpy as np

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.results.naming import component_names
 from sebody.results.palette import CURVES
 from sebody.results.plots import INK, PALE, STYLE, check_picture, write_picture
-from sebody.results.tables import component_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +36,7 @@ def save_response(path: str | Path, load: str, omega: NDArray, answers: Mapping[
         for axis, (name, values) in zip(axes[:-1], answers.items(), strict=True):
             flat = values.reshape(len(omega), -1)
             size = np.abs(flat).max(initial=0.0)
-            for label, part in zip(component_names(values, 3), flat.T, strict=True):
+            for label, part in zip(component_names(values, name), flat.T, strict=True):
                 if np.abs(part).max() <= VANISHES * size:
                     continue
                 line, full = next(lines), f"{name}.{label}" if label else name

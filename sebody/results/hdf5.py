@@ -4,7 +4,6 @@ Arrays are written by blocks of rows, packed. The group ``sebody`` holds what a 
 """
 
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from io import BytesIO
 from typing import BinaryIO
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.files.hdf5 import SIZE, guarded
+from sebody.version import __version__
 
 SUFFIX = ".h5"
 BLOCK = 2**16       # numbers of a block
@@ -54,7 +54,7 @@ def write(file: BinaryIO, members: Mapping[str, NDArray], units: Mapping[str, st
 
     memory = BytesIO()
     with h5py.File(memory, "w", userblock_size=SIZE) as made:
-        made.attrs.update(attributes | {"program": f"sebody {_version()}"})
+        made.attrs.update(attributes | {"program": f"sebody {__version__}"})
         for name, values in members.items():
             _write(made, name, np.asarray(values), units.get(name))
     file.write(guarded(bytearray(memory.getbuffer())))
@@ -78,10 +78,3 @@ def _write(file, name: str, values: NDArray, unit: str | None) -> None:
             made[first:first + rows] = values[first:first + rows]
     if unit is not None:
         made.attrs["units"] = unit
-
-
-def _version() -> str:
-    try:
-        return version("sebody")
-    except PackageNotFoundError:
-        return "of a checkout"

@@ -1,5 +1,7 @@
 """Pictures of results (extra ``plot``)."""
 
+from __future__ import annotations
+
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -102,7 +104,7 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     return Path(path)
 
 
-def write_picture(figure: "Figure", path: str | Path, dpi: int, **options: object) -> None:
+def write_picture(figure: Figure, path: str | Path, dpi: int, **options: object) -> None:
     """Write a figure of matplotlib in the format of the file's ending.
 
     Raises

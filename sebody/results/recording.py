@@ -1,5 +1,7 @@
 """The data of a run, from which all results are read."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -11,7 +13,9 @@ from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.layout import ENERGIES, RECORD
 from sebody.model.mechanism import Mechanism
+from sebody.model.tables import summary
 from sebody.results.balance import Balance
+from sebody.results.energy_balance import energy_balance
 from sebody.results.postprocessing import (
     Forces,
     constraint_residuals,
@@ -28,7 +32,7 @@ class Start(NamedTuple):
     redundant: tuple[str, ...]      # joints with constraints that others contain
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Recording:
     """A model, its arrays, and the states a run has recorded."""
 
@@ -45,6 +49,12 @@ class Recording:
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
     fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far
 
+    def __repr__(self) -> str:
+        t, kind = self.recorded("t")[:, 0], type(self).__name__
+        end = f"t = {t[0]:.6g} to {t[-1]:.6g}" if len(t) else "no states"
+        return (f"<{kind} of a {summary(self.model)}: {len(t)} states, {end}"
+                + f"; {self.failure}" * bool(self.failure) + ">")
+
     def recorded(self, name: str) -> NDArray:
         """History of one of the parts of `layout.RECORD`, (n, size)."""
         return self.rows[:, RECORD.slices(record_counts(self.numbering))[name]]
@@ -58,6 +68,16 @@ class Recording:
     def energies(self) -> NDArray:
         """Energies and momenta of every recorded state, rows of `layout.ENERGIES`."""
         return energies(self.system, self.state, self.rows)
+
+    def energy_balance(self) -> float:
+        """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
+
+        Of all recorded states, see `sebody.results.energy_balance`.
+        """
+        columns = ENERGIES.slices(record_counts(self.numbering))
+        kinetic, strain, potential = (self.energies[:, columns[name]][:, 0]
+                                      for name in ("kinetic", "strain", "potential"))
+        return energy_balance(kinetic, strain, potential, self.recorded("works").sum(axis=1))
 
     @cached_property
     def forces(self) -> Forces:

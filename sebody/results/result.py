@@ -1,6 +1,8 @@
 """Results of a run by name: histories of nodes and bodies, energies, the output file."""
 
-from collections.abc import Iterable
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 
@@ -11,14 +13,13 @@ from sebody import inputs
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
 from sebody.files import check_target, replacing
 from sebody.model.tables import table
-from sebody.results import hdf5, tables
+from sebody.results import hdf5, naming, quantities, tables
 from sebody.results.advice import kernels_that_pay
 from sebody.results.cautions import cautions
-from sebody.results.energy_balance import energy_balance
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
 from sebody.results.hot_spots import HotSpots, hot_spots
-from sebody.results.quantities import look_up, saved
+from sebody.results.quantities import saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
 from sebody.results.units import unit
@@ -31,6 +32,12 @@ LABELS = 21             # columns of the labels of a summary
 
 class Result(Recording):
     """Histories on the output grid; ``result["tip.position"]`` by the rule ``<node>.<quantity>``.
+
+    `names` lists what there is, ``"tip.position" in result`` says whether there is something.
+    Components of a quantity have its name and theirs, ``result["tip.position.y"]``, (n,): x, y, z
+    and norm of vectors, also of rotations by their rotation vector, xx, xy, ... of rotation
+    matrices and stresses, 0, 1, ... of everything else. Plots, ensembles, sweeps, advice and
+    frequency responses have the same names.
 
     Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
     angular_velocity and angular_acceleration (n, 3), all in global axes; in a plane (n, 2) and
@@ -99,8 +106,26 @@ class Result(Recording):
         return 1e6 * self.seconds / max(self.steps, 1)
 
     def __getitem__(self, name: str) -> NDArray:
-        """History of a quantity by name; see the class, and `quantities.look_up` for errors."""
-        return look_up(self, name)
+        """History of a quantity, a component or a group by name; see the class.
+
+        Raises
+        ------
+        InputError
+            A name that nothing has; the message has names that are like it.
+        """
+        return naming.look_up(self, name)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is a quantity, a component or a group of this name."""
+        return naming.is_known(self, name)
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of `names`."""
+        return iter(self.names())
+
+    def names(self) -> list[str]:
+        """Names of all quantities, those of FE nodes inside bodies left out: these are many."""
+        return quantities.names(self)
 
     def field(self, name: str) -> Field:
         """Displacements, velocities and accelerations of the FE nodes of a superelement.
@@ -131,14 +156,6 @@ class Result(Recording):
             No such superelement, or one without stresses; the message says why.
         """
         return hot_spots(self.field(name), count, apart, self.units)
-
-    def energy_balance(self) -> float:
-        """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
-
-        See `sebody.results.energy_balance`.
-        """
-        return energy_balance(*(self[f"energy.{name}"] for name in
-                                ("kinetic", "strain", "potential", "external_work")))
 
     @property
     def units(self) -> Units | None:
@@ -204,7 +221,7 @@ class Result(Recording):
         """
         return save_vtk(self, path, every)
 
-    def to_pandas(self, names: Iterable[str] | None = None) -> "tables.DataFrame":
+    def to_pandas(self, names: Iterable[str] | None = None) -> tables.DataFrame:
         """Histories as columns, ``tip.position.x``, indexed by time (extra ``tables``).
 
         Parameters
@@ -219,12 +236,12 @@ class Result(Recording):
         """
         return tables.to_pandas(self, names)
 
-    def to_xarray(self, names: Iterable[str] | None = None) -> "tables.Dataset":
+    def to_xarray(self, names: Iterable[str] | None = None) -> tables.Dataset:
         """Histories as variables with their units in words (extra ``tables``); see `to_pandas`."""
         return tables.to_xarray(self, names)
 
     @classmethod
-    def load(cls, path: str | Path) -> "Result":
+    def load(cls, path: str | Path) -> Result:
         """A result that `save` has written: it can be asked for all that the saved one could be.
 
         Its `model` is a description: compiled functions are left out, so it cannot be run.

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
@@ -126,6 +125,8 @@ def seen_places(drawn: Scenery) -> NDArray:
 
 def _stations(body: DrawnBody, frames: NDArray) -> NDArray:
     """Places of some points of a body without its deformation."""
+    from scipy.spatial.transform import Rotation
+
     points = body.surface.points[::-(-len(body.surface.points) // LOOKED_AT[1])]
     turned = Rotation.from_quat(body.rotation[frames]).as_matrix() @ points.T
     return (body.origin[frames][:, None] + turned.transpose(0, 2, 1)).reshape(-1, 3)

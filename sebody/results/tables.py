@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +9,8 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.results.quantities import look_up, saved
+from sebody.results.naming import STRESS, component_names, look_up
+from sebody.results.quantities import saved
 from sebody.results.recording import Recording
 from sebody.results.units import unit
 from sebody.units import parsed_units
@@ -18,8 +18,6 @@ from sebody.units import parsed_units
 if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
-
-STRESS = "xx", "yy", "zz", "yz", "zx", "xy"
 
 
 def to_pandas(recording: Recording, names: Iterable[str] | None) -> "DataFrame":
@@ -35,7 +33,7 @@ def to_pandas(recording: Recording, names: Iterable[str] | None) -> "DataFrame":
 
     columns = {}
     for name, values in _histories(recording, names):
-        labels = component_names(values, recording.model.dimension)
+        labels = component_names(values, name)
         for label, column in zip(labels, values.reshape(len(values), -1).T, strict=True):
             columns[f"{name}.{label}" if label else name] = column
     return DataFrame(columns, index=Index(recording.recorded("t")[:, 0], name="t"))
@@ -56,7 +54,7 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
     variables, coordinates = {}, {"t": recording.recorded("t")[:, 0]}
     for name, values in _histories(recording, names):
         sizes = values.shape[1:]
-        dimensions = _dimensions(sizes, recording.model.dimension)
+        dimensions = _dimensions(values, name, recording.model.dimension)
         for dimension, size in zip(dimensions, sizes, strict=True):
             if labels := {"axis": "xyz", "row": "xyz", "column": "xyz",
                           "component": STRESS}.get(dimension):
@@ -65,24 +63,16 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
     return Dataset(variables, coordinates)
 
 
-def component_names(values: NDArray, dimension: int) -> list[str]:
-    """Names of the components of a history (n, ...): x, y, z of vectors, else numbers."""
+def _dimensions(values: NDArray, name: str, dimension: int) -> list[str]:
     sizes = values.shape[1:]
-    if not sizes:
-        return [""]
-    kinds = _dimensions(sizes, dimension)
-    letters = [STRESS if kind == "component" else "xyz" if kind in ("axis", "row", "column")
-               else [str(k) for k in range(size)] for kind, size in zip(kinds, sizes, strict=True)]
-    return ["".join(parts) for parts in product(*(names[:size] for names, size in zip(
-        letters, sizes, strict=True)))]
-
-
-def _dimensions(sizes: tuple[int, ...], dimension: int) -> list[str]:
     if sizes == (3, 3):
         return ["row", "column"]
-    if sizes == (6,):
+    labels = tuple(component_names(values, name))
+    if labels == STRESS:
         return ["component"]
-    return ["axis" if size == dimension else f"number_{size}" for size in sizes]
+    if labels == tuple("xyz"[:dimension]):
+        return ["axis"]
+    return [f"number_{size}" for size in sizes]
 
 
 def _histories(recording: Recording, names: Iterable[str] | None

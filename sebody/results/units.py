@@ -19,7 +19,7 @@ OF_MODEL = {
 
 
 def unit(name: str, units: Units | None = None) -> str:
-    """Unit of a quantity by its full name; empty if it has none that is known.
+    """Unit of a quantity or of a component of one by its full name; empty if none is known.
 
     Parameters
     ----------
@@ -27,18 +27,25 @@ def unit(name: str, units: Units | None = None) -> str:
     units : Units, optional
         Of the model; in words without them, such as ``length/time``.
     """
-    words = "force length" if name.startswith("energy.") else (
-        OF_MODEL.get(name) or OF_QUANTITY.get(name.rpartition(".")[2], ""))
+    words = _words(name)
     return words if units is None else units.of(words)
 
 
+def _words(name: str) -> str:
+    whole, _, last = name.rpartition(".")
+    if name == "energy" or whole == "energy":
+        return "force length"
+    known = OF_MODEL.get(name) or OF_QUANTITY.get(last)
+    if known is not None or not whole:
+        return known or ""
+    if whole.endswith(".rotation") and last in ("x", "y", "z", "norm"):
+        return "rad"            # of the rotation vector
+    return _words(whole)        # of a component that of the quantity
+
+
 def unit_of_curves(name: str, units: Units | None = None) -> str:
-    """Unit of what is drawn of a quantity, of a component or of a group of quantities."""
-    while name.rpartition(".")[2] in ("x", "y", "z", "norm") or name.rpartition(".")[2].isdecimal():
-        name = name.rpartition(".")[0]
-    if name.rpartition(".")[2] == "rotation":
-        return "rad"            # rotation vectors
-    return unit("energy.total" if name == "energy" else name, units)
+    """Unit of what is drawn of a quantity: as `unit`, but rad of a rotation."""
+    return "rad" if name.rpartition(".")[2] == "rotation" else unit(name, units)
 
 
 def with_unit(label: str, name: str, units: Units | None) -> str:

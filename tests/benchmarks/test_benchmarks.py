@@ -45,6 +45,15 @@ def test_steps_are_timed_beside_their_errors():
     assert 0.0 < error < 1e-3 and 0.0 < same < 1e-3
 
 
+def test_starts_are_timed_beside_that_of_libraries(monkeypatch, capsys):
+    bench = imported("bench_start")
+    monkeypatch.setattr(bench, "ROWS", {name: bench.ROWS[name] for name in
+                                        ("import numba, scipy", "sebody --help")})
+    bench.main(["--json", "--times", "1"])
+    found = json.loads(capsys.readouterr().out)
+    assert 0.0 < found["sebody --help"] < 4 * found["import numba, scipy"]
+
+
 def test_resultants_that_are_left_out_are_weighed(monkeypatch, capsys):
     bench = imported("bench_resultants")
     cases = bench.cases

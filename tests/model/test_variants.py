@@ -257,7 +257,7 @@ def slender(bodies: int, elements: int = 8, planar: bool = False) -> Model:
     model.beam("arm", (tip, other), SECTION, 4, 2, **up)
     model.point_mass("weight", other, 0.7)
     model.rigid_velocity(np.zeros(d), 2.0 if planar else TURN @ (0, 0, 2.0), about=base.point)
-    model.revolute(base, TURN @ (0, 0, 1))
+    model.revolute(base, (0, 0, 1) if planar else TURN @ (0, 0, 1))
     model.gravity((TURN @ (0.0, -9.0, 3.0))[:d])
     return model
 

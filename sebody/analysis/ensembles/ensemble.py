@@ -1,5 +1,7 @@
 """Many runs of one model with other numbers, in threads."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Mapping, Sequence
 from threading import Lock
@@ -17,9 +19,11 @@ from sebody.analysis.ensembles.outputs import Output, outputs_of
 from sebody.analysis.ensembles.work import Work, processors
 from sebody.analysis.progress import showing
 from sebody.analysis.simulation import MOST_STEPS, Simulation
+from sebody.analysis.user_faults import refuse_changed
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.model.model import Model
+from sebody.model.tables import summary
 from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 
@@ -66,6 +70,9 @@ class Ensemble:
         self._lock = Lock()         # the model is changed for moments
         self._images: dict[tuple[str, ...], Image] = {}
 
+    def __repr__(self) -> str:
+        return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}>"
+
     @property
     def parameters(self) -> list[str]:
         """Names of all that can be varied; see `sebody.analysis.ensembles.handles`."""
@@ -92,7 +99,7 @@ class Ensemble:
         threads : int, optional
             By default one for each processor.
         progress : callable or bool, optional
-            Called with the part of the runs that is done; True shows a bar.
+            Called with the part of the runs that is done; True shows a bar, as of `simulate`.
 
         Raises
         ------
@@ -100,6 +107,7 @@ class Ensemble:
             Before the first run: unknown names, arrays of different lengths, values that a body
             cannot have, an unknown quantity, a time that is no multiple of the step.
         """
+        refuse_changed(self.model)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
         found, runs, last, kept = self._checked(parameters, t_end, outputs)
         kinematic, shapes = kinematic_quantities(self._template, kept)
@@ -108,7 +116,7 @@ class Ensemble:
         began = time.perf_counter()
         work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
                     self._lock)
-        with showing(progress, None) as show:
+        with showing(progress) as show:
             work.go(min(threads, max(runs, 1)), show)
         outcome.seconds = time.perf_counter() - began
         return outcome

@@ -29,7 +29,7 @@ from sebody.engine.state import (
 from sebody.engine.step import write_record
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.results.quantities import look_up
+from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 
 MOST_NUMBERS = 2_000_000    # of recorded states at a time in a thread: 16 MB

@@ -1,5 +1,7 @@
 """What is kept of a run: histories of quantities, or numbers that are made of them on the way."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 

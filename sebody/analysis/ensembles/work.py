@@ -75,6 +75,8 @@ class Work:
                 worker.join()
         if self._error is not None:
             raise self._error
+        if progress and not self.outcome.interrupted:
+            progress(1.0)
         for run in np.flatnonzero(np.isnan(self.outcome.reached)):
             self.outcome.failures.setdefault(int(run), INTERRUPTED)
 

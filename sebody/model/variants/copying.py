@@ -7,13 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody import inputs
-from sebody.errors import InputError
 from sebody.kernels.names import body_load_kind
 from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
+from sebody.model.tables import unknowns
 from sebody.reduction import ReducedBody
+from sebody.spelling import unknown
 
 
 class Variant(NamedTuple):
@@ -55,16 +56,9 @@ def checked(model: Mechanism) -> Mechanism:
     return inputs.instance(model, "model", Mechanism, "give a sebody.Model")
 
 
-def unknowns(model: Mechanism) -> int:
-    """How many unknowns a model has, multipliers included."""
-    return (sum(t.start.size for t in model.triplets() if t.solved)
-            + sum(body.body.modes for body in model.bodies.values())
-            + sum(joint.multipliers for joint in model.joints))
-
-
 def fewer(model: Mechanism, made: Mechanism) -> str:
     """How many unknowns a changed model saves, in words."""
-    saved = unknowns(model) - unknowns(made)
+    saved = sum(unknowns(model)) - sum(unknowns(made))
     return f"{saved} unknown{'s' * (saved != 1)} fewer"
 
 
@@ -77,8 +71,7 @@ def placed(model: Mechanism, name: str) -> Superelement:
         There is none of this name.
     """
     if not isinstance(name, str) or name not in checked(model).bodies:
-        raise InputError(f"superelement {inputs.shown(name)} is unknown: the model has "
-                         f"{', '.join(checked(model).bodies) or 'none'}")
+        raise unknown("superelement", name, model.bodies, "the model has", "the model has none")
     return model.bodies[name]
 
 

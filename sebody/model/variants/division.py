@@ -1,5 +1,7 @@
 """Another number of superelements in a beam."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """Triplets that no joint or load needs, left to follow the others of their body."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space

@@ -1,5 +1,7 @@
 """A planar model in the place of a spatial one that is symmetric about a plane."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -67,7 +69,7 @@ def planar(model: Mechanism) -> Variant:
                 f"to {place(plane.normal)}, so its motion leaves it: {error}")
         else:
             made = _built(model, flat_model)
-            before, after = unknowns(model), unknowns(made)
+            before, after = sum(unknowns(model)), sum(unknowns(made))
             return Variant(made, f"the model is planar, normal to {place(plane.normal)}: {after} "
                                  f"instead of {before} unknowns{_of_bushings(model)}")
     raise refused
@@ -121,7 +123,7 @@ class _Flat(NamedTuple):
     loads: dict[int, list[Element]]     # of each load but those on bodies, by its id
 
     @classmethod
-    def of(cls, model: Mechanism, flat: Flattening) -> "_Flat":
+    def of(cls, model: Mechanism, flat: Flattening) -> _Flat:
         """All of a model.
 
         Raises

@@ -8,6 +8,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Joint, Node, Triplet
 from sebody.model.sharing import can_share, share
 from sebody.model.variants.copying import Variant, checked, copied, fewer
+from sebody.spelling import unknown
 
 _TOGETHER = ("weld", "prismatic")       # joints whose nodes turn together
 _NAMES = {"position": "positions", "rotation": "rotations"}
@@ -38,8 +39,8 @@ def shared(model: Mechanism, name: str | None = None) -> Variant:
     if name is not None:
         inputs.name(name, "name of a joint")
         if name not in (joint.name for joint in model.joints):
-            raise InputError(f"joint {name!r} is unknown: the model has "
-                             f"{', '.join(joint.name for joint in model.joints) or 'none'}")
+            raise unknown("joint", name, (joint.name for joint in model.joints), "the model has",
+                          "the model has none")
     possible = can_be_shared(model)
     if not (possible if name is None else any(
             _kinds(model, joint) for joint in model.joints if joint.name == name)):

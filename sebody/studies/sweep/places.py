@@ -106,13 +106,10 @@ def _check_versions(client: Any, address: str | None) -> None:
 
 
 def _version() -> str:
-    """Version of the package, none where it is not installed."""
-    from importlib.metadata import PackageNotFoundError, version
+    """Version of the package, also that of a worker."""
+    from sebody.version import __version__
 
-    try:
-        return version("sebody")
-    except PackageNotFoundError:
-        return "not installed"
+    return __version__
 
 
 def _on_workers(client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:
