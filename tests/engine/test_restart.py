@@ -57,7 +57,7 @@ def rotor(load, planar=True):
     model = Model(planar=planar)
     hub = model.node("hub", (0.3, -0.2) if planar else (0.3, -0.2, 0.1))
     model.rigid_body("rotor", hub, 2.0, J if planar else (J, J, J))
-    model.revolute(hub, AXIS, explicit=not planar)
+    model.revolute(hub, (0, 0, 1) if planar else AXIS, explicit=not planar)
     model.torque(hub, 1.0 if planar else AXIS, load, name="motor")
     return model
 
