@@ -47,7 +47,7 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory"
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
 PICTURES = {"plots", "frequency_pictures", "drawing", "film", "film_marks", "rendering", "draw",
-            "picture", "paper_figures"}
+            "picture", "paper_figures", "notebook"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by room, and what they may import

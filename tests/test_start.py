@@ -13,7 +13,7 @@ COMMAND_LINE = {"sebody", "sebody.lazy", "sebody.errors", "sebody.cli"}
 MODEL_AND_RUN = {"sebody.files", "sebody.inputs", "sebody.kernels", "sebody.generated",
                  "sebody.engine", "sebody.fem", "sebody.reduction", "sebody.io", "sebody.model",
                  "sebody.assembly", "sebody.results", "sebody.analysis", "sebody.spelling",
-                 "sebody.tabular"}
+                 "sebody.tabular", "sebody.memory", "sebody.units"}
 # parts of rooms that neither a model nor a run needs
 UNUSED = {"sebody.analysis.advice", "sebody.analysis.ensembles", "sebody.analysis.frequency",
           "sebody.analysis.campbell", "sebody.analysis.statics", "sebody.results.animation",

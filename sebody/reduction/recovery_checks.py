@@ -40,9 +40,10 @@ def check_recovery(recovery: Recovery, planar: bool, n: int, held: int,
                          f"coordinates: {_REMEDY}")
     if recovery.static is not None:
         _check("static", recovery.static, (rows, None))
-        if recovery.static.shape[1] < held:
-            raise InputError(f"recovery.static has {recovery.static.shape[1]} columns, the "
-                             f"boundary {held} coordinates: {_REMEDY}")
+        least = held + r * (r + 1) // 2
+        if recovery.static.shape[1] < least:
+            raise InputError(f"recovery.static has {recovery.static.shape[1]} columns, of {held} "
+                             f"coordinates of the boundary and spin there are {least}: {_REMEDY}")
     if (recovery.axes is None) != (recovery.by is None):
         raise InputError(f"recovery.axes and recovery.by belong together: {_REMEDY}")
     if recovery.axes is not None:

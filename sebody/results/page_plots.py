@@ -5,7 +5,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from sebody.results.blocks import Blocks
-from sebody.results.curves import GROUPS, Values, panels, values
+from sebody.results.curves import panels
+from sebody.results.naming import GROUPS, Values, values
 from sebody.results.quantities import names
 from sebody.results.result import Result
 from sebody.results.scenery import Scenery, thinned

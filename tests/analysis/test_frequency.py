@@ -159,7 +159,7 @@ def test_a_campbell_diagram_has_a_legend(monkeypatch):
     assert names == [f"mode {k}" for k in range(1, count + 1)]
 
     def look(line):
-        return line.get_color(), line.get_linestyle(), line._dash_pattern
+        return line.get_color(), line.get_linestyle(), str(line._dash_pattern)
     modes = upper.lines[:count]
     assert len({look(line) for line in modes}) == count
     assert [look(line) for line in lower.lines[:count]] == [look(line) for line in modes]
