@@ -412,6 +412,91 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 va_y*(-t943*t951 - t945*t952 - t947*t953) - va_z*(-t943*t957 - t945*t958 -
                 t947*t959) - vb_x*(t930*t943 + t944*t945 + t946*t947) - vb_y*(t943*t951 +
                 t945*t952 + t947*t953) - vb_z*(t943*t957 + t945*t958 + t947*t959))
+        if task == ENERGY:
+            t900 = 2*Ra_xx
+            t901 = 2*Ra_xy
+            t902 = 2*Ra_xz
+            t903 = e1_x*t900 + e1_y*t901 + e1_z*t902
+            t904 = -va_x + vb_x
+            t905 = -va_y + vb_y
+            t906 = -va_z + vb_z
+            t907 = -xa_x + xb_x
+            t908 = -xa_y + xb_y
+            t909 = -xa_z + xb_z
+            t910 = Ra_xy*t907 + Ra_yy*t908 + Ra_zy*t909
+            t911 = Ra_xz*t907 + Ra_yz*t908 + Ra_zz*t909
+            t912 = -Oma_y*t911 + Oma_z*t910 + Ra_xx*t904 + Ra_yx*t905 + Ra_zx*t906
+            t913 = Ra_xx*t907 + Ra_yx*t908 + Ra_zx*t909
+            t914 = Oma_x*t911 - Oma_z*t913 + Ra_xy*t904 + Ra_yy*t905 + Ra_zy*t906
+            t915 = -Oma_x*t910 + Oma_y*t913 + Ra_xz*t904 + Ra_yz*t905 + Ra_zz*t906
+            t916 = (0.5)*c_x*(e1_x*t912 + e1_y*t914 + e1_z*t915)
+            t917 = e2_x*t900 + e2_y*t901 + e2_z*t902
+            t918 = (0.5)*c_y*(e2_x*t912 + e2_y*t914 + e2_z*t915)
+            t919 = e3_x*t900 + e3_y*t901 + e3_z*t902
+            t920 = (0.5)*c_z*(e3_x*t912 + e3_y*t914 + e3_z*t915)
+            t921 = 2*Ra_yx
+            t922 = 2*Ra_yy
+            t923 = 2*Ra_yz
+            t924 = e1_x*t921 + e1_y*t922 + e1_z*t923
+            t925 = e2_x*t921 + e2_y*t922 + e2_z*t923
+            t926 = e3_x*t921 + e3_y*t922 + e3_z*t923
+            t927 = 2*Ra_zx
+            t928 = 2*Ra_zy
+            t929 = 2*Ra_zz
+            t930 = e1_x*t927 + e1_y*t928 + e1_z*t929
+            t931 = e2_x*t927 + e2_y*t928 + e2_z*t929
+            t932 = e3_x*t927 + e3_y*t928 + e3_z*t929
+            t933 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t934 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t935 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t936 = -Oma_x + Omb_x*t933 + Omb_y*t934 + Omb_z*t935
+            t937 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t938 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t939 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t940 = -Oma_y + Omb_x*t937 + Omb_y*t938 + Omb_z*t939
+            t941 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t942 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t943 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t944 = -Oma_z + Omb_x*t941 + Omb_y*t942 + Omb_z*t943
+            t945 = ct_x*(e1_x*t936 + e1_y*t940 + e1_z*t944)
+            t946 = ct_y*(e2_x*t936 + e2_y*t940 + e2_z*t944)
+            t947 = ct_z*(e3_x*t936 + e3_y*t940 + e3_z*t944)
+            t948 = 2*t911
+            t949 = -2*t910
+            t950 = 2*t913
+            t951 = -2*t911
+            t952 = 2*t910
+            t953 = -2*t913
+            t954 = 2*t933
+            t955 = 2*t937
+            t956 = 2*t941
+            t957 = (0.5)*t945
+            t958 = (0.5)*t946
+            t959 = (0.5)*t947
+            t960 = 2*t934
+            t961 = 2*t938
+            t962 = 2*t942
+            t963 = 2*t935
+            t964 = 2*t939
+            t965 = 2*t943
+            g[0] = -t903*t916 - t917*t918 - t919*t920
+            g[1] = -t916*t924 - t918*t925 - t920*t926
+            g[2] = -t916*t930 - t918*t931 - t920*t932
+            g[3] = t903*t916 + t917*t918 + t919*t920
+            g[4] = t916*t924 + t918*t925 + t920*t926
+            g[5] = t916*t930 + t918*t931 + t920*t932
+            g[6] = (-e1_x*t945 - e2_x*t946 - e3_x*t947 + t916*(e1_y*t948 + e1_z*t949) +
+                t918*(e2_y*t948 + e2_z*t949) + t920*(e3_y*t948 + e3_z*t949))
+            g[7] = (-e1_y*t945 - e2_y*t946 - e3_y*t947 + t916*(e1_x*t951 + e1_z*t950) +
+                t918*(e2_x*t951 + e2_z*t950) + t920*(e3_x*t951 + e3_z*t950))
+            g[8] = (-e1_z*t945 - e2_z*t946 - e3_z*t947 + t916*(e1_x*t952 + e1_y*t953) +
+                t918*(e2_x*t952 + e2_y*t953) + t920*(e3_x*t952 + e3_y*t953))
+            g[9] = (t957*(e1_x*t954 + e1_y*t955 + e1_z*t956) + t958*(e2_x*t954 + e2_y*t955 +
+                e2_z*t956) + t959*(e3_x*t954 + e3_y*t955 + e3_z*t956))
+            g[10] = (t957*(e1_x*t960 + e1_y*t961 + e1_z*t962) + t958*(e2_x*t960 + e2_y*t961 +
+                e2_z*t962) + t959*(e3_x*t960 + e3_y*t961 + e3_z*t962))
+            g[11] = (t957*(e1_x*t963 + e1_y*t964 + e1_z*t965) + t958*(e2_x*t963 + e2_y*t964 +
+                e2_z*t965) + t959*(e3_x*t963 + e3_y*t964 + e3_z*t965))
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]

@@ -152,6 +152,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e1_y*t919) + t914*(e2_x*t918 + e2_y*t919)) + Omb_z*t900*t901 - va_x*(-t903*t912 -
                 t913*t914) - va_y*(-t912*t916 - t914*t917) - vb_x*(t903*t912 + t913*t914) -
                 vb_y*(t912*t916 + t914*t917))
+        if task == ENERGY:
+            t900 = 2*Ra_cos
+            t901 = -2*Ra_sin*e1_y + e1_x*t900
+            t902 = -va_x + vb_x
+            t903 = -va_y + vb_y
+            t904 = -xa_y + xb_y
+            t905 = -xa_x + xb_x
+            t906 = Ra_cos*t904 - Ra_sin*t905
+            t907 = Oma_z*t906 + Ra_cos*t902 + Ra_sin*t903
+            t908 = Ra_cos*t905 + Ra_sin*t904
+            t909 = -Oma_z*t908 + Ra_cos*t903 - Ra_sin*t902
+            t910 = (0.5)*c_x*(e1_x*t907 + e1_y*t909)
+            t911 = -2*Ra_sin*e2_y + e2_x*t900
+            t912 = (0.5)*c_y*(e2_x*t907 + e2_y*t909)
+            t913 = 2*Ra_sin
+            t914 = e1_x*t913 + e1_y*t900
+            t915 = e2_x*t913 + e2_y*t900
+            t916 = 2*Oma_z - 2*Omb_z
+            t917 = (0.5)*ct_z
+            t918 = 2*t906
+            t919 = -2*t908
+            g[0] = -t901*t910 - t911*t912
+            g[1] = -t910*t914 - t912*t915
+            g[2] = t901*t910 + t911*t912
+            g[3] = t910*t914 + t912*t915
+            g[4] = t910*(e1_x*t918 + e1_y*t919) + t912*(e2_x*t918 + e2_y*t919) + t916*t917
+            g[5] = -t916*t917
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]

@@ -205,6 +205,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Oma_z*t909*(Ra_xz*t904 + Ra_yz*t906 + Ra_zz*t908) - Omb_x*t909*(-Rb_xx*t904 -
                 Rb_yx*t906 - Rb_zx*t908) - Omb_y*t909*(-Rb_xy*t904 - Rb_yy*t906 - Rb_zy*t908) -
                 Omb_z*t909*(-Rb_xz*t904 - Rb_yz*t906 - Rb_zz*t908))
+        if task == ENERGY:
+            t900 = -m_y*n_z + m_z*n_y
+            t901 = m_x*n_z - m_z*n_x
+            t902 = -m_x*n_y + m_y*n_x
+            t903 = Ra_xx*t900 + Ra_xy*t901 + Ra_xz*t902
+            t904 = 2*t903
+            t905 = Ra_yx*t900 + Ra_yy*t901 + Ra_yz*t902
+            t906 = 2*t905
+            t907 = Ra_zx*t900 + Ra_zy*t901 + Ra_zz*t902
+            t908 = 2*t907
+            t909 = ((0.5)*c*(t903*(Oma_x*Ra_xx + Oma_y*Ra_xy + Oma_z*Ra_xz - Omb_x*Rb_xx -
+                Omb_y*Rb_xy - Omb_z*Rb_xz) + t905*(Oma_x*Ra_yx + Oma_y*Ra_yy + Oma_z*Ra_yz -
+                Omb_x*Rb_yx - Omb_y*Rb_yy - Omb_z*Rb_yz) + t907*(Oma_x*Ra_zx + Oma_y*Ra_zy +
+                Oma_z*Ra_zz - Omb_x*Rb_zx - Omb_y*Rb_zy - Omb_z*Rb_zz)))
+            g[0] = t909*(Ra_xx*t904 + Ra_yx*t906 + Ra_zx*t908)
+            g[1] = t909*(Ra_xy*t904 + Ra_yy*t906 + Ra_zy*t908)
+            g[2] = t909*(Ra_xz*t904 + Ra_yz*t906 + Ra_zz*t908)
+            g[3] = t909*(-Rb_xx*t904 - Rb_yx*t906 - Rb_zx*t908)
+            g[4] = t909*(-Rb_xy*t904 - Rb_yy*t906 - Rb_zy*t908)
+            g[5] = t909*(-Rb_xz*t904 - Rb_yz*t906 - Rb_zz*t908)
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]

@@ -84,6 +84,7 @@ class Element(NamedTuple):
     second: tuple[sp.Expr, ...]         # and twice
     sums: dict[str, sp.Expr]            # what it adds to the energies, by name
     power: sp.Expr | None               # of loads, dampers and drives on the system
+    losses: tuple[sp.Expr, ...]         # force of the dampers, where that is not the whole force
     kept: sp.Expr | None = None         # angle that is `KEPT_ANGLE` in the next step
     linear: tuple[sp.Expr, ...] = ()    # a column of the matrix
     on_multipliers: sp.Matrix = sp.zeros(0, 0)  # derivative of the force by the multipliers
@@ -97,7 +98,7 @@ class Element(NamedTuple):
     def printed(self) -> list[sp.Expr]:
         """Every expression the kernel evaluates, the multipliers' columns apart."""
         return [*self.residual, *self.linear, *self.velocity, *self.second, *self.sums.values(),
-                *([] if self.power is None else [self.power])]
+                *([] if self.power is None else [self.power]), *self.losses]
 
 
 def constant(space: Space, name: str, kind: str, meaning: str) -> Constant:
@@ -173,7 +174,9 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
         tuple(blocks), lam, (*force, *constraints), tuple(velocity),
         tuple(differential(v, time) for v in velocity),
         _sums(blocks, kinetic, strain, potential),
-        _power(blocks, lam, constraints, dissipation, load), kept)
+        _power(blocks, lam, constraints, dissipation, load),
+        _losses(blocks, space, dissipation) if kinetic + strain + potential != 0 else (),
+        kept)
 
 
 def linearized(given: Element) -> Element:
@@ -227,6 +230,14 @@ def _sums(blocks, kinetic, strain, potential) -> dict[str, sp.Expr]:
         sums |= {f"P_{a}": linear[k] for k, a in enumerate("xyz")}
         sums |= {f"H_{a}": moment[k] for k, a in enumerate("xyz")}
     return {name: value for name, value in sums.items() if value != 0}
+
+
+def _losses(blocks, space, dissipation) -> tuple[sp.Expr, ...]:
+    """Forces of the dampers alone."""
+    if dissipation == 0:
+        return ()
+    return tuple(entry for block in blocks for entry in space.components(
+        block.direction.kind, conjugate_to(dissipation, block.rate.symbols)))
 
 
 def _power(blocks, lam, constraints, dissipation, load) -> sp.Expr | None:

@@ -114,7 +114,7 @@ def _task(name: str, expressions: Sequence[sp.Expr], targets: Sequence[Target],
 
 
 def _tasks(element: Element) -> list[If]:
-    """Constraints differentiated in time, energies, power."""
+    """Constraints differentiated in time; energies, power, and the forces that have this power."""
     energies = ARGUMENTS["energies"]
     constraints = [arrays.g[element.coordinates + k] for k in range(len(element.multipliers))]
     sums = [energies[agreed(place) + k] for place, k in (SUMS[name] for name in element.sums)]
@@ -122,7 +122,8 @@ def _tasks(element: Element) -> list[If]:
     return [*_task("VELOCITY", element.velocity, constraints),
             *_task("ACCELERATION", element.second, constraints),
             *_task("ENERGY", list(element.sums.values()), sums, Change.ADD),
-            *_task("ENERGY", power, [energies[port()]])]
+            *_task("ENERGY", power, [energies[port()]]),
+            *_task("ENERGY", element.losses, [arrays.g[k] for k in range(len(element.losses))])]
 
 
 def used_symbols(expressions: Iterable[sp.Expr]) -> set[sp.Symbol]:

@@ -58,7 +58,7 @@ def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
 
 
 class Solver:
-    """Solves for accelerations and multipliers; finds redundant constraints and missing mass.
+    """Masses and constraints at the start; finds redundant constraints and missing mass.
 
     Parameters
     ----------
@@ -89,27 +89,29 @@ class Solver:
             self._check_mass(system)
             self._find_redundant(system)
 
-    def __call__(self, residual: NDArray) -> NDArray:
-        """Accelerations and multipliers, of least norm where these are not unique.
+    @property
+    def massless(self) -> bool:
+        """Whether a motion has stiffness and no mass, as of MacNeal's bodies."""
+        return not self.redundant and not self.system.regular
+
+    def check(self, residual: NDArray) -> None:
+        """Refuse redundant constraints that demand what no accelerations give.
+
+        Parameters
+        ----------
+        residual : (n,)
+            Without accelerations and multipliers.
 
         Raises
         ------
         InputError
             Constraints that contradict each other.
         """
-        if not self.redundant:
-            if self.system.regular:
-                return self.system.solve(residual)
-            # Some motions have stiffness and no mass, as of MacNeal's bodies. They are combinations
-            # of coordinates, so what a factor divides by is rounding. They start without
-            # acceleration, and stiffness alone places them from the first step on.
-            return self.system.least(residual)[0]
-        answer, left = self.relaxed.least(residual)
+        _, left = self.relaxed.least(residual)
         if left.max() > CONTRADICTION * max(np.abs(self.relaxed.scale * residual).max(), 1e-300):
             raise InputError(f"the constraints contradict each other at "
                              f"{self.names[int(np.argmax(left))]}: they demand different "
                              "accelerations of the same thing; remove a joint or a drive")
-        return answer
 
     def _find_redundant(self, system: System) -> None:
         """Joints with constraints whose pivots are those of the regularization."""

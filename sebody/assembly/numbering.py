@@ -32,6 +32,7 @@ class Numbering(NamedTuple):
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
     memories: dict[int, int] = {}       # id(element) -> first number it keeps, in State.frames
+    jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
 
 
 def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
@@ -57,6 +58,17 @@ def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
     for node in model.nodes.values():
         if node.rotation is not None and id(node.rotation) in numbering.triplets:
             found[coordinates(numbering, node.rotation)] = True
+    return found
+
+
+def placed(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Which coordinates belong to positions or rotations, (total,) of bool: no modes, multipliers.
+    """
+    found = np.zeros(numbering.total, dtype=bool)
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                found[coordinates(numbering, triplet)] = True
     return found
 
 
@@ -96,8 +108,10 @@ def number(model: Mechanism) -> Numbering:
         order.place(triplet)
     matrices = [] if model.planar else [t for t in used if t.rotational]
     rotations = {id(t): k for k, t in enumerate(matrices)}
+    ports = number_ports(model, order.at)
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
-                     order.names, dependent, *number_ports(model, order.at), np.array(groups),
+                     order.names, dependent, ports.of, ports.names, ports.histories,
+                     ports.prescribed, np.array(groups), jumps=ports.jumps,
                      memories=_memories(model))
 
 

@@ -120,8 +120,8 @@ def equilibrate(system, state):
     floor = 0.0
     for i in range(n):
         state.weight[i] = 1.0 / state.scale[i]
-        size = system.magnitude[i] * state.weight[i]
-        floor += size * size
+        size = max(system.magnitude[i], abs(state.q[i])) * state.weight[i]
+        floor += size * size * (1.0 if system.magnitude[i] > 0.0 else 0.0)
     state.clock[FLOOR] = ROUNDING * np.sqrt(floor)      # left by rounding of positions
 
 

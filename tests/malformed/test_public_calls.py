@@ -18,11 +18,11 @@ LISTS = list, tuple, dict, set, np.ndarray
 
 def alike(value, right):
     """Whether a value is of the kind of a right one, so that it may be right, too."""
+    if isinstance(value, Result) and isinstance(right, Simulation | list):     # it lists its names
+        return True
     for kinds in (bool, NUMBERS, str, LISTS):
         if isinstance(right, kinds) or isinstance(value, bool):
             return isinstance(value, kinds) and isinstance(right, kinds)
-    if isinstance(value, Result) and isinstance(right, Simulation | list):     # it lists its names
-        return True
     return isinstance(value, type(right)) or callable(right) and callable(value)
 
 

@@ -29,9 +29,11 @@ def two_nodes():
 
 
 @pytest.mark.parametrize("table, message", [
-    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must increase: sort the rows "
-                                           "and merge equal times"),
-    ([(0.0, 1.0), (0.0, 2.0)], "times of a load history must increase"),
+    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must not decrease, after t = 2 "
+                                           "they do: sort the rows"),
+    ([(0.0, 1.0), (3.0, 2.0), (3.0, 1.0), (3.0, 0.0)],
+     "load history has more than two rows at t = 3: give the value before a jump and the value "
+     "after it"),
     ([1.0, 2.0], r"load history has shape \(2,\): give rows \(t, value\)"),
     ([(0.0, 1.0, 2.0)], r"load history has shape \(1, 3\): give rows"),
     ([], "load history has shape .*: give rows"),
@@ -74,7 +76,8 @@ def test_histories_to_be_refused(source):
     (lambda m: m.torque("base", (0, 0)), "torque on base.rotation is .*give 3 finite"),
     (lambda m: m.torque("base", (0, np.nan, 0)), "torque on base.rotation is .*give 3 finite"),
     (lambda m: m.force("far", (0, 0, 1)), "node 'far' is unknown: the model has base, tip"),
-    (lambda m: m.force("tip", (0, 0, 1), [(0.0, 1.0), (0.0, 2.0)]), "must increase: sort the rows"),
+    (lambda m: m.force("tip", (0, 0, 1), [(0.5, 1.0), (0.0, 2.0)]),
+     "must not decrease, after t = 0.5"),
 ])
 def test_wrong_loads(action, message):
     model = two_nodes()
