@@ -8,7 +8,8 @@ from scipy.interpolate import CubicSpline
 
 from sebody import InputError, Model, Simulation, simulate
 from sebody.engine import evaluate
-from sebody.model.histories import History, history, motion, with_corners
+from sebody.model.histories import History, history, with_corners
+from sebody.model.motions import motion
 from sebody.scenes.hinged_beam import build
 
 TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]
