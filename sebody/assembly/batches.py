@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.body_axes import ROUNDING
-from sebody.assembly.carried import carried_constants
+from sebody.assembly.carried import carried_constants, mean_rotation
 from sebody.assembly.contracts import (
     check_element,
     check_superelement,
@@ -218,8 +218,9 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
 def frame_constants(body: Superelement) -> dict[str, ArrayLike]:
     """Values of what places the frame of a superelement, by name."""
     points = body.body.coordinates[list(body.body.position_nodes)]
+    of_modes = {"Gam": mean_rotation(body.body).T} if FRAMES[body.frame].traits.modes else {}
     return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
-            "alpha_rs": body.alpha_r, "X": points - body.alpha @ points}
+            "alpha_rs": body.alpha_r, "X": points - body.alpha @ points} | of_modes
 
 
 def _filled(body: Superelement) -> int:
