@@ -53,7 +53,8 @@ class Watch:
                                "oscillate and grow with every disturbance: use rho 0.9, alpha "
                                "-0.05, or index=2")
         for name, body in bodies.items():
-            follows = not FRAMES[body.frame].traits.needs_rotations
+            traits = FRAMES[body.frame].traits
+            follows = not (traits.needs_rotations or traits.modes)
             if follows and not body.body.planar and _spread(body) < FLAT:
                 self.say(f"flat {name}", f"nodes of body {name!r} lie nearly on a line (spread "
                          f"{_spread(body):.1e} of their length): its frame turns about it with "
@@ -137,7 +138,8 @@ def _local_rotations(y: NDArray, counts: Counts) -> NDArray:
 
 def _off_line(body: Superelement) -> bool:
     """Whether a body of option C has its frame on rotations, and its mass off the nodes' line."""
-    if body.inertia != "c" or body.frame == "positions" or len(body.positions) < 2:
+    on_rotations = FRAMES[body.frame].traits.needs_rotations
+    if body.inertia != "c" or not on_rotations or len(body.positions) < 2:
         return False
     reduced = body.body
     points = reduced.coordinates[list(reduced.position_nodes)]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.body_axes import ROUNDING
-from sebody.assembly.carried import carried_constants, mean_rotation
+from sebody.assembly.carried import carried_constants
 from sebody.assembly.contracts import (
     check_element,
     check_superelement,
@@ -28,6 +28,7 @@ from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 from sebody.reduction import ReducedBody
+from sebody.reduction.mean_rotation import mean_rotation
 
 # rows of constants of every body that is still in use: the next run of its model needs them again
 _rows: WeakKeyDictionary[ReducedBody, dict[tuple, NDArray]] = WeakKeyDictionary()

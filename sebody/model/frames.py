@@ -10,6 +10,7 @@ from sebody.errors import InputError
 from sebody.generated import options
 from sebody.kernels.layout import FrameTraits
 from sebody.reduction import ReducedBody, body_weights
+from sebody.reduction.mean_rotation import central_inertia
 
 
 class Frame(NamedTuple):
@@ -24,6 +25,7 @@ FRAMES = {name: Frame(name, traits) for name, traits in options.FRAMES.items()}
 # Ratio of the spreads of positions from which on their fit is the default: it follows the least of
 # them, which has little mass in bodies much longer than wide.
 FAR_FROM_A_LINE = 0.2
+SLENDER = 1e-10     # ratio of moments of inertia below which there are no mean axes
 FRAMES["node"] = FRAMES["converged_mean"]._replace(on_one_node=True)    # the mean of one rotation
 
 
@@ -59,6 +61,14 @@ def default_frame(body: ReducedBody, inertia: str | None) -> str:
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:
     """Refuse a frame that the kept triplets cannot define."""
     traits = FRAMES[frame].traits
+    if traits.modes:
+        moments = np.linalg.eigvalsh(central_inertia(body))
+        if not moments[0] > SLENDER * moments[-1]:
+            raise InputError(f"superelement {name!r} has hardly any inertia about one axis (moments "
+                             f"about its centre of mass {', '.join(f'{m:.3g}' for m in moments)}), "
+                             f"so the frame {frame!r} cannot see rotations about it: use "
+                             "'converged_mean'")
+        return
     if traits.needs_rotations:
         if not body.rotation_nodes:
             others = [repr(n) for n, f in FRAMES.items() if not f.traits.needs_rotations]
