@@ -123,7 +123,9 @@ def kept(steps: tuple[Step, ...], layout: Layout) -> tuple[Step, ...]:
     def of_layout(step: Step) -> Step:
         if isinstance(step, Damping):
             return step._replace(steps=kept(step.steps, layout))
-        return step._replace(sums=tuple(filter(has, step.sums))) if isinstance(step, Solve) else step
+        if isinstance(step, Solve):
+            return step._replace(sums=tuple(filter(has, step.sums)))
+        return step
     return tuple(of_layout(s) for s in steps
                  if has(s) and (layout.damped or not isinstance(s, Damping)))
 

@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.analysis.quality import remarks
 from sebody.analysis.softening import cautious_limit, divergence, first_frequency, reach
-from sebody.analysis.thresholds import BENT, FAST, FLAT, LINEAR, OFF_LINE
+from sebody.analysis.thresholds import BENT, FAST, FLAT, LINEAR
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
 from sebody.kernels.layout import MOTION, Counts
-from sebody.model.frames import FRAMES
+from sebody.model.frames import FRAMES, mass_off_line
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 from sebody.results.motion import evaluated
@@ -90,8 +90,8 @@ class Watch:
                     self.say(f"bent {name}", f"local rotation {local[k]:.2g} rad of body {name!r}, "
                              "whose frame follows the rotations of its nodes while its mass is off "
                              f"their line (limit {BENT} rad): its inertia depends too much on how "
-                             "it is bent, and energy may grow; keep the position of a node off the "
-                             "line, such as a corner, or divide the body")
+                             "it is bent, and energy may grow; take the frame 'mean_axes', or "
+                             "divide the body")
                 if speeds[:, k].max() > self._least[name]:
                     row = int(np.argmax(speeds[:, k]))
                     self._compare(model.bodies[name], spins[row, k], speeds[row, k])
@@ -139,17 +139,8 @@ def _local_rotations(y: NDArray, counts: Counts) -> NDArray:
 def _off_line(body: Superelement) -> bool:
     """Whether a body of option C has its frame on rotations, and its mass off the nodes' line."""
     on_rotations = FRAMES[body.frame].traits.needs_rotations
-    if body.inertia != "c" or not on_rotations or len(body.positions) < 2:
-        return False
-    reduced = body.body
-    points = reduced.coordinates[list(reduced.position_nodes)]
-    middle = points.mean(axis=0)
-    _, extents, axes = np.linalg.svd(points - middle)
-    if reduced.planar:          # what is known of the mass off a line is its centre
-        off = abs(axes[1] @ (reduced.centre_of_mass - middle))
-    else:
-        off = np.sqrt(axes[0] @ reduced.invariants.about(middle).J0 @ axes[0] / reduced.total_mass)
-    return bool(off > OFF_LINE * np.ptp((points - middle) @ axes[0]))
+    return body.inertia == "c" and on_rotations and mass_off_line(body.body)
+
 
 
 def spin_limit(body: Superelement, axis: ArrayLike | None) -> float:

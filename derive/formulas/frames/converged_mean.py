@@ -40,7 +40,8 @@ def converged_mean(q: Quantities) -> Frame:
 
     def angular_rate(rate: Quantity, of: Quantity, invert: bool) -> Solve:
         return Solve("B rate = sum alpha_j T^-1(psi_j) rate_j", rate,
-                     (Sum("rotation", equation(rate, of)),), sp.zeros(3, 1), "B", invert=invert, weight=alpha)
+                     (Sum("rotation", equation(rate, of)),), sp.zeros(3, 1), "B",
+                     invert=invert, weight=alpha)
 
     wp = q.wp.symbols
     back = alpha * inverse_tangent_transposed_times(psi, wp)

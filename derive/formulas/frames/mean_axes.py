@@ -1,8 +1,8 @@
-"""Mean axes: the deformation has no moment of momentum, ``sum Gam_i y_i = 0`` over all coordinates.
+"""Mean axes: to first order the deformation has no moment of momentum, ``sum Gam_i y_i = 0``.
 
-``Gam = J_c^-1 y_r^T Mbar`` with the rigid rotations y_r about the centre of mass is the mean rotation
-of the local coordinates, weighted by mass: 1 of a rigid rotation, 0 of a translation. Linear in
-positions, rotations and internal modes, so this frame follows no light node.
+The sum is over all local coordinates. ``Gam = J_c^-1 y_r^T Mbar`` with the rigid rotations y_r about
+the centre of mass is their mean rotation, weighted by mass: one of a rigid rotation, zero of a
+translation. So the frame is the same wherever its origin is, and it follows no light node.
 """
 
 import sympy as sp

@@ -58,7 +58,8 @@ def _accelerations(q: Quantities, frame: Frame, rules: Rules, stages: list[Stage
     solves = [step for step in frame.velocity if isinstance(step, Solve)]
     if not frame.conditions or not solves:
         raise DerivationError("inertia options with rates of the frame need one that declares the "
-                              "linear `conditions` of its local coordinates and solves for its rate")
+                              "linear `conditions` of its local coordinates and solves for its "
+                              "rate")
     rate, Om0d = solves[0], q.Om0d
     turning = sp.Matrix(Om0d.kept)
     before, sums, after = [], [], list(stages)

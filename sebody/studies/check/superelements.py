@@ -118,7 +118,7 @@ def placed_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0
 
 
 def _mean_rotation(random: np.random.Generator, case: Case, X: NDArray) -> NDArray:
-    """Any weights of the local coordinates in the mean rotation, one of a rigid rotation, (n, r)."""
+    """Any weights of local coordinates in the mean rotation, one of a rigid rotation, (n, r)."""
     axes = np.eye(3)[2:] if case.planar else np.eye(3)
     arms = np.column_stack([X, np.zeros(len(X))]) if case.planar else X
     rigid = np.array([np.r_[np.cross(axis, arms)[:, :case.dimension].ravel(),
