@@ -91,8 +91,8 @@ def check_frame(name: str, body: ReducedBody, frame: str) -> None:
         moments = np.linalg.eigvalsh(central_inertia(body))
         if not moments[0] > SLENDER * moments[-1]:
             listed = ", ".join(f"{moment:.3g}" for moment in moments)
-            raise InputError(f"superelement {name!r} has hardly any inertia about one axis (moments "
-                             f"about its centre of mass: {listed}), so the frame {frame!r} cannot "
+            raise InputError(f"superelement {name!r} has hardly any inertia about an axis (moments "
+                             f"{listed} about its centre of mass), so the frame {frame!r} cannot "
                              "see rotations about it: use 'converged_mean'")
         return
     if traits.needs_rotations:

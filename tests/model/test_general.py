@@ -25,7 +25,7 @@ GRAVITY = (0.0, -40.0, 0.0)
 
 
 def test_what_is_shipped():
-    assert len(GENERAL) == 12 and len(SPECIAL) == 12
+    assert len(GENERAL) == 14 and len(SPECIAL) == 12
 
 
 @pytest.mark.parametrize("layout, floating, inertia", SPECIAL, ids=lambda x: x)
