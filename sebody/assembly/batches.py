@@ -239,7 +239,8 @@ def _filled(body: Superelement) -> int:
 
 def _full(body: Superelement, kernel: ModuleType) -> int:
     """Leading rows and columns beyond which the element matrix is diagonal."""
-    apart = INERTIA_OPTIONS[kernel.INERTIA].modes_apart
+    # modes that move the frame act on each other through it
+    apart = INERTIA_OPTIONS[kernel.INERTIA].modes_apart and not FRAMES[body.frame].traits.modes
     return _filled(body) if apart else len(body.body.mass)
 
 

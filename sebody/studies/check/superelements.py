@@ -351,7 +351,8 @@ def _check(name: str, module: ModuleType, nodes: Nodes) -> list[CheckRow]:
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
         if damping and not small:
             criteria |= DAMPING
-        if INERTIA_OPTIONS[module.INERTIA].modes_apart and nodes.modes > 1:
+        apart = INERTIA_OPTIONS[module.INERTIA].modes_apart and not frame_traits(module).modes
+        if apart and nodes.modes > 1:
             criteria |= MODES_APART
         if traits.incremental:      # a mean of increments does not follow a rigid motion
             criteria.pop("damping of rigid motion", None)
