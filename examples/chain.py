@@ -35,7 +35,7 @@ def build(links: int = 16, modes: int = 4, inertia: str | None = None) -> Scene:
     inertia : str
         Inertia option: a or b of the paper, c or d; by default the best the body can have.
     """
-    links = inputs.integer(links, "links", least=1)
+    links = inputs.integer(links, "links", least=1, most=100_000)
     body, model = link_body(modes), Model()
     model.gravity(GRAVITY)
     base = model.node("base", np.zeros(3))

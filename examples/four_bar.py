@@ -19,7 +19,7 @@ def build(loops: int = 2) -> Scene:
     loops : int
         Number of four-bar loops side by side.
     """
-    loops = inputs.integer(loops, "loops", least=1)
+    loops = inputs.integer(loops, "loops", least=1, most=100_000)
     model = Model(planar=True)
     model.gravity(GRAVITY)
     for k in range(loops + 1):

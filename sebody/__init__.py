@@ -1,23 +1,31 @@
 """Flexible multibody dynamics with superelements (Cardona, 2000)."""
 
-from sebody.analysis.accuracy import simulate_within
-from sebody.analysis.schemes import generalized_alpha, hht
-from sebody.analysis.simulation import Simulation, simulate
-from sebody.analysis.tolerance import Tolerance
-from sebody.errors import (
-    InputError,
-    Interrupted,
-    LimitWarning,
-    SebodyError,
-    SimulationError,
-    WriteError,
-)
-from sebody.model.histories import with_corners
-from sebody.model.model import Model
-from sebody.model.profiles import harmonic, piecewise, ramp, rest_to_rest, spline, trapezoidal
-from sebody.results.result import Result
+from typing import TYPE_CHECKING
+
+from sebody.lazy import load_on_demand
+
+if TYPE_CHECKING:
+    from sebody.analysis.accuracy import simulate_within
+    from sebody.analysis.schemes import generalized_alpha, hht
+    from sebody.analysis.simulation import Simulation, simulate
+    from sebody.analysis.tolerance import Tolerance
+    from sebody.errors import (
+        InputError,
+        Interrupted,
+        LimitWarning,
+        SebodyError,
+        SimulationError,
+        WriteError,
+    )
+    from sebody.model.histories import with_corners
+    from sebody.model.model import Model
+    from sebody.model.profiles import harmonic, piecewise, ramp, rest_to_rest, spline, trapezoidal
+    from sebody.results.result import Result
+    from sebody.version import __version__ as __version__
 
 __all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
            "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha",
            "harmonic", "hht", "piecewise", "ramp", "rest_to_rest", "simulate", "simulate_within",
            "spline", "trapezoidal", "with_corners"]
+
+load_on_demand(__name__)

@@ -5,7 +5,7 @@ message that names the argument (`what`), shows the value and says what to give 
 """
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Real
 from pathlib import Path
 from stat import S_ISDIR
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.errors import InputError
 
 LONGEST_NAME = 200      # characters: names are parts of lines that are printed
+LONGEST_TEXT = 2000     # of titles and the like
 LONGEST_SHOWN = 60      # characters of a value in a message
 ORTHOGONAL = 1e-12      # largest entry of ``R^T R - I`` of a rotation matrix
 
@@ -165,6 +166,34 @@ def name(value: Any, what: str) -> str:
     if len(value) > LONGEST_NAME:
         raise refusal(what, value, f"it has {len(value)} characters, give at most {LONGEST_NAME}")
     return str(value)
+
+
+def text(value: Any, what: str) -> str:
+    """A text of visible characters on one line, perhaps empty.
+
+    Raises
+    ------
+    InputError
+        Anything else, or more than `LONGEST_TEXT` characters.
+    """
+    if not (isinstance(value, str) and value.isprintable()):
+        raise refusal(what, value, "give a text of one line")
+    if len(value) > LONGEST_TEXT:
+        raise refusal(what, value, f"it has {len(value)} characters, give at most {LONGEST_TEXT}")
+    return str(value)
+
+
+def mapping(value: Any, what: str, remedy: str) -> dict:
+    """What a dict or other mapping holds.
+
+    Raises
+    ------
+    InputError
+        Anything else, an empty text or list included.
+    """
+    if not isinstance(value, Mapping):
+        raise refusal(what, value, remedy)
+    return dict(value)
 
 
 def choice(value: Any, what: str, options: Iterable[Kind], remedy: str | None = None) -> Kind:

@@ -1,12 +1,14 @@
 """One thread for linear algebra: matrices of tests are small, and every core runs tests already.
 
 Processes that share the tests find the time loop compiled, and the kernels where all tests run:
-cold, each process would compile them for itself.
+cold, each process would compile them for itself. Kernels that whoever runs the tests has derived in
+the home folder are not seen.
 """
 
 import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ["SEBODY_KERNELS"] = os.path.join(__file__, "none")   # none of whoever runs the tests
 
 
 def pytest_sessionstart(session):

@@ -12,11 +12,17 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
            "examples": "sebody.scenes"}
 # every room, lowest first, and which others its files may import; those in OPEN are open to all
-OPEN = {"errors", "inputs", "files"}
+OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "spelling", "tabular", "version"}
 ROOMS = {
     "errors": set(),
     "inputs": set(),
+    "memory": set(),
     "files": set(),
+    "units": set(),
+    "lazy": set(),
+    "spelling": set(),
+    "tabular": set(),
+    "version": set(),
     "kernels": set(),
     "generated": {"kernels"},
     "engine": {"kernels"},
@@ -35,16 +41,19 @@ ROOMS = {
     "derive": {"kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}
-PACKAGES = {"errors": set(), "inputs": {"numpy"}, "files": set(),
+PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory": set(),
+            "units": set(), "files": {"numpy"}, "lazy": set(), "spelling": set(), "version": set(),
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
-PICTURES = {"plots", "frequency_pictures", "drawing", "film", "draw", "picture", "paper_figures"}
+PICTURES = {"plots", "frequency_pictures", "drawing", "film", "film_marks", "rendering", "draw",
+            "picture", "paper_figures", "notebook"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by room, and what they may import
-OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
-          "results/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
+OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
+          "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
+          "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "results/film": {"PIL", "imageio"},
           "studies/places": {"distributed"}, "studies/table": {"pandas"}}
 

@@ -106,3 +106,15 @@ def test_messages_and_pages_name_extras_that_exist():
         assert quoted, name
         assert quoted[1] in extras or quoted[1] == "{source.extra}"
     assert {source.extra for source in SOURCES} - {""} <= set(extras)
+
+
+def test_the_check_of_a_commit_runs_what_the_readme_says():
+    """Both commands of the README in their order; no variable makes things easier for them."""
+    commands = re.findall(r"^pip install -e .*$", (ROOT / "README.md").read_text(), re.M)
+    script = (ROOT / ".ci/run").read_text()
+    patterns = re.findall(r"grep -m 1 '([^']*)' README\.md", script)
+    assert [[bool(re.search(pattern, command)) for command in commands]
+            for pattern in patterns] == [[True, False], [False, True]]
+    texts = [path.read_text() for path in (ROOT / ".ci").iterdir()]
+    assigned = {name for text in texts for name in re.findall(r"\b[A-Z_]+(?==)", text)}
+    assert assigned == {"HOME", "PYTHONHASHSEED"}

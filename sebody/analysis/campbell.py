@@ -1,13 +1,14 @@
 """Frequencies and rates of growth of small motion over the speed of a steady rotation."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import linear_sum_assignment
 
-from sebody import inputs
+from sebody import inputs, tabular
 from sebody.analysis.linearization import Modes, modes
 from sebody.analysis.statics import equilibrium
 from sebody.errors import InputError
@@ -32,6 +33,23 @@ class Campbell:
     speeds: NDArray
     omega: NDArray
     growth: NDArray
+
+    def __repr__(self) -> str:
+        return tabular.text(*self._table())
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return tabular.titled(*self._table())
+
+    def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
+        first, last = (f"{speed:.6g}" for speed in (self.speeds[0], self.speeds[-1]))
+        title = (f"{self.omega.shape[1]} modes at {len(self.speeds)} speeds from {first} to {last} "
+                 "rad/s")
+        heads = "mode", f"[Hz] at {first} rad/s", f"[Hz] at {last} rad/s", "largest real part [1/s]"
+        hertz = self.omega / (2 * np.pi)
+        return title, heads, [
+            (str(k + 1), f"{hertz[0, k]:.6g}", f"{hertz[-1, k]:.6g}", f"{growth.max():.4g}")
+            for k, growth in enumerate(self.growth.T)]
 
     def save_picture(self, path: str | Path) -> Path:
         """Draw frequencies and rates of growth over the speed: png, pdf or svg (extra ``plot``).
@@ -98,6 +116,8 @@ def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, cou
 
 def _followed(last: Modes, own: NDArray, now: Modes) -> NDArray:
     """The modes most like those of the last speed, by shape and by value."""
+    from scipy.optimize import linear_sum_assignment  # takes 0.1 s to import
+
     likeness = np.abs(last.shapes[:, own].conj().T @ now.shapes)**2
     scale = np.abs(last.values[own]).max()
     change = np.abs(last.values[own][:, None] - now.values[None]) / max(scale, 1e-300)

@@ -1,16 +1,13 @@
 """What a model is, as a hash: to see whether a saved run is of another one."""
 
-import inspect
 from collections.abc import Callable
 from hashlib import sha256
-from types import CodeType, ModuleType
 
 import numpy as np
 
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.user_faults import functions
-
-CONSTANTS = (bool, int, float, complex, str, bytes, tuple, np.generic, type(None))
+from sebody.model.outside import CONSTANTS, values_read
 
 
 def fingerprint(run: Simulation) -> str:
@@ -22,42 +19,22 @@ def fingerprint(run: Simulation) -> str:
     parts = [repr((run.numbering.names, kinds, written)).encode()] + [
         array.tobytes() for array in (
             system.constants, system.g_unknown, system.table_times, system.table_pieces,
-            system.prescribed, system.prescribed_factor, model.gravity_field, run.state.q_start)]
+            system.corners, system.prescribed, system.prescribed_factor, model.gravity_field,
+            run.state.q_start)]
     return sha256(b"".join(parts)).hexdigest()
 
 
-def described(value: object, above: tuple[int, ...] = ()) -> object:
-    """What a function computes: its bytecode, and the constants and functions it refers to.
+def described(function: Callable) -> list[tuple[str, object]]:
+    """What a function computes: its bytecode, and by name what it and its helpers read."""
+    read = values_read(getattr(function, "py_func", function))      # of what Numba has compiled
+    return [(name, _stable(value)) for name, value in read.items()]
 
-    Parameters
-    ----------
-    value : object
-        A function, or something it refers to.
-    above : tuple of int
-        Functions whose descriptions this is a part of, by their ids.
-    """
-    value = getattr(value, "py_func", value)        # of a function compiled by Numba
+
+def _stable(value: object) -> object:
+    """A value as it is written the same in every process."""
     if isinstance(value, np.ndarray):
         return str(value.dtype), value.shape, value.tobytes()
-    if isinstance(value, ModuleType):
-        return value.__name__
-    if not isinstance(getattr(value, "__code__", None), CodeType):
-        return repr(value) if isinstance(value, CONSTANTS) else type(value).__name__
-    if id(value) in above:
-        return "itself"
-    return _code(value, (*above, id(value)))
-
-
-
-
-def _code(function: Callable, above: tuple[int, ...]) -> object:
-    used = inspect.getclosurevars(function)
-    others = [(name, described(value, above)) for group in (used.nonlocals, used.globals)
-              for name, value in sorted(group.items())]
-    return _bytes(function.__code__), repr(function.__defaults__), others
-
-
-def _bytes(code: CodeType) -> object:
-    """Bytecode and constants, of functions inside, too."""
-    return code.co_code, code.co_names, [
-        _bytes(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts]
+    if isinstance(value, tuple):
+        return [_stable(one) for one in value]
+    return repr(value) if isinstance(value, CONSTANTS) else getattr(
+        value, "__name__", type(value).__name__)

@@ -6,15 +6,16 @@ the forces by the load's amplitude. A quantity follows from its values in states
 along X, in positions, velocities, accelerations and load: whatever has a history has an answer.
 """
 
-from collections.abc import Iterable
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
-from sebody import inputs
+from sebody import inputs, tabular
 from sebody.analysis.evaluation import evaluate
 from sebody.analysis.linearization import small_motion
 from sebody.analysis.simulation import Simulation
@@ -24,10 +25,14 @@ from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.errors import InputError
 from sebody.kernels.layout import RECORD_T, RESIDUAL
 from sebody.model.parts import Element
+from sebody.results import rotations
 from sebody.results.frequency_pictures import save_response
+from sebody.results.naming import component_names
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
 
+HEADS = "quantity", "largest amplitude", "phase [deg]", "at [Hz]"
+UNMOVED, ADDED_UP = ("t", "energy.external_work"), ".work"     # quantities that do not answer
 SMALL = 1e-5        # motion of the states that are compared, of the extent or in radians
 
 
@@ -42,6 +47,27 @@ class FrequencyResponse:
     load: str
     omega: NDArray
     answers: dict[str, NDArray]
+
+    def __repr__(self) -> str:
+        return tabular.text(self._title(), HEADS, self._rows())
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return tabular.titled(self._title(), HEADS, self._rows())
+
+    def _title(self) -> str:
+        return (f"answers to a unit of {self.load!r}, {len(self.omega)} frequencies from "
+                f"{self.omega.min(initial=np.inf):.6g} to {self.omega.max(initial=0.0):.6g} rad/s")
+
+    def _rows(self) -> Iterator[tuple[str, ...]]:
+        """The largest answer of every component of every quantity."""
+        for name, answer in self.answers.items():
+            columns = answer.reshape(len(self.omega), -1).T
+            for label, column in zip(component_names(answer, name), columns, strict=True):
+                k = int(np.argmax(np.abs(column)))
+                yield (f"{name}.{label}".rstrip("."), f"{abs(column[k]):.6g}",
+                       f"{np.degrees(np.angle(column[k])):.4g}",
+                       f"{self.omega[k] / (2 * np.pi):.6g}")
 
     def __getitem__(self, name: str) -> NDArray:
         """Answer of one of the quantities asked for."""
@@ -93,6 +119,15 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
     names = [quantities] if isinstance(quantities, str) else inputs.items(
         quantities, "quantities", "give names of quantities")
     omega = inputs.vector(omega, "omega")
+    if not len(omega):
+        raise inputs.refusal("omega", omega, "give at least one frequency")
+    if not names:
+        raise inputs.refusal("quantities", quantities, "name at least one")
+    for name in names:
+        if inputs.name(name, "name of a quantity") in UNMOVED or name.endswith(ADDED_UP):
+            raise InputError(f"quantity {name!r} has no answer to a harmonic load: it is the time, "
+                             "or a work that adds up over a run; name a position, a force or a "
+                             "power")
     steady = Spin.of(run, spin)
     matrices = small_motion(run, steady)
     element = _load(run, load)
@@ -192,7 +227,7 @@ def _moved_states(run: Simulation | Result, spin: Spin, X: NDArray, omega: NDArr
             for number, own in rotated.items():
                 first = parts["R"].start + 9 * number
                 R = row[first:first + 9].reshape(3, 3)
-                row[first:first + 9] = (R @ Rotation.from_rotvec(step[0][own]).as_matrix()).ravel()
+                row[first:first + 9] = (R @ rotations.matrices(step[0][own])).ravel()
             rows.append(row)
     return Result(run.model, numbering, run.system, state, np.array(rows), 0.0), scale
 

@@ -1,14 +1,17 @@
 """Small motion about a state, at rest or in steady rotation: exact matrices and eigenvalues."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import LinAlgError, eig, eigh, null_space
+from scipy.linalg import LinAlgError, eigh, null_space
 from scipy.sparse import csc_matrix
 
 from sebody import inputs
-from sebody.analysis import user_faults
+from sebody.analysis import mode_tables, user_faults
+from sebody.analysis.eigenvalues import eigenvalues
 from sebody.analysis.evaluation import matrix
 from sebody.analysis.limits import Watch
 from sebody.analysis.shapes import Shapes
@@ -18,6 +21,7 @@ from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import EVALUATED, WANTED
 from sebody.errors import InputError
 from sebody.results.result import Result
+from sebody.tabular import brief
 
 
 def derivative(run: Simulation | Result, mass: float, damping: float,
@@ -34,17 +38,9 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
                   stiffness=stiffness, constraint=stiffness)
 
 
-def rotating(run: Simulation | Result, spin: Spin,
-             resistance: float = 0.0) -> tuple[csc_matrix, NDArray]:
-    """Tangent stiffness in axes that rotate with the spin, and the residual.
-
-    With a `resistance` so many times the mass times the squared spin is added.
-    """
-    if spin.rotates:
-        mass, _, stiffness = _turning(run, spin)
-        stiffness = stiffness + resistance * spin.squared * mass
-    else:
-        stiffness = derivative(run, 0.0, 0.0, 1.0)
+def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
+    """Tangent stiffness in axes that rotate with the spin, and the residual."""
+    stiffness = _turning(run, spin)[2] if spin.rotates else derivative(run, 0.0, 0.0, 1.0)
     residual = run.state.residual.copy()
     to_body_axes(run.system, run.state.frames, residual, False)
     return csc_matrix(stiffness), residual[:run.numbering.free]
@@ -99,6 +95,8 @@ class Linearization(NamedTuple):
     stiffness: NDArray
     free: NDArray
 
+    __repr__ = brief
+
 
 def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linearization:
     """Matrices of small motion about the state a run, or an equilibrium, has reached.
@@ -132,6 +130,18 @@ class Vibrations(NamedTuple):
     omega: NDArray      # (m,) angular frequencies, ascending [1/time]
     shapes: NDArray     # (unknowns, m) mass-normalised, in the axes of the unknowns
     of_names: Shapes
+
+    def __repr__(self) -> str:
+        return mode_tables.text(f"{len(self.omega)} undamped vibrations", 1j * self.omega)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return mode_tables.html(f"{len(self.omega)} undamped vibrations", 1j * self.omega)
+
+    @property
+    def frequency(self) -> NDArray:
+        """Frequencies, (m,), in cycles per unit of time: Hz where it is the second."""
+        return self.omega / (2 * np.pi)
 
     def shape(self, name: str) -> NDArray:
         """Part of all shapes, (size, m): ``shape("tip.position")`` in global axes.
@@ -180,6 +190,24 @@ class Modes(NamedTuple):
     values: NDArray     # (m,) complex, by ascending frequency [1/time]
     shapes: NDArray     # (unknowns, m) complex, of unit length
     of_names: Shapes
+    rounding: NDArray   # (m,) how far rounding may move the values [1/time]
+
+    def __repr__(self) -> str:
+        return mode_tables.text(f"{len(self.values)} modes of small motion", self.values)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return mode_tables.html(f"{len(self.values)} modes of small motion", self.values)
+
+    @property
+    def frequency(self) -> NDArray:
+        """Frequencies, (m,), in cycles per unit of time: Hz where it is the second."""
+        return mode_tables.frequencies(self.values)
+
+    @property
+    def damping(self) -> NDArray:
+        """Damping over critical damping, (m,); NaN of rigid motions."""
+        return mode_tables.damping_ratios(self.values)
 
     def shape(self, name: str) -> NDArray:
         """Part of all shapes, (size, m): see `Vibrations.shape`."""
@@ -197,14 +225,13 @@ class Modes(NamedTuple):
 
 
 def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
-    """Eigenvalues and shapes about a state, from the exact tangents; see `linearize`."""
+    """Eigenvalues and shapes about a state, from the exact tangents; see `linearize`.
+
+    Where nothing takes or gives energy, as in undamped gyroscopic motion, and the stiffness is
+    positive, growth is zero by construction. Otherwise a growth below `Modes.rounding` is none.
+    """
     M, C, K, free = linearize(run, spin)
-    m = len(M)
-    identity, zero = np.eye(m), np.zeros((m, m))
-    values, vectors = eig(np.block([[zero, identity], [-K, -C]]),
-                          np.block([[identity, zero], [zero, M]]))
-    kept = np.flatnonzero(values.imag >= 0.0)
-    order = kept[np.lexsort((values[kept].real, values[kept].imag))]
-    shapes = free @ vectors[:m, order]
-    return Modes(values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
-                 Shapes(run))
+    found = eigenvalues(M, C, K)
+    shapes = free @ found.shapes
+    return Modes(found.values, shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
+                 Shapes(run), found.rounding)

@@ -4,18 +4,20 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from inspect import signature
+from typing import Any
 
 from sebody import inputs
 
 BAR = 40                # characters
 PATIENCE = 1.0          # seconds before it appears
-NOTEBOOK = "ZMQInteractiveShell"        # of IPython, which shows what a terminal does
+NOTEBOOK = "ZMQInteractiveShell"        # of IPython: that of a notebook
 
 
 class Progress:
-    """A bar on standard error, shown on a terminal when a run takes longer than a second.
+    """A bar, shown when a run takes longer than a second: on standard error if it is a terminal.
 
-    Notebooks are terminals in this; pipes and files are not.
+    A notebook shows it as one line that changes; pipes and files have none.
 
     Parameters
     ----------
@@ -30,6 +32,8 @@ class Progress:
         self._repeats = 0               # of runs within a tolerance, which begin again
         self._first = self._last = 0.0, self.began      # part that was done, and when
         self._width = 0
+        self._notebook = _notebook()
+        self._line: Any = None          # of a notebook, once there is something to show
 
     def __call__(self, fraction: float) -> None:
         """Draw the part of the run that is done, between 0 and 1, its rate and the time left."""
@@ -40,11 +44,14 @@ class Progress:
         elif self._last[1] == self.began and not self._repeats:
             self._first = fraction, now         # a run that goes on begins somewhere
         self._last = fraction, now
-        if now - self.began < PATIENCE or not _on_terminal():
+        if now - self.began < PATIENCE or not (self._notebook or sys.stderr.isatty()):
             return
         done = round(BAR * fraction)
         line = (f"[{'#' * done}{'.' * (BAR - done)}] {100 * fraction:3.0f} %"
                 f"{self._remarks(fraction, now)}")
+        if self._notebook:
+            self._display(line)
+            return
         print("\r" + line.ljust(self._width), end="", file=sys.stderr, flush=True)
         self._width = len(line)
         self.shown = True
@@ -53,6 +60,14 @@ class Progress:
         """End the line of the bar."""
         if self.shown:
             print(file=sys.stderr)
+
+    def _display(self, line: str) -> None:
+        """Show a line in a notebook in the place of the one before."""
+        content = {"text/plain": line}
+        if self._line is None:
+            self._line = self._notebook.display(content, raw=True, display_id=True)
+        else:
+            self._line.update(content, raw=True)
 
     def _remarks(self, fraction: float, now: float) -> str:
         """Simulated time, rate and time left."""
@@ -68,9 +83,14 @@ class Progress:
 
 
 @contextmanager
-def showing(progress: Callable[[float], None] | bool | None, t_end: float
+def showing(progress: Callable[[float], None] | bool | None, t_end: float | None = None
             ) -> Iterator[Callable[[float], None] | None]:
     """What is called during a run: a function, or a bar for True.
+
+    Parameters
+    ----------
+    t_end : float, optional
+        As of `Progress`.
 
     Raises
     ------
@@ -86,8 +106,15 @@ def showing(progress: Callable[[float], None] | bool | None, t_end: float
     elif progress is None or progress is False:
         yield None
     else:
-        yield inputs.function(progress, "progress",
-                              "give a function of the part that is done, or True for a bar")
+        remedy = "give a function of the part that is done, or True for a bar"
+        inputs.function(progress, "progress", remedy)
+        try:
+            signature(progress).bind(0.5)
+        except TypeError as error:
+            raise inputs.refusal("progress", progress, remedy) from error
+        except ValueError:      # a function that does not tell what it takes
+            pass
+        yield progress
 
 
 def _duration(seconds: float) -> str:
@@ -98,7 +125,9 @@ def _duration(seconds: float) -> str:
     return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
 
 
-def _on_terminal() -> bool:
+def _notebook() -> Any:
+    """What displays in the notebook that the program runs in; None if it runs elsewhere."""
     shell = sys.modules.get("IPython")
-    return sys.stderr.isatty() or (
-        shell is not None and type(shell.get_ipython()).__name__ == NOTEBOOK)
+    if shell is None or type(shell.get_ipython()).__name__ != NOTEBOOK:
+        return None
+    return shell.display

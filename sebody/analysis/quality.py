@@ -9,13 +9,15 @@ from sebody.analysis.evaluation import matrix
 from sebody.analysis.thresholds import CUT, EXCITED, GROWN, PERIOD
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import ADAPTIVE, CUTS, STEPS
+from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES, RECORD_T
 from sebody.model.parts import Element
-from sebody.results.audit import BALANCE, DRIFT
-from sebody.results.energy_balance import energy_balance
+from sebody.results import energy_balance
+from sebody.results.audit import DRIFT
+from sebody.results.postprocessing import energies
 from sebody.results.recording import Recording, record_counts
 
-LOOKED_AT = 200     # recorded states whose energies are compared
+LOOKED_AT = 200     # recorded states whose constraints are looked at
 SMALL = 100         # unknowns up to which vibrations are looked for, by dense algebra
 MASSLESS = 1e-12    # of the mean mass, where there is none
 IDLE = 1e-9         # of all work: nothing works between two states
@@ -25,24 +27,24 @@ NO_MOTION = 1e-9    # of all energies: kinetic energy of a model at rest
 def remarks(run: Recording) -> dict[str, str]:
     """Warnings by key; `run` has its rows from the start on.
 
-    A run that failed has said why, and one with a tolerance keeps to it: only their cuts count.
+    Of a run that failed, which has said why, and of one that kept to a tolerance, the step is not
+    judged: their cuts and energies count.
     """
-    if run.failure or run.state.control[ADAPTIVE]:
-        return _steps(run)
-    counts = record_counts(run.numbering)
-    chosen = np.unique(np.linspace(0, len(run.rows) - 1, LOOKED_AT).astype(int))
     scratch = allocate(run.model, run.system, run.numbering, 1.0, False)    # the run may go on
-    part = Recording(run.model, run.numbering, run.system, scratch, run.rows[chosen], 0.0)
-    kinetic, strain, potential = (part.energies[:, ENERGIES.slices(counts)[name]][:, 0]
+    try:
+        run.energies = energies(run.system, scratch, run.rows)
+    except InputError:          # the last state of a run that failed
+        return _steps(run)
+    message = energy_balance.warning(run.energy_balance(),
+                                     bool(run.state.control[ADAPTIVE]))
+    found = ({"balance": message} if message else {}) | _steps(run)
+    if run.failure or run.state.control[ADAPTIVE]:
+        return found
+    columns = ENERGIES.slices(record_counts(run.numbering))
+    kinetic, strain, potential = (run.energies[:, columns[name]][:, 0]
                                   for name in ("kinetic", "strain", "potential"))
+    part = Recording(run.model, run.numbering, run.system, scratch, run.rows, 0.0)
     work = part.recorded("works").sum(axis=1)
-    found = {}
-    balance = energy_balance(kinetic, strain, potential, work)
-    if balance > BALANCE:
-        found["balance"] = (
-            f"energy balance {balance:.2g} of the energy exchanged (limit {BALANCE:g}): the step "
-            "is too long, or numerical damping takes energy that matters; take a smaller step, a "
-            "larger rho, or simulate_within")
     grown = growth(kinetic + strain + potential, work) / max((kinetic + strain).max(), 1e-300)
     if grown > GROWN and "balance" not in found:
         found["growth"] = (
@@ -50,12 +52,13 @@ def remarks(run: Recording) -> dict[str, str]:
             f"{GROWN:g}): vibrations that the steps do not resolve feed a body that bends far; "
             "take a smaller step, divide the body, or keep the position of a node off the line of "
             "the others")
-    found |= _steps(run)
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
         states = {int(np.argmax(kinetic)), int(np.argmax(strain))}
         h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control[STEPS]), 1)
         found |= _vibrations(part, sorted(states), h, kinetic.max())
     if run.numbering.multipliers:
+        chosen = np.unique(np.linspace(0, len(run.rows) - 1, LOOKED_AT).astype(int))
+        part.rows = run.rows[chosen]
         found |= _constraints(part)
     return found
 

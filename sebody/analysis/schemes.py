@@ -42,6 +42,27 @@ def hht(alpha: float = -0.05, tolerance: float = 1e-8, tangent: str = "consisten
     return _scheme(0.0, -alpha, 0.25 * (1 - alpha) ** 2, 0.5 - alpha, tolerance, tangent, index)
 
 
+def checked(scheme: Scheme) -> Scheme:
+    """A scheme whose numbers are those of one.
+
+    Raises
+    ------
+    InputError
+        No scheme, or numbers that no scheme of the family has.
+    """
+    remedy = "give generalized_alpha() or hht()"
+    inputs.instance(scheme, "scheme", Scheme, remedy)
+    for name, bounds in _BOUNDS.items():
+        inputs.number(getattr(scheme, name), f"scheme: {name}", remedy=remedy, **bounds)
+    inputs.flag(scheme.stabilized, "scheme: stabilized")
+    return scheme
+
+
+_BOUNDS = {"alpha_m": {"least": -1, "below": 1}, "alpha_f": {"least": 0, "below": 1},
+           "beta": {"above": 0, "most": 1}, "gamma": {"above": 0, "most": 2},
+           "tolerance": {"above": 0, "below": 1}, "geometric": {"least": 0, "most": 1}}
+
+
 def _scheme(alpha_m, alpha_f, beta, gamma, tolerance, tangent, index) -> Scheme:
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1,
                               remedy="use a number between 0 and 1, such as 1e-8")

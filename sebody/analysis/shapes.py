@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.turning import motion
 from sebody.errors import InputError
+from sebody.results.naming import component_of
 from sebody.results.result import Result
 
 
@@ -24,7 +25,7 @@ class Shapes:
         ----------
         name : str
             ``<node>.position``, ``<node>.rotation`` (a vector about global axes) or
-            ``<superelement>.modes``.
+            ``<superelement>.modes``, and components of them, ``tip.position.y``.
         shapes : (unknowns, m)
 
         Raises
@@ -32,7 +33,19 @@ class Shapes:
         InputError
             A name that nothing has.
         """
-        owner, _, quantity = str(name).rpartition(".")
+        found = self._whole(str(name), shapes)
+        whole, _, component = str(name).rpartition(".")
+        if found is None and (found := self._whole(whole, shapes)) is not None:
+            return component_of(whole, found.T, component)
+        if found is None:
+            raise InputError(f"{name!r} has no shape: there are <node>.position and "
+                             f"<node>.rotation of {', '.join(self._model.nodes)}, and "
+                             "<superelement>.modes")
+        return found
+
+    def _whole(self, name: str, shapes: NDArray) -> NDArray | None:
+        """Part of some shapes, without components; None of an unknown name."""
+        owner, _, quantity = name.rpartition(".")
         model, numbering = self._model, self._numbering
         if quantity == "modes" and owner in model.bodies:
             first = numbering.modes[owner]
@@ -40,9 +53,7 @@ class Shapes:
         triplet = (getattr(model.nodes.get(owner), quantity, None)
                    if quantity in ("position", "rotation") else None)
         if triplet is None or id(triplet) not in numbering.triplets:
-            raise InputError(f"{name!r} has no shape: there are <node>.position and "
-                             f"<node>.rotation of {', '.join(model.nodes)}, and "
-                             "<superelement>.modes")
+            return None
         first = numbering.triplets[id(triplet)]
         found = self._motion[first:first + triplet.start.size] @ shapes
         if triplet.rotational and not model.planar:

@@ -1,5 +1,7 @@
 """Simulations: a consistent initial state, then calls of the compiled loop."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable
 from functools import cache
@@ -7,40 +9,38 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
+from sebody.analysis.failures import explained
 from sebody.analysis.first_run import prepare
-from sebody.analysis.initial_state import acceleration_rates, start
+from sebody.analysis.given_start import take
+from sebody.analysis.initial_state import begin
+from sebody.analysis.initial_velocities import refuse_contradicted
 from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
-from sebody.analysis.pulses import unseen
-from sebody.analysis.redundancy import contradiction
+from sebody.analysis.pulses import unseen, untold
 from sebody.analysis.row_exchanges import RowExchanges
-from sebody.analysis.schemes import generalized_alpha
-from sebody.analysis.tolerance import Tolerance, given
+from sebody.analysis.schemes import checked, generalized_alpha
+from sebody.analysis.start_remarks import start_remarks
+from sebody.analysis.tolerance import UNSIZED, Tolerance, given
 from sebody.assembly.build import build
-from sebody.assembly.numbering import rotational
+from sebody.assembly.numbering import placed, rotational
 from sebody.engine.loop import advance
-from sebody.engine.routines import refactorize_address
+from sebody.engine.routines import addresses
 from sebody.engine.state import (
     ADAPTIVE,
-    AUX_STEP,
     CHOSEN,
     CHUNK,
+    CURRENT_STEP,
     DONE,
-    FACTORED,
     FAILED,
-    FINEST,
-    GAP,
     GRID,
     LARGEST_ERROR,
-    PHASE,
-    PROJECTED,
+    MATRICES,
     REASON,
     REASONS,
     RECORDED,
-    SOLVED,
     TIME,
     Record,
     Scheme,
@@ -48,6 +48,7 @@ from sebody.engine.state import (
 from sebody.engine.step import write_record
 from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.model.model import Model
+from sebody.model.tables import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 
@@ -75,28 +76,36 @@ class Simulation:
         Allowed error of a step. With a tolerance, step lengths are chosen, steps end at corners of
         load tables, and `h` is only the output grid, on which the state is interpolated. Errors of
         many steps add up: see `simulate_within` for the error of the whole run.
+    start : Result, optional
+        State to start from in place of the model as built: of an `equilibrium`, at which nothing
+        rings, or the end of a run. Initial velocities that the model gives stay.
 
     Attributes
     ----------
+    begun : Result or None
+        The state that was given to start from.
     start : Start
         Initial velocities that were solved for, redundant constraints.
 
     Raises
     ------
     InputError
-        Bad step or tolerance, singular mass, contradicting constraints, an initial state that
+        Bad step or tolerance, functions that read what has changed since they were compiled,
+        singular mass, contradicting constraints, an initial state that
         violates them, or variable steps with constraints of index 3.
     """
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
-                 output_every: int = 1, tolerance: Tolerance | None = None):
+                 output_every: int = 1, tolerance: Tolerance | None = None,
+                 start: Result | None = None):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
-        self.every = inputs.integer(output_every, "output_every", least=1,
+        self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
                                     remedy="give a whole number of steps >= 1")
         if scheme is not None:
-            inputs.instance(scheme, "scheme", Scheme, "give generalized_alpha() or hht()")
+            checked(scheme)
         tolerance = given(tolerance)
+        user_faults.refuse_changed(model)
         prepare([model])
         self.system, self.numbering = build(model)
         self.scheme = self._fitting(scheme, tolerance is not None)
@@ -109,20 +118,26 @@ class Simulation:
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
         user_faults.forget(model)
-        self.start: Start = start(model, self.system, self.numbering, self.state)
+        self.begun = start
+        if start is not None:
+            take(model, self.numbering, self.state, start)
+        self.start: Start = begin(model, self.system, self.numbering, self.state)
+        refuse_contradicted(model, self.numbering, self.state)
+        if start is None:
+            for key, message in start_remarks(model, self.numbering, self.state).items():
+                self.watch.say(key, message)
         self.tolerance = tolerance
+        self._accelerate()
         if tolerance is not None:
             self._choose_steps(tolerance)
-        if self.scheme.stabilized:
-            self._offset_accelerations()
-        self.state.aux_old[:] = self.state.aux
-        self.system.routines[0] = refactorize_address(self.system, self.state)
         first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
         write_record(self.state, first)
         self.rows.append(first.rows)
-        # no steps yet: the loop is compiled, or read from the cache, before time is measured
-        advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
+
+    def __repr__(self) -> str:
+        return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
+                f"{self.h:.6g}, t = {self.time:.6g}>")
 
     @property
     def time(self) -> float:
@@ -130,7 +145,7 @@ class Simulation:
         return float(self.state.clock[TIME])
 
     def run_to(self, t_end: float,
-               progress: Callable[[float], None] | bool | None = None) -> "Simulation":
+               progress: Callable[[float], None] | bool | None = None) -> Simulation:
         """Advance to the grid step nearest to `t_end`.
 
         Parameters
@@ -142,12 +157,16 @@ class Simulation:
 
         Raises
         ------
+        InputError
+            A time that is past, or a function of a load or drive that reads a value which has
+            changed since it was compiled.
         SimulationError
             When a step does not converge however small; what was computed is kept, also in the
             error's `result`.
         Interrupted
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
+        user_faults.refuse_changed(self.model)
         last = self._last_step(t_end)
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
@@ -155,6 +174,8 @@ class Simulation:
         if self.state.control[ADAPTIVE] == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)
+            for name, message in untold(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"jump {name}", message)
         record = self._room(last)
         self.state.control[RECORDED] = 0
         code = CHUNK
@@ -167,7 +188,7 @@ class Simulation:
             self.rows.append(record.rows[:self.state.control[RECORDED]])
         self.watch.look(self.model, self.numbering, self.rows[-1])
         if code == FAILED:
-            self.failure = self._explain()
+            self.failure = explained(self.model, self.system, self.state, self.numbering)
             raise SimulationError(self.failure, self.result())
         if code != DONE:
             result = self.result()
@@ -191,7 +212,8 @@ class Simulation:
                              "an earlier time or a longer step")
         if round(steps) < self.state.control[GRID]:
             raise InputError(past)
-        if round(steps) == self.state.control[GRID] and abs(steps - round(steps)) > OFF_GRID:
+        there = abs(t_end - self.time) <= OFF_GRID * min(self.h, max(t_end, self.time))
+        if round(steps) == self.state.control[GRID] and not there:
             raise InputError(f"cannot run to t_end = {t_end:g} from t = {self.time:g}: the step is "
                              f"{self.h:g}; give a later time or a smaller step (the step comes "
                              "first)")
@@ -200,11 +222,9 @@ class Simulation:
     def _room(self, last: int) -> Record:
         """An empty record for the states up to a step of the grid."""
         count = last // self.every - int(self.state.control[GRID]) // self.every
-        try:
-            return Record.of(self.state, count, self.every)
-        except (MemoryError, ValueError) as error:      # ValueError: more than any array can hold
-            raise InputError(f"{count} recorded states do not fit into memory: keep fewer with "
-                             "output_every, or give an earlier t_end") from error
+        memory.check(8.0 * count * self.state.now.size, f"a record of {count} states",
+                     "keep fewer with output_every, or give an earlier t_end")
+        return Record.of(self.state, count, self.every)
 
     def _advance(self, record: Record, last: int, t_end: float,
                  progress: Callable[[float], None] | None) -> int:
@@ -212,7 +232,7 @@ class Simulation:
         code, chunk, looked = CHUNK, FIRST_CHUNK, time.perf_counter()
         while code not in (DONE, FAILED):
             began = time.perf_counter()
-            self._serve()
+            self.exchanges.serve()
             code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
             now = time.perf_counter()
             self.seconds += now - began
@@ -226,21 +246,12 @@ class Simulation:
                 chunk = 0               # the beginning of the next one
         return code
 
-    def _serve(self) -> None:
-        """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
-        phase = self.state.control[PHASE]
-        if phase == FACTORED:
-            self.exchanges.factorize()
-        elif phase in (PROJECTED, SOLVED):
-            self.exchanges.solve()
-
     def result(self) -> Result:
         """The results computed so far."""
         found = Result(self.model, self.numbering, self.system, self.state,
                        np.concatenate(self.rows), self.seconds, self.failure, self.start)
-        if found.steps:
-            self.watch.judge(found)
-        found.warnings = tuple(self.watch.messages)
+        found.warnings = (self.watch.judge(found) if found.steps else
+                          tuple(self.watch.messages))
         return found
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
@@ -256,37 +267,36 @@ class Simulation:
     def _choose_steps(self, tolerance: Tolerance) -> None:
         """Switch on variable steps; the first step is short against the accelerations."""
         n, state = self.numbering.free, self.state
-        rotations = rotational(self.model, self.numbering)[:n]
-        state.error_weights[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], rotations)
+        own = np.flatnonzero(placed(self.model, self.numbering)[:n])
+        sizes = self.system.magnitude[own]
+        if tolerance.position == 0.0 and not np.all(sizes):
+            self.watch.say("unsized", UNSIZED)
+        state.error_weights[own] = 1.0 / tolerance.allowed(
+            sizes, rotational(self.model, self.numbering)[own])
         bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
         state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock[LARGEST_ERROR] = 0.0
         state.control[ADAPTIVE] = 1
 
-    def _offset_accelerations(self) -> None:
-        """Set auxiliary accelerations to those of the later time they belong to.
+    def _accelerate(self) -> None:
+        """Solve for the accelerations and multipliers of the start, by the loop without a step.
 
-        Multipliers of the first steps would show the difference.
+        So the loop is compiled, or read from the cache, before time is measured.
         """
-        scheme, state = self.scheme, self.state
-        h = state.clock[CHOSEN] if self.tolerance else self.h
-        state.clock[AUX_STEP] = h
-        state.aux[:] += (scheme.alpha_m - scheme.alpha_f) * h * acceleration_rates(
-            self.system, self.numbering, state, 1e-3 * h)
-
-    def _explain(self) -> str:
-        if fault := user_faults.fault(self.model, self.time):
-            return f"stopped at t = {self.time:.6g}: {fault}; results up to there are kept"
-        if self.state.control[REASON] == GAP:
-            return (f"stopped at t = {self.time:.6g}: "
-                    f"{contradiction(self.system, self.state, self.numbering)}; results up to "
-                    "there are kept")
-        reason = REASONS[int(self.state.control[REASON])]
-        shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
-        remedy = "a larger tolerance" if self.tolerance else "a smaller step"
-        return (f"stopped at t = {self.time:.6g}: {reason}, even with the step cut to "
-                f"{shortest:.3g}; results up to there are kept. Use {remedy}, "
-                "check the loads, or split the body into more superelements")
+        state, code = self.state, CHUNK
+        self.system.routines[:] = addresses(self.system, state)
+        if self.tolerance is not None:
+            state.clock[CURRENT_STEP] = FIRST_STEP * self.h     # so far ahead it looks
+        none = Record.of(state, 0, self.every)
+        while code not in (DONE, FAILED):
+            self.exchanges.serve()
+            code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
+        if code == FAILED:
+            raise InputError("the initial state has no accelerations: "
+                             f"{REASONS[int(state.control[REASON])]}; check the loads and the "
+                             "joints at t = 0")
+        state.control[MATRICES] = 0
+        state.aux_old[:] = state.aux
 
 
 @cache
@@ -297,6 +307,7 @@ def _default(index: int) -> Scheme:
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
-             tolerance: Tolerance | None = None) -> Result:
+             tolerance: Tolerance | None = None, start: Result | None = None) -> Result:
     """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
-    return Simulation(model, h, scheme, output_every, tolerance).run_to(t_end, progress).result()
+    run = Simulation(model, h, scheme, output_every, tolerance, start)
+    return run.run_to(t_end, progress).result()

@@ -1,9 +1,14 @@
-"""Faults of users' functions in a run: which of them raised, or gave what is not finite."""
+"""Users' functions in a run: whether they are what was compiled, and which of them had a fault.
+
+A function has a fault where it raises, or gives what is not finite.
+"""
 
 from collections.abc import Iterator
 
+from sebody.errors import InputError
 from sebody.kernels.user_functions import UserFunction
 from sebody.model.mechanism import Mechanism
+from sebody.model.outside import changed
 
 
 def functions(model: Mechanism) -> Iterator[tuple[str, UserFunction]]:
@@ -18,6 +23,21 @@ def functions(model: Mechanism) -> Iterator[tuple[str, UserFunction]]:
         for motion in triplet.motions:
             for function in motion.history.functions:
                 yield f"the function of {motion.name!r}", function
+
+
+def refuse_changed(model: Mechanism) -> None:
+    """Refuse a model of which a function reads a value that is not what it was compiled with.
+
+    Raises
+    ------
+    InputError
+        The message names the function, the value as it was and as it is, and the remedy.
+    """
+    for what, function in functions(model):
+        if found := changed(function.read, function.function):
+            raise InputError(f"{what} reads {found}: functions are compiled with the values they "
+                             "read; make the load or drive again, or give each function its own "
+                             "value by a default argument, as in lambda t, a=a: a * t")
 
 
 def forget(model: Mechanism) -> None:

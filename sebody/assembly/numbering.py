@@ -31,6 +31,8 @@ class Numbering(NamedTuple):
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
+    memories: dict[int, int] = {}       # id(element) -> first number it keeps, in State.frames
+    jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
 
 
 def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
@@ -45,12 +47,28 @@ def stretch(numbering: Numbering, triplet: Triplet) -> slice:
     return slice(first, first + triplet.start.size)
 
 
+def kept_frames(numbering: Numbering) -> int:
+    """Length of `State.frames`: frames of the superelements, and one number of each element."""
+    return 9 * len(numbering.modes) + len(numbering.memories)
+
+
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates belong to rotations, (total,) of bool."""
     found = np.zeros(numbering.total, dtype=bool)
     for node in model.nodes.values():
         if node.rotation is not None and id(node.rotation) in numbering.triplets:
             found[coordinates(numbering, node.rotation)] = True
+    return found
+
+
+def placed(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Which coordinates belong to positions or rotations, (total,) of bool: no modes, multipliers.
+    """
+    found = np.zeros(numbering.total, dtype=bool)
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                found[coordinates(numbering, triplet)] = True
     return found
 
 
@@ -80,6 +98,7 @@ def number(model: Mechanism) -> Numbering:
             order.place(triplet)
             order.place_multipliers(triplet)
     _refuse_loose(model, last)
+    _refuse_idle_drives(model)
     free, used = len(order.names), _used(model)
     for triplet in used:
         if id(triplet) not in order.at and triplet.root is None:
@@ -89,8 +108,11 @@ def number(model: Mechanism) -> Numbering:
         order.place(triplet)
     matrices = [] if model.planar else [t for t in used if t.rotational]
     rotations = {id(t): k for k, t in enumerate(matrices)}
+    ports = number_ports(model, order.at)
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
-                     order.names, dependent, *number_ports(model, order.at), np.array(groups))
+                     order.names, dependent, ports.of, ports.names, ports.histories,
+                     ports.prescribed, np.array(groups), jumps=ports.jumps,
+                     memories=_memories(model))
 
 
 class _Order:
@@ -125,6 +147,12 @@ class _Order:
                           for j in range(constraint.multipliers))
 
 
+def _memories(model: Mechanism) -> dict[int, int]:
+    """Places, behind the frames of all superelements, of what elements keep."""
+    return {id(element): 9 * len(model.bodies) + k for k, element in enumerate(
+        load for load in model.loads if load.keeps_angle)}
+
+
 def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:
     """Of every triplet the last body it belongs to or is coupled to by a joint or spring."""
     found = dict(last)
@@ -148,6 +176,19 @@ def _refuse_loose(model: Mechanism, held: dict) -> None:
         borne = parents(load.triplets)
         if borne and load.history is not None and not any(id(p) in held for p in borne):
             raise InputError(f"{load.name}: no body is there to bear it: attach one")
+
+
+def _refuse_idle_drives(model: Mechanism) -> None:
+    for joint in model.joints:
+        if joint.kind != "drive":
+            continue
+        driven = list({id(t): t for c in joint.constraints for t in parents(c.triplets)}.values())
+        if not any(one.solved for one in driven):
+            held = [one.name for one in driven if not one.name.startswith("ground.")]
+            raise InputError(f"drive {joint.name!r} has nothing to move: {' and '.join(held)} "
+                             f"{'are' if len(held) > 1 else 'is'} fixed or prescribed; leave out "
+                             "the drive, or what holds them (fix(..., 'position') leaves the "
+                             "rotation free)")
 
 
 def _used(model: Mechanism) -> list[Triplet]:

@@ -12,11 +12,17 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("result", metavar="RESULT.npz",
                         help="file written by 'sebody run SCENE --output FILE.npz'")
     parser.add_argument("quantities", nargs="*", metavar="QUANTITY",
-                        help="what the plots of the page show, as for 'sebody plot'")
+                        help="what the page plots first, as for 'sebody plot'")
     parser.add_argument("--output", type=Path, metavar="FILE.html", required=True,
                         help="a page that needs nothing else; gif or mp4 for a film")
     parser.add_argument("--speed", type=float, metavar="S",
                         help="simulated time for each second of playing")
+    parser.add_argument("--colour", metavar="QUANTITY",
+                        help="what bodies are coloured by, in a page at first: displacement, "
+                             "von_mises, or body, each in a colour of its own")
+    parser.add_argument("--reference", metavar="NODE",
+                        help="node that displacements are measured from, or 'frame', the floating "
+                             "frame of each body; by default its support or its first joint")
     return parser
 
 
@@ -28,6 +34,6 @@ def run(options: argparse.Namespace) -> int:
     check_animation(options.output)
     check_distinct({"--output": options.output, "RESULT": Path(options.result)})
     animate(Result.load(options.result), options.output, *options.quantities,
-            speed=options.speed)
+            speed=options.speed, colour=options.colour, reference=options.reference)
     print(f"animation: {options.output}")
     return 0

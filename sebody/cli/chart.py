@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from sebody.cli.inputs import build_scene, check_distinct, check_picture
-from sebody.files import check_target
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -28,6 +27,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 def run(options: argparse.Namespace) -> int:
     """Measure, print, write and draw."""
     from sebody import inputs
+    from sebody.files import check_target
     from sebody.studies import chart
 
     check_picture(options.output)

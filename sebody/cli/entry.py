@@ -6,6 +6,7 @@ import signal
 import sys
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 from sebody.cli import (
     advise,
@@ -87,10 +88,24 @@ def _mute(code: int) -> int:
     return code
 
 
+class _Version(argparse.Action):
+    """Print the version; unlike argparse's own action, look it up only when it is asked for."""
+
+    def __init__(self, *arguments: Any, **options: Any):
+        super().__init__(*arguments, nargs=0, **options)
+
+    def __call__(self, parser: argparse.ArgumentParser, *parsed: Any) -> None:
+        from sebody import __version__
+
+        print(f"sebody {__version__}")
+        parser.exit()
+
+
 def _parser() -> argparse.ArgumentParser:
     """Every module of a command has `add`, which makes its parser, and `run`."""
     parser = argparse.ArgumentParser(
         prog="sebody", description="Flexible multibody dynamics with superelements.")
+    parser.add_argument("--version", action=_Version, help="show the version and exit")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for command in COMMANDS:
         command.add(commands).set_defaults(command=command.run)

@@ -18,17 +18,26 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--interface", action="append", default=[], metavar="NAME=WHAT",
                         dest="interfaces",
                         help="a boundary node, may be repeated: a node's label, two of them 1/2 "
-                             "where rotations have a node of their own, rbe2:SET or rbe3:SET")
+                             "where rotations have a node of their own, rbe2:SET or rbe3:SET of a "
+                             "node set or surface, 'cylinder:x,y,z;axis;radius' of a hole")
     parser.add_argument("--modes", type=int, metavar="N",
                         help="number of internal modes (default 0)")
     parser.add_argument("--accuracy", type=float, metavar="E",
-                        help="in place of --modes: as many as this relative error of the dynamic "
-                             "stiffness of the interfaces needs, up to the frequency --up-to")
+                        help="in place of --modes: as many as this relative error needs, up to "
+                             "the frequency --up-to")
     parser.add_argument("--up-to", type=float, metavar="F", help="end of the band of --accuracy")
+    parser.add_argument("--criterion", metavar="NAME",
+                        help="what --accuracy is of: stiffness, the dynamic stiffness of the "
+                             "interfaces, or frequencies, those of free vibration alone, which "
+                             "takes far fewer modes (default with rubin)")
     parser.add_argument("--method", default="craig-bampton", metavar="NAME",
                         help="craig-bampton (default), guyan, macneal or rubin")
     parser.add_argument("--format", metavar="NAME", help="kind of the files, guessed by default")
-    parser.add_argument("--units", default="", metavar="TEXT", help="units, to be kept in the file")
+    parser.add_argument("--damping", metavar="D[,D...]",
+                        help="part of critical damping of the free vibration modes: of all, or of "
+                             "each from the lowest up, the last also of those beyond")
+    parser.add_argument("--units", default="", metavar="UNITS",
+                        help="units of the numbers, such as 'mm t N s'")
     parser.add_argument("--unchecked", action="store_true",
                         help="write also reduced matrices that no model would take, for inspect")
     parser.add_argument("--lean", action="store_true",
@@ -41,24 +50,37 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 def run(options: argparse.Namespace) -> int:
     """Read, reduce, write, and say what was found."""
     from sebody.files import check_target
-    from sebody.io.body_file import TARGET, write_body_file
-    from sebody.io.importing import imported
+    from sebody.io.body_file import TARGET, lean, write_body_file
+    from sebody.io.importing import Wanted, imported
     from sebody.io.interfaces import parsed
-    from sebody.io.registry import read_source
+    from sebody.io.registry import naming, read_source
+    from sebody.reduction.watch import Terminal
+    from sebody.units import parsed_units
 
     check_target(options.output, *TARGET)
-    modes = _modes(options)
-    interfaces = parsed(options.interfaces)
-    file = imported(read_source(options.file, options.format), interfaces, modes, options.method,
-                    options.units, options.file)
-    body = None if options.unchecked else file.body()
+    wanted = Wanted(parsed(options.interfaces), _modes(options), options.method, options.units,
+                    _damping(options.damping))
+    parsed_units(options.units, "--units")
+    watch = Terminal()
+    try:
+        watch.stage(f"reading {options.file}")
+        file = imported(read_source(options.file, options.format), wanted, options.file, watch)
+    finally:
+        watch.close()
+    with naming(options.file):
+        body = None if options.unchecked else file.body()
     if options.lean:
-        file.parts["recovery"] = None
+        file = lean(file)
     write_body_file(file, options.output)
+    summary = body.summary() if body else ""
     for name, text in file.provenance.items():
-        print(f"{name}: {text}")
+        if f"{name}: {text}" not in summary:
+            print(f"{name}: {text}")
     if body:
-        print(body.summary())
+        print(summary)
+    for text in file.cautions:
+        if body is None or text not in body.cautions:
+            print(f"caution: {text}")
     print(f"body: {options.output}, see 'sebody inspect {options.output}'")
     return 0
 
@@ -69,7 +91,20 @@ def _modes(options: argparse.Namespace) -> "int | Accuracy":
     if (options.accuracy is None) != (options.up_to is None):
         raise InputError("--accuracy and --up-to belong together: give --accuracy 1e-3 --up-to F")
     if options.accuracy is None:
+        if options.criterion is not None:
+            raise InputError("--criterion is that of --accuracy: give --accuracy 1e-3 --up-to F")
         return options.modes or 0
     if options.modes is not None:
         raise InputError("--accuracy chooses the number of modes: leave out --modes")
-    return Accuracy(options.accuracy, options.up_to)
+    return Accuracy(options.accuracy, options.up_to, options.criterion or "")
+
+
+def _damping(text: str | None) -> float | list[float]:
+    if text is None:
+        return 0.0
+    try:
+        found = [float(word) for word in text.split(",")]
+    except ValueError as error:
+        raise InputError(f"--damping is {text!r}: give a ratio, or ratios with commas between, "
+                         "such as 0.01 or 0.005,0.01,0.02") from error
+    return found if len(found) > 1 else found[0]

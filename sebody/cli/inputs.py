@@ -8,10 +8,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sebody import inputs
 from sebody.cli import scene_files
 from sebody.errors import InputError
-from sebody.studies.catalogue import builder
 
 if TYPE_CHECKING:
     from sebody.results.result import Result
@@ -37,6 +35,8 @@ def source(scene: str) -> Source:
     if scene_files.is_file(scene):
         module = scene_files.load(scene)
         return Source(module.build, _first_line(module), module.__file__)
+    from sebody.studies.catalogue import builder
+
     build = builder(scene)
     return Source(build, _first_line(sys.modules[build.__module__]), "")
 
@@ -53,12 +53,18 @@ def build_scene(name: str, changes: Sequence[str]) -> "Scene":
     arguments = given_arguments(name, build, changes)
     if not file:
         return build(**arguments)
-    return _checked(scene_files.call(file, lambda: build(**arguments)), name)
+    return checked_scene(scene_files.call(file, lambda: build(**arguments)), name)
 
 
-def _checked(scene: object, name: str) -> "Scene":
-    """What the `build` of a file returned, if that is a scene that can be run."""
-    from sebody import Model
+def checked_scene(scene: object, name: str) -> "Scene":
+    """What the `build` of a file returned, if that is a scene that can be run.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    from sebody import Model, inputs
     from sebody.scenes.scene import Scene
 
     what = f"what build of {name} returned"
@@ -156,7 +162,7 @@ def _value(name: str, text: str, default: Any) -> Any:
         return text
     try:
         value = ast.literal_eval(text)
-    except (ValueError, SyntaxError):
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
         value = text
     if isinstance(default, float) and type(value) is int:
         value = float(value)

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from sebody.cli.inputs import check_distinct, check_picture
 from sebody.errors import InputError
-from sebody.files import check_target
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -14,7 +13,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser = commands.add_parser("inspect", help="judge a body file, and say what to do")
     parser.add_argument("body", type=Path, metavar="BODY.npz", help="a body file")
     parser.add_argument("--output", type=Path, metavar="FILE.png",
-                        help="draw its mesh and interfaces")
+                        help="draw its surface, interfaces and free vibrations")
     parser.add_argument("--json", action="store_true", help="print JSON in place of a text")
     parser.add_argument("--repair", choices=["rigid-modes"],
                         help="project the stiffness so that rigid motion costs no force")
@@ -25,6 +24,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Inspect, perhaps repair; 1 if the body has a defect."""
+    from sebody.files import check_target
     from sebody.io.body_file import TARGET, read_body_file, write_body_file
     from sebody.studies import inspection
 
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output:
         from sebody.studies.inspection.draw import draw
 
-        draw(file, found.numbers["centre"], options.output)
+        draw(file, found.body, found.numbers["centre"], options.output)
         said.append(f"picture: {options.output}")
     print(inspection.to_json(found) if options.json else inspection.report(found))
     for line in said:

@@ -7,8 +7,6 @@ import textwrap
 from collections.abc import Callable
 
 from sebody.cli.inputs import described, parameters, source
-from sebody.kernels.names import ELEMENT
-from sebody.studies.catalogue import kernels, scenes
 
 RESULTS = ".npz", ".h5"         # files of results
 
@@ -34,10 +32,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list_quantities(path: str) -> None:
-    from sebody.results.quantities import names
     from sebody.results.result import Result
 
-    print("\n".join(names(Result.load(path))))
+    print("\n".join(Result.load(path).names()))
 
 
 def _list_parameters(scene: str) -> None:
@@ -64,6 +61,9 @@ def meanings_of(build: Callable) -> dict[str, str]:
 
 
 def _list_all() -> None:
+    from sebody.kernels.names import ELEMENT
+    from sebody.studies.catalogue import kernels, scenes
+
     print("scenes")
     for name, summary in scenes().items():
         print(f"  {name:24} {summary}")

@@ -7,7 +7,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from sebody import inputs
 from sebody.errors import InputError
 
 MODULE = "sebody_scene_file"        # name of the module that a file becomes
@@ -27,12 +26,11 @@ def load(path: str) -> ModuleType:
     InputError
         The file cannot be read, is no Python, raises an error, or has no function `build`.
     """
-    file = inputs.path(path, "scene file", (".py",)).resolve()
-    try:
-        source = file.read_bytes()
-    except OSError as error:
-        raise InputError(f"scene file {path} cannot be read ({error.strerror}): give the name of "
-                         "a scene or the path of a file") from error
+    from sebody.files.reading import content
+
+    source = content(path, "scene file", "give the name of a scene or the path of a file",
+                     (".py",))
+    file = Path(path).resolve()
     module = ModuleType(MODULE)
     module.__file__ = str(file)
     sys.modules[MODULE] = module        # where dataclasses and pickle look for it

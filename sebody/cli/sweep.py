@@ -3,12 +3,12 @@
 import argparse
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sebody.cli import interrupts
-from sebody.cli.inputs import check_picture, given_arguments, source
+from sebody.cli.inputs import build_scene, check_picture, given_arguments, source
 from sebody.errors import InputError
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ def run(options: argparse.Namespace) -> int:
     from sebody.studies.sweep.axes import distribution_of, values_of
 
     build, _, _ = source(options.scene)
-    listed = dict(values_of(text) for text in options.vary)
-    sampled = dict(distribution_of(text) for text in options.sample)
+    listed = _by_name("--vary", map(values_of, options.vary))
+    sampled = _by_name("--sample", map(distribution_of, options.sample))
     stem = options.output and (options.output.with_suffix("") if options.output.suffix == ".npz"
                                else options.output)
     if stem:
@@ -96,6 +96,16 @@ def run(options: argparse.Namespace) -> int:
     return int(not table.good.any())
 
 
+def _by_name(option: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """What an option gives, each name once."""
+    found: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in found:
+            raise InputError(f"{option} {name} is given twice: give it once, with all its values")
+        found[name] = value
+    return found
+
+
 def _beside(stem: Path, suffix: str) -> Path:
     return stem.with_name(stem.name + suffix)
 
@@ -105,7 +115,7 @@ def _outputs(texts: Sequence[str], build, options: argparse.Namespace) -> "dict[
     from sebody.analysis import ensembles
 
     if not texts:
-        scene = build(**given_arguments(options.scene, build, options.changes))
+        scene = build_scene(options.scene, options.changes)
         quantity = f"{scene.tip}.position"
         return {f"final({quantity})": ensembles.final(quantity)}
     makers = {name: getattr(ensembles, name) for name in

@@ -3,8 +3,6 @@
 import argparse
 import time
 
-from sebody.studies.catalogue import kernel_files
-
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
@@ -15,6 +13,7 @@ def run(options: argparse.Namespace) -> int:
     """Compile, and print how long it takes."""
     from sebody.analysis.first_run import PARTS, compile_missing, compile_part
     from sebody.kernels.loader import load
+    from sebody.studies.catalogue import kernel_files
 
     began, names = time.perf_counter(), list(kernel_files())
     compile_missing(names, PARTS,

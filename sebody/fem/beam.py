@@ -1,16 +1,20 @@
 """Beams and frames of two-node elements, spatial and planar."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.errors import InputError
 from sebody.fem.beam_model import beam_model
 from sebody.fem.model import FEModel
 from sebody.fem.section import AnySection, section_at
+
+OF_ELEMENT = 4000       # bytes: entries of its matrices, and what their assembly needs
 
 
 def straight_beam(
@@ -84,9 +88,10 @@ def frame(
     """
     points = inputs.reals(points, "points", "give 2 or 3 finite coordinates for each")
     points = _points(points, 2 if points.shape[-1:] == (2,) else 3)
-    elements = _count(elements)
+    found = _members(members, len(points))
+    elements = _count(elements, len(found))
     nodes, pairs = list(points), []
-    for first, last in _members(members, len(points)):
+    for first, last in found:
         inner = range(len(nodes), len(nodes) + elements - 1)
         nodes.extend(np.linspace(points[first], points[last], elements + 1)[1:-1])
         chain = [first, *inner, last]
@@ -126,8 +131,12 @@ def _points(points: ArrayLike, dimension: int) -> NDArray:
     return inputs.array(points, "points", (None, dimension), remedy=remedy)
 
 
-def _count(elements: int) -> int:
-    return inputs.integer(elements, "elements", least=1)
+def _count(elements: int, members: int = 1) -> int:
+    """Number of elements, of each member of a frame."""
+    count = inputs.integer(elements, "elements", least=1)
+    memory.check(float(OF_ELEMENT) * count * members, f"elements is {count}: the model",
+                 "give fewer elements")
+    return count
 
 
 def _beam_model(

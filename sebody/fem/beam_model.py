@@ -11,6 +11,7 @@ from sebody.fem import beam_element
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SPATIAL
 from sebody.fem.mass_field import MassField
+from sebody.fem.materials import Material
 from sebody.fem.model import FEModel, assemble
 from sebody.fem.section import StiffnessSection
 
@@ -40,10 +41,16 @@ def beam_model(nodes: NDArray, pairs: NDArray, lengths: NDArray, axes: NDArray,
         matrix = elements.turns.transpose(0, 2, 1) @ local @ elements.turns
         matrix = (matrix + matrix.transpose(0, 2, 1)) / 2
         matrices.append(assemble(elements.dofs, matrix, size))
-    return FEModel(*matrices, nodes, node_dofs,
+    return FEModel(*matrices, nodes, node_dofs, materials=_materials(sections),
                    mass_field=_mass_field(elements, nodes, pairs, size),
                    geometric_stiffness=BeamPrestress(elements, size), cells=[("line", pairs)],
                    stress=_stresses(elements, pairs, sections), outlines=_outlines(sections, axes))
+
+
+def _materials(sections: Sequence[StiffnessSection]) -> list[Material]:
+    """What the sections are made of: EA over the mass a length is E over the density."""
+    speeds = {np.sqrt(section.axial / section.mass): None for section in dict.fromkeys(sections)}
+    return [Material("of a section", float(speed)) for speed in speeds]
 
 
 def _outlines(sections: Sequence[StiffnessSection], axes: NDArray) -> NDArray:

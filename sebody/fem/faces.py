@@ -11,23 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.fem.cells import CORNERS, EDGES, SOLIDS, faces_of
+from sebody.fem.face_functions import face_rule
 from sebody.fem.model import FEModel
 
-# corners of the faces of each kind, and its edges in the order of its middle nodes
-_SOLIDS = {
-    "tetra": ([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
-              [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]),
-    "hexahedron": ([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6),
-                    (3, 0, 4, 7)],
-                   [(0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7), (0, 4), (1, 5),
-                    (2, 6), (3, 7)]),
-    "wedge": ([(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
-              [(0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5)]),
-}
-_PLANES = {
-    "triangle": ([(0, 1), (1, 2), (2, 0)], [(0, 1), (1, 2), (0, 2)]),
-    "quad": ([(0, 1), (1, 2), (2, 3), (3, 0)], [(0, 1), (1, 2), (2, 3), (0, 3)]),
-}
 _QUADRATIC = {"tetra10": "tetra", "hexahedron20": "hexahedron", "wedge15": "wedge",
               "triangle6": "triangle", "quad8": "quad"}
 _REVERSED = {"line": [1, 0], "line3": [1, 0, 2], "triangle": [0, 2, 1],
@@ -77,18 +64,16 @@ def _outward(model: FEModel, kind: str, faces: NDArray, middles: NDArray) -> NDA
 def _faces_of(kind: str, planar: bool) -> Iterator[tuple[str, list[int]]]:
     """Kind and nodes, in the element, of each face of an element."""
     base = _QUADRATIC.get(kind, kind)
-    table = _PLANES if planar else _SOLIDS
-    if base in table:
-        corners, edges = table[base]
-        middle = {frozenset(edge): len({*sum(corners, ())}) + k for k, edge in enumerate(edges)}
-        for face in corners:
-            ring = zip(face, face[1:] + face[:1], strict=True)
-            middles = [middle[edge] for edge in dict.fromkeys(map(frozenset, ring))]
-            columns = [*face, *(middles if kind in _QUADRATIC else [])]
-            yield _face_kind(len(face), len(columns)), columns
-    elif not planar and base in _PLANES:
-        corners = 3 if base == "triangle" else 4
-        yield kind, list(range(2 * corners if kind in _QUADRATIC else corners))
+    if base not in CORNERS or (planar and base in SOLIDS):
+        return
+    count = CORNERS[base] + (len(EDGES[base]) if kind in _QUADRATIC else 0)
+    if planar:
+        for k, edge in enumerate(EDGES[base]):
+            columns = [*edge, *([CORNERS[base] + k] if kind in _QUADRATIC else [])]
+            yield _face_kind(2, len(columns)), columns
+        return
+    for face in faces_of(kind, count):
+        yield _face_kind(3 if len(face) in (3, 6) else 4, len(face)), list(face)
 
 
 def _face_kind(corners: int, nodes: int) -> str:
@@ -131,64 +116,3 @@ def normals(corners: NDArray, slopes: NDArray) -> NDArray:
     if corners.shape[2] == 2:
         return np.stack([tangents[:, :, 0, 1], -tangents[:, :, 0, 0]], axis=-1)
     return np.cross(tangents[:, :, 0], tangents[:, :, 1])
-
-
-def face_rule(kind: str) -> tuple[NDArray, NDArray, NDArray]:
-    """Functions (g, k), their slopes (g, k, c) and weights (g,) at the points of a kind of face.
-
-    Exact for products of two functions on flat faces with straight edges.
-    """
-    points, weights = _points(kind)
-    if kind.startswith("triangle"):
-        s, t = points.T
-        area = np.stack([1 - s - t, s, t], axis=1)
-        change = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
-        if kind == "triangle":
-            return area, np.broadcast_to(change, (len(s), 3, 2)), weights
-        first, second = [0, 1, 2], [1, 2, 0]
-        values = np.hstack([area * (2 * area - 1), 4 * area[:, first] * area[:, second]])
-        slopes = np.concatenate([
-            (4 * area - 1)[:, :, None] * change,
-            4 * (area[:, first, None] * change[second] + area[:, second, None] * change[first])],
-            axis=1)
-        return values, slopes, weights
-    if kind.startswith("line"):
-        s = points[:, 0]
-        if kind == "line":
-            return (np.stack([1 - s, 1 + s], axis=1) / 2,
-                    np.broadcast_to([[-0.5], [0.5]], (len(s), 2, 1)), weights)
-        values = np.stack([s * (s - 1) / 2, s * (s + 1) / 2, 1 - s**2], axis=1)
-        return values, np.stack([s - 0.5, s + 0.5, -2 * s], axis=1)[:, :, None], weights
-    return *_quad(points, kind == "quad8"), weights
-
-
-def _points(kind: str) -> tuple[NDArray, NDArray]:
-    """Points and weights of integration."""
-    line, weight = np.polynomial.legendre.leggauss(3)
-    if kind.startswith("line"):
-        return line[:, None], weight
-    if kind.startswith("quad"):
-        return (np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2),
-                np.outer(weight, weight).ravel())
-    # six points of degree 4: D.A. Dunavant, Int. J. Numer. Meth. Engng 21, 1985
-    parts = [(0.445948490915965, 0.223381589678011), (0.091576213509771, 0.109951743655322)]
-    points = [p for a, _ in parts for p in ((a, a), (1 - 2 * a, a), (a, 1 - 2 * a))]
-    return np.array(points), np.repeat([w for _, w in parts], 3) / 2
-
-
-def _quad(points: NDArray, quadratic: bool) -> tuple[NDArray, NDArray]:
-    """Bilinear functions of four nodes or those of eight (serendipity)."""
-    s, t = points[:, :1], points[:, 1:]
-    a, b = np.array([-1.0, 1, 1, -1]), np.array([-1.0, -1, 1, 1])
-    along, across = 1 + a * s, 1 + b * t
-    if not quadratic:
-        return along * across / 4, np.stack([a * across, b * along], axis=2) / 4
-    values = along * across * (a * s + b * t - 1) / 4
-    slopes = np.stack([a * across * (2 * a * s + b * t), b * along * (a * s + 2 * b * t)],
-                      axis=2) / 4
-    c, d = np.array([0.0, 1, 0, -1]), np.array([-1.0, 0, 1, 0])     # middles of the edges
-    level = c == 0
-    middle = np.where(level, (1 - s**2) * (1 + d * t), (1 + c * s) * (1 - t**2)) / 2
-    ds = np.where(level, -2 * s * (1 + d * t), c * (1 - t**2)) / 2
-    dt = np.where(level, d * (1 - s**2), -2 * t * (1 + c * s)) / 2
-    return np.hstack([values, middle]), np.concatenate([slopes, np.stack([ds, dt], axis=2)], axis=1)

@@ -1,17 +1,21 @@
 """A rectangular block of 8-node hexahedra with incompatible modes (translation DOFs only)."""
 
+from __future__ import annotations
+
 from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.fem.layout import SOLID
+from sebody.fem.materials import Material
 from sebody.fem.model import FEModel, assemble
 from sebody.fem.stress import SolidStress, elasticity
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest
+OF_ELEMENT = 40_000     # bytes: entries of its matrices, and what their assembly needs
 _MESHIO = [0, 1, 3, 2, 4, 5, 7, 6]  # the same corners in the order of meshio
 
 
@@ -56,6 +60,8 @@ def hexahedral_block(
     inputs.number(density, "block density", above=0)
     inputs.number(poisson_ratio, "block poisson_ratio", above=-1, below=0.5)
 
+    memory.check(float(OF_ELEMENT) * float(np.prod(counts.astype(float))),
+                 f"block divisions is {inputs.shown(divisions)}: the model", "give fewer divisions")
     nx, ny, nz = counts + 1
     z, y, x = (grid.ravel() for grid in np.meshgrid(*map(np.arange, (nz, ny, nx)), indexing="ij"))
     nodes = corner + np.column_stack([x, y, z]) * (size / counts)
@@ -73,6 +79,7 @@ def hexahedral_block(
     columns = (3 * np.array(_MESHIO)[:, None] + np.arange(3)).ravel()
     own = SolidStress("hexahedron", cells, nodes, law, strains[_MESHIO][:, :, columns])
     return FEModel(stiffness, mass, nodes, SOLID, cells=[("hexahedron", cells)], stress=(own,),
+                   materials=[Material("", float(np.sqrt(youngs_modulus / density)), density)],
                    geometric_stiffness=BrickPrestress(dofs, volume * law @ strains, slopes,
                                                       3 * len(nodes)))
 

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.fem.faces import face_rule, faces_within, normals
+from sebody.fem.face_functions import face_rule
+from sebody.fem.faces import faces_within, normals
 from sebody.fem.model import FEModel
 
 

@@ -1,5 +1,7 @@
 """What an FE program hands over: matrices, node coordinates and the meaning of the DOFs."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -13,7 +15,9 @@ from sebody.fem import mesh
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SOLID, SPATIAL, equal_rows, mapped_rows
 from sebody.fem.mass_field import MassField, nodal_field
+from sebody.fem.materials import Material, checked_materials
 from sebody.fem.stress import SolidStress
+from sebody.units import parsed_units
 
 SYMMETRY_LIMIT = 1e-8   # difference of entries across the diagonal, relative to its own entries
 
@@ -48,12 +52,21 @@ class FEModel:
         Named sets of node indices.
     cells : sequence of (str, (n, k) of int)
         Kind of the elements, by meshio's names, and their nodes.
-    source, units : str
-        Where the model comes from and its units, in words.
+    source : str
+        Where the model comes from, in words.
+    units : str
+        Units of its numbers, such as ``mm t N s``.
     outlines : (n_lines, corners, 3), optional
         Edges of the sections of the cells of kind line, about their axes, for pictures [length].
     stress : sequence of SolidStress or BeamStress
         What stresses the displacements cause, one for each kind of element; see `solid_stress`.
+    followers : (n_nodes dimension, n_dofs), sparse, optional
+        Displacements of nodes without DOFs that follow others; rows of all other nodes are zero.
+    missing : mapping of str to str
+        Why the model has no 'stresses', 'stiffening' or 'exact inertia', where its source knows:
+        ``why; what to do``.
+    materials : sequence of Material
+        What it is made of, for the units.
 
     Raises
     ------
@@ -76,7 +89,17 @@ class FEModel:
     units: str = ""
     outlines: NDArray | None = None
     stress: Sequence[SolidStress | BeamStress] = ()
+    followers: sparse.csr_array | None = None
+    missing: Mapping[str, str] = field(default_factory=dict)
+    materials: Sequence[Material] = ()
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
+
+    def __repr__(self) -> str:
+        known = {"mass field": self.mass_field, "geometric stiffness": self.geometric_stiffness,
+                 "cells": self.cells, "stress": self.stress, "node sets": self.node_sets}
+        has = ", ".join(name for name, value in known.items() if value)
+        return (f"<FEModel: {len(self.coordinates)} nodes, {self.stiffness.shape[0]} DOFs"
+                + f"; {has}" * bool(has) + ">")
 
     def __post_init__(self) -> None:
         self._check_nodes()
@@ -98,6 +121,9 @@ class FEModel:
         else:
             own = nodal_field(self.mass, self.coordinates, self.rows)
             object.__setattr__(self, "mass_field", own)
+        if self.followers is not None and self.followers.shape != (count * dimension, size):
+            raise InputError(f"followers has shape {self.followers.shape}; {count} nodes and "
+                             f"{size} DOFs need ({count * dimension}, {size})")
         checked = mesh.labels(self.labels, count), mesh.node_sets(self.node_sets, count), \
             mesh.cells(self.cells, count)
         for name, value in zip(("labels", "node_sets", "cells"), checked, strict=True):
@@ -107,6 +133,9 @@ class FEModel:
             object.__setattr__(self, "outlines", inputs.array(
                 self.outlines, "outlines", (lines, None, 3),
                 remedy=f"give corners (x, y, z) for each of the {lines} cells of kind line"))
+        object.__setattr__(self, "materials", checked_materials(self.materials))
+        object.__setattr__(self, "units", str(parsed_units(self.units) or ""))
+        inputs.text(self.source, "source of an FE model")
         remedy = "give SolidStress, as solid_stress makes them"
         object.__setattr__(self, "stress", tuple(
             inputs.instance(one, "stress", SolidStress | BeamStress, remedy)
@@ -115,7 +144,8 @@ class FEModel:
     def _check_nodes(self) -> None:
         """Coordinates, and the rows of every node."""
         layouts = f"use {SPATIAL}, {PLANAR} or {SOLID}"
-        node_dofs = tuple(inputs.items(self.node_dofs, "node_dofs", layouts))
+        node_dofs = tuple(one if isinstance(one, str) else inputs.shown(one) for one in
+                          inputs.items(self.node_dofs, "node_dofs", layouts))
         if node_dofs not in (SPATIAL, PLANAR, SOLID):
             raise InputError(f"node_dofs {node_dofs} unknown; {layouts}")
         dimension = sum(not name.startswith("r") for name in node_dofs)
@@ -157,8 +187,9 @@ class FEModel:
             A node or kind there is not.
         """
         last = len(self.coordinates) - 1
-        node = inputs.integer(node, "node", least=0, most=last,
-                              remedy=f"the model has nodes 0 to {last}")
+        node = inputs.integer(node, "node", least=0, most=last, remedy=(
+            f"the model has nodes 0 to {last}" + (
+                "" if self.labels is None else "; node(label) is the index of a label")))
         is_rotation = np.array([name.startswith("r") for name in self.node_dofs])
         wanted = {
             "full": np.full(len(is_rotation), True),
@@ -206,12 +237,19 @@ class FEModel:
         return f"node {node if self.labels is None else self.labels[node]}"
 
     def by_nodes(self, shapes: NDArray) -> NDArray:
-        """Displacements (n_dofs, m) node after node, (n_nodes k, m); 0 for DOFs there are not."""
+        """Displacements (n_dofs, m) node after node, (n_nodes k, m); 0 for DOFs there are not.
+
+        Nodes without DOFs move as `followers` says.
+        """
         if self.dof_map is None:
             return shapes
         rows = self.rows.ravel()
         result = np.zeros((len(rows), shapes.shape[1]))
         result[rows >= 0] = shapes[rows[rows >= 0]]
+        if self.followers is not None:
+            count, dimension = self.coordinates.shape
+            moved = (self.followers @ shapes).reshape(count, dimension, -1)
+            result.reshape(count, -1, shapes.shape[1])[:, :dimension] += moved
         return result
 
 

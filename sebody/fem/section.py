@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sebody import inputs
 from sebody.errors import InputError
@@ -198,6 +198,14 @@ class Section:
 AnySection = Section | StiffnessSection | Callable[[float], Section | StiffnessSection]
 
 
+def _called(section: Callable, place: float) -> Any:
+    try:
+        return section(place)
+    except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
+        raise InputError(f"section at {place:g} of the beam: the function raised "
+                         f"{type(error).__name__}: {error}; correct it") from error
+
+
 def section_at(section: AnySection, place: float) -> StiffnessSection:
     """The section at `place`, from 0 at the start of a beam to 1 at its end.
 
@@ -206,7 +214,7 @@ def section_at(section: AnySection, place: float) -> StiffnessSection:
     InputError
         Something that is no section.
     """
-    found = section(place) if callable(section) else section
+    found = _called(section, place) if callable(section) else section
     if not isinstance(found, (Section, StiffnessSection)):
         raise InputError(
             f"section {inputs.shown(found)} is none: give a Section, a StiffnessSection or a "

@@ -13,9 +13,23 @@ from scipy import sparse
 from sebody.errors import InputError
 from sebody.fem.isoparametric import slopes_at
 from sebody.fem.model import assemble
-from sebody.fem.stress import elasticity
 
 TETRAHEDRON_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]   # middles of tetra10
+
+
+class InvertedCell(InputError):
+    """A cell that is turned inside out, or has no volume.
+
+    Parameters
+    ----------
+    message : str
+    group, cell : int
+        Which of the groups of cells, and which of its cells.
+    """
+
+    def __init__(self, message: str, group: int, cell: int):
+        super().__init__(message)
+        self.group, self.cell = group, cell
 
 
 class SolidPrestress:
@@ -27,8 +41,9 @@ class SolidPrestress:
     ----------
     points : (n, 3)
         Nodes [length].
-    cells : sequence of (str, (e, a), float, float)
-        Kind of the elements by meshio's name, nodes, Young's modulus and Poisson's ratio.
+    cells : sequence of (str, (e, a), (6, 6) or (e, 6, 6))
+        Kind of the elements by meshio's name, nodes, stress of a strain of all or of each; see
+        `sebody.fem.stress` for the order of the components.
     motion : (3 n, n_dofs), sparse
         Displacements of the nodes from the DOFs.
     tied : sequence of (rows, nodes, arms)
@@ -38,14 +53,14 @@ class SolidPrestress:
     Raises
     ------
     InputError
-        An unknown kind, or an element turned inside out.
+        An unknown kind, or an element turned inside out (`InvertedCell`).
     """
 
-    def __init__(self, points: NDArray, cells: Sequence[tuple[str, NDArray, float, float]],
+    def __init__(self, points: NDArray, cells: Sequence[tuple[str, NDArray, NDArray]],
                  motion: sparse.csr_array,
                  tied: Sequence[tuple[NDArray, NDArray, NDArray]] = ()):
         self._motion, self._tied, self._count = motion, tuple(tied), len(points)
-        self._groups = [_group(points, *group) for group in cells]
+        self._groups = [_group(k, points, *group) for k, group in enumerate(cells)]
 
     def __call__(self, displacement: NDArray) -> sparse.csc_array:
         """Geometric stiffness (n_dofs, n_dofs) of the displacement (n_dofs,) of a prestress."""
@@ -65,14 +80,18 @@ class SolidPrestress:
             np.add.at(found, nodes, pushed.sum(axis=1))
         return self._motion.T @ found.ravel()
 
+    @property
+    def volume(self) -> float:
+        """Of all cells."""
+        return float(sum(volumes.sum() for _, _, volumes, _ in self._groups))
+
     def _stressed(self, displacement: NDArray) -> Iterator[tuple[NDArray, NDArray, NDArray]]:
         """Of every group nodes (e, a), slopes and ``sigma_ij N_a,j`` times volume (e, g, a, 3)."""
         moved = (self._motion @ displacement).reshape(-1, 3)
-        for nodes, slopes, volumes, (lame, shear) in self._groups:
+        for nodes, slopes, volumes, law in self._groups:
             gradients = np.einsum("egai,eak->egki", slopes, moved[nodes])   # u_k,i
-            stresses = shear * (gradients + gradients.swapaxes(2, 3))
-            trace = np.trace(gradients, axis1=2, axis2=3)
-            stresses += lame * trace[..., None, None] * np.eye(3)
+            shears = gradients[..., _SECOND, _FIRST] * (_FIRST != _SECOND)
+            stresses = ((gradients[..., _FIRST, _SECOND] + shears) @ law)[..., _TENSOR]
             stresses *= volumes[..., None, None]
             yield nodes, slopes, np.einsum("egij,egaj->egai", stresses, slopes)
 
@@ -96,9 +115,9 @@ def knows(kind: str) -> bool:
     return kind in _RULES
 
 
-def _group(points: NDArray, kind: str, nodes: NDArray, youngs_modulus: float, poisson_ratio: float
-           ) -> tuple[NDArray, NDArray, NDArray, tuple[float, float]]:
-    """Nodes (e, a), slopes (e, g, a, 3), volumes (e, g) of the points, Lame's constants."""
+def _group(number: int, points: NDArray, kind: str, nodes: NDArray, law: NDArray
+           ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+    """Nodes (e, a), slopes (e, g, a, 3), volumes (e, g) of the points, and the law."""
     if kind not in _RULES:
         raise InputError(f"cells of kind {kind!r} have no geometric stiffness here: use "
                          f"{', '.join(_RULES)}, or none")
@@ -108,11 +127,16 @@ def _group(points: NDArray, kind: str, nodes: NDArray, youngs_modulus: float, po
     determinants = np.linalg.det(jacobians)
     if (determinants <= 0).any():
         element = int(np.argwhere(determinants <= 0)[0][0])
-        raise InputError(f"cell {element} of kind {kind!r}, nodes {nodes[element].tolist()}, is "
-                         "turned inside out: correct the mesh or the order of its nodes")
+        raise InvertedCell(f"cell {element} of kind {kind!r}, nodes {nodes[element].tolist()}, is "
+                           "turned inside out: correct the mesh or the order of its nodes", number,
+                           element)
     slopes = np.einsum("egki,gai->egak", np.linalg.inv(jacobians), of_reference)
-    law = elasticity(youngs_modulus, poisson_ratio)
-    return nodes, slopes, determinants * weights, (law[0, 1], law[3, 3])
+    return nodes, slopes, determinants * weights, law
+
+
+# components (xx, yy, zz, yz, zx, xy) of tensors, and their places in these
+_FIRST, _SECOND = np.array([0, 1, 2, 1, 2, 0]), np.array([0, 1, 2, 2, 0, 1])
+_TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
 
 
 def _gauss(count: int) -> tuple[NDArray, NDArray]:
@@ -121,19 +145,19 @@ def _gauss(count: int) -> tuple[NDArray, NDArray]:
             np.array([a * b * c for a, b, c in product(weights, repeat=3)]))
 
 
-def _prism(count: int) -> tuple[NDArray, NDArray]:
-    """Three points in the triangle, Gauss's along the axis."""
-    triangle = ((1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3))
+def _prism(triangle: tuple[tuple[float, float], ...], count: int) -> tuple[NDArray, NDArray]:
+    """Points in the triangle with equal weights, Gauss's along the axis."""
     pairs = list(zip(*np.polynomial.legendre.leggauss(count), strict=True))
     return (np.array([(*place, z) for z, _ in pairs for place in triangle]),
-            np.array([weight / 6 for _, weight in pairs for _ in triangle]))
+            np.array([weight / 2 / len(triangle) for _, weight in pairs for _ in triangle]))
 
 
 _NEAR, _FAR = (5 - np.sqrt(5)) / 20, (5 + 3 * np.sqrt(5)) / 20
 _FOUR = np.array([(_NEAR, _NEAR, _NEAR), (_FAR, _NEAR, _NEAR), (_NEAR, _FAR, _NEAR),
                   (_NEAR, _NEAR, _FAR)])
-# points and weights of the full integration that FE programs use
+# points and weights of the integration that FE programs use, of linear wedges two points
 _RULES = {"tetra": (np.full((1, 3), 0.25), np.full(1, 1 / 6)),
           "tetra10": (_FOUR, np.full(4, 1 / 24)), "hexahedron": _gauss(2),
-          "hexahedron20": _gauss(3), "hexahedron27": _gauss(3), "wedge": _prism(2),
-          "wedge15": _prism(3)}
+          "hexahedron20": _gauss(3), "hexahedron27": _gauss(3),
+          "wedge": _prism(((1 / 3, 1 / 3),), 2),
+          "wedge15": _prism(((1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)), 3)}

@@ -8,6 +8,8 @@ the tensor's. Those of solids are along the axes of the FE model, those of beams
 the section.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,6 +21,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem import mesh
 from sebody.fem.isoparametric import SOLID_KINDS, element_kind
+from sebody.tabular import brief
 
 FLAT = 1e-10        # volume of an element, of its size cubed, that is none
 
@@ -47,6 +50,8 @@ class SolidStress:
     coordinates: NDArray
     elasticity: NDArray
     strains: NDArray | None = None
+
+    __repr__ = brief
 
     @property
     def points_per_element(self) -> int:
@@ -98,26 +103,30 @@ class SolidStress:
         n, g, c, s = values.shape
         return (to_nodes @ values.reshape(n, g, c * s)).reshape(n, -1, c, s)
 
-    def restricted(self, place: NDArray, coordinates: NDArray) -> "SolidStress":
+    def restricted(self, place: NDArray, coordinates: NDArray) -> SolidStress:
         """Of the elements whose nodes are kept: `place` has their new numbers, -1 for others."""
         kept = np.all(place[self.nodes] >= 0, axis=1)
         law = self.elasticity if self.elasticity.ndim == 2 else self.elasticity[kept]
         return replace(self, nodes=place[self.nodes[kept]], coordinates=coordinates,
                        elasticity=law)
 
+    def volumes(self) -> NDArray:
+        """Volume about each point, of the size cubed; negative where it is mirrored, (n, g)."""
+        jacobian = self.jacobian()
+        size = np.abs(jacobian).max(axis=(1, 2, 3))
+        return np.linalg.det(jacobian) / np.where(size > 0, size, 1.0)[:, None]**3
+
+    def jacobian(self) -> NDArray:
+        """Derivatives of x, y and z by the element's coordinates, (n, g, 3, 3)."""
+        corners = self.coordinates[self.nodes]
+        slopes = element_kind(self.kind).slopes
+        return (slopes.reshape(-1, slopes.shape[2]) @ corners).reshape(len(corners), -1, 3, 3)
+
     @cached_property
     def _inverse(self) -> NDArray:
         """Derivatives of the element's coordinates by x, y and z, (n, g, 3, 3)."""
-        corners = self.coordinates[self.nodes]
-        slopes = element_kind(self.kind).slopes
-        jacobian = (slopes.reshape(-1, slopes.shape[2]) @ corners).reshape(len(corners), -1, 3, 3)
-        size = np.abs(jacobian).max(axis=(1, 2, 3))
-        flat = np.abs(np.linalg.det(jacobian)).min(axis=1) <= FLAT * size**3
-        if flat.any():
-            k = int(np.argmax(flat))
-            raise InputError(f"element {k} of kind {self.kind!r}, with the nodes "
-                             f"{self.nodes[k].tolist()}, has no volume: correct its nodes")
-        return np.linalg.inv(jacobian)
+        _refuse(self, np.abs(self.volumes()).min(axis=1) <= FLAT, "has no volume")
+        return np.linalg.inv(self.jacobian())
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,6 +147,8 @@ class StressModes:
     modes: NDArray
     nodes: NDArray
 
+    __repr__ = brief
+
     def __post_init__(self) -> None:
         points = inputs.array(self.points, "points of stress modes", (None, 3))
         modes = inputs.array(self.modes, "stress modes", (len(points), 6, None))
@@ -145,7 +156,7 @@ class StressModes:
         for name, value in (("points", points), ("modes", modes), ("nodes", nodes)):
             object.__setattr__(self, name, value)
 
-    def restricted(self, place: NDArray, coordinates: NDArray) -> "StressModes":
+    def restricted(self, place: NDArray, coordinates: NDArray) -> StressModes:
         """Of the points that belong to kept nodes."""
         own = np.where(self.nodes < 0, -1, place[self.nodes])
         return StressModes(self.points[own >= 0], self.modes[own >= 0], own[own >= 0])
@@ -168,7 +179,9 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
     Raises
     ------
     InputError
-        No solid elements, a wrong number of nodes, or a material that there is not.
+        No solid elements, a wrong number of nodes, elements without volume or turned inside out in
+        a part of them (a whole one may be mirrored, which changes no strain), or a material that
+        there is not.
     """
     coordinates = inputs.array(coordinates, "coordinates", (None, 3))
     inputs.number(youngs_modulus, "youngs_modulus", above=0)
@@ -183,10 +196,21 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
             raise InputError(f"cells of kind {kind!r} have {nodes.shape[1]} nodes each: give "
                              f"{count}, in meshio's order")
         found.append(SolidStress(kind, nodes, coordinates, law))
+        volumes = found[-1].volumes()
+        _refuse(found[-1], np.abs(volumes).min(axis=1) <= FLAT, "has no volume")
+        _refuse(found[-1], (volumes > 0).any(axis=1) & (volumes < 0).any(axis=1),
+                "is turned inside out in a part of it")
     if not found:
         raise InputError(f"cells have no solid elements: give cells of the kinds "
                          f"{', '.join(SOLID_KINDS)}")
     return tuple(found)
+
+
+def _refuse(one: SolidStress, wrong: NDArray, what: str) -> None:
+    if wrong.any():
+        k = int(np.argmax(wrong))
+        raise InputError(f"element {k} of kind {one.kind!r}, with the nodes "
+                         f"{one.nodes[k].tolist()}, {what}: correct its nodes, in meshio's order")
 
 
 def elasticity(youngs_modulus: float, poisson_ratio: float) -> NDArray:

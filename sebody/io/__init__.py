@@ -1,12 +1,19 @@
 """Files: those of finite element programs, and bodies in files of our own."""
 
-from sebody.io.body_file import BodyFile, load_body, read_body_file, save_body
-from sebody.io.importing import import_body, read_fe_model
-from sebody.io.ngsolve_space import from_ngsolve
-from sebody.io.registry import SOURCES, Source
-from sebody.io.scikit_fem import from_skfem
-from sebody.io.sid import write_sid
+from typing import TYPE_CHECKING
+
+from sebody.lazy import load_on_demand
+
+if TYPE_CHECKING:
+    from sebody.io.body_file import BodyFile, load_body, read_body_file, save_body
+    from sebody.io.importing import import_body, read_fe_model
+    from sebody.io.ngsolve_space import from_ngsolve
+    from sebody.io.registry import SOURCES, Source
+    from sebody.io.scikit_fem import from_skfem
+    from sebody.io.sid import write_sid
 
 __all__ = ["SOURCES", "BodyFile", "Source", "from_ngsolve", "from_skfem",
            "import_body", "load_body", "read_body_file",
            "read_fe_model", "save_body", "write_sid"]
+
+load_on_demand(__name__)

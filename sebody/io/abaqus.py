@@ -10,17 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.fem.model import FEModel
-from sebody.io.deck import Deck, deck_cells, deck_sets, read_deck
-from sebody.io.prestress import deck_prestress, deck_stress
+from sebody.io.deck.model import deck_model
+from sebody.io.deck.reading import Deck, read_deck
 from sebody.io.reading import Reading
-from sebody.io.reduced import NAMES, reduced_parts
+from sebody.io.reduced import reduced_parts
 from sebody.io.text import fault, read_text
 from sebody.io.triplets import symmetric
 
 _SUBSTRUCTURE = "write it with *SUBSTRUCTURE MATRIX OUTPUT, STIFFNESS=YES, MASS=YES"
 _GENERATE = ("write it with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX OUTPUT, STIFFNESS, MASS, "
              "FORMAT=LABELS")
+# selectively reduced integration, hourglass control, modified elements
+_OWN_WAYS = ("C3D8", "C3D8R", "C3D10M")
 _HELD = 1e36        # what Abaqus writes on the diagonal of a fixed DOF
 
 
@@ -71,7 +72,7 @@ def _substructure(path: Path) -> tuple[list[int], list[list[int]], dict]:
             if where in ("STIFFNESS", "MASS"):
                 matrices[where] = number, []
             elif where == "USER ELEMENT":
-                count = int(re.search(r"NODES\s*=\s*(\d+)", line)[1])
+                count = _count(path, number, line)
         elif where == "USER ELEMENT" and words:
             first, *own = _whole(path, number, words) if at else [1, *_whole(path, number, words)]
             at[first] = [k - 1 for k in own]
@@ -90,6 +91,14 @@ def _substructure(path: Path) -> tuple[list[int], list[list[int]], dict]:
                          "GENERATE writes no mass and a stiffness that is not condensed, so use "
                          f"*FREQUENCY, SOLVER=MATRIXSTORAGE; in Abaqus {_SUBSTRUCTURE}")
     return labels, directions, matrices
+
+
+def _count(path: Path, number: int, line: str) -> int:
+    """Number of nodes that *USER ELEMENT tells of; each has an entry in a list."""
+    found = re.search(r"NODES\s*=\s*(\d{1,9})\b", line)
+    if not found:
+        raise fault(path, number, "*USER ELEMENT has no number of nodes", _SUBSTRUCTURE)
+    return int(found[1])
 
 
 def _keyword(path: Path, number: int, line: str) -> str:
@@ -153,18 +162,9 @@ def read_generated(path: Path) -> Reading:
         raise InputError(f"{path} has rows of node {unknown[0]}, which {deck.path} does not have: "
                          "give files of one job, flattened (no parts and instances)")
     stiffness, mass = (_matrix(found, keys) for found in entries)
-    index = {label: k for k, label in enumerate(deck.nodes)}
-    dof_map = [(index[label], NAMES[direction - 1]) for label, direction in keys.tolist()]
-    points = np.array(list(deck.nodes.values()))
-    by_nodes = np.full((len(points), 6), -1)
-    for row, (label, direction) in enumerate(keys.tolist()):
-        by_nodes[index[label], direction - 1] = row
-    geometric, note = deck_prestress(deck, index, points, by_nodes, stiffness)
-    model = FEModel(stiffness, mass, points, dof_map=dof_map, labels=np.array(list(deck.nodes)),
-                    node_sets=deck_sets(deck, index), cells=deck_cells(deck, index),
-                    geometric_stiffness=geometric, source=f"Abaqus {job}",
-                    stress=deck_stress(deck, index, points, by_nodes))
-    return Reading(model, notes={"geometric stiffness": note})
+    dofs = [(label, direction - 1) for label, direction in keys.tolist()]
+    return deck_model(deck, list(deck.nodes), dofs, stiffness, mass, f"Abaqus {job}",
+                      _OWN_WAYS)
 
 
 def _entries(path: Path) -> NDArray:
@@ -181,7 +181,8 @@ def _entries(path: Path) -> NDArray:
             row = []
         if len(row) != 5 or not np.isfinite(row).all():
             raise fault(path, number, "no row of node, DOF, node, DOF, value", _GENERATE)
-        if min(row[0], row[2]) < 1 or not (1 <= row[1] <= 6 and 1 <= row[3] <= 6):
+        if any(x != int(x) for x in row[:4]) or min(row[0], row[2]) < 1 or not (
+                1 <= row[1] <= 6 and 1 <= row[3] <= 6):
             raise fault(path, number, f"node {row[0]:g}, DOF {row[1]:g}, is none of a body",
                         "leave out hybrid elements, Lagrange multipliers and temperatures")
         if abs(row[4]) >= _HELD:

@@ -4,19 +4,21 @@ Write the ``.full`` of a free model, with the sparse or block Lanczos solver. Th
 that are not in the matrices (midside nodes that were dropped, fixed ones).
 """
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from scipy import sparse
 
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
+from sebody.files.apart import read_apart
+from sebody.files.reading import existing
 from sebody.io.reading import Reading
 from sebody.io.reduced import NAMES
 
 _REMEDY = "write file.full of a free model (WRFULL or a modal analysis), and file.rst or file.cdb"
+_NO_MATERIAL = ("materials are not read from files of Ansys; give the FE model of read_fe_model "
+                "its stress=solid_stress(...), or divide the body where it spins fast")
 # of elements that are solids: meshio's names by the number of different nodes, see `_cell`
 _SOLIDS = {20: "hexahedron20", 8: "hexahedron", 10: "tetra10", 4: "tetra"}
 
@@ -37,7 +39,7 @@ def read(path: Path) -> Reading:
         raise InputError(f"{path} is of a model that is held: {len(held)} rows of the nodes "
                          f"{shown} are empty; delete its supports (DDELE), a body must be free")
     mesh = _mesh(path)
-    labels = np.asarray(mesh.nnum)
+    labels = mesh["labels"]
     places = np.searchsorted(labels, reference[:, 0])
     known = labels[np.minimum(places, len(labels) - 1)] == reference[:, 0]
     if not known.all():
@@ -45,8 +47,9 @@ def read(path: Path) -> Reading:
                          "file of the nodes does not have: give files of one model")
     dof_map = [(int(node), NAMES[dof]) for node, dof in zip(places, reference[:, 1], strict=True)]
     return Reading(FEModel(
-        stiffness, mass, np.asarray(mesh.nodes)[:, :3], dof_map=dof_map, labels=labels,
-        node_sets=_sets(mesh, labels), cells=_cells(mesh, labels), source=f"Ansys {path.name}"))
+        stiffness, mass, mesh["points"], dof_map=dof_map, labels=labels,
+        node_sets=_sets(mesh, labels), cells=_cells(mesh, labels), source=f"Ansys {path.name}",
+        missing=dict.fromkeys(("stresses", "stiffening"), _NO_MATERIAL)))
 
 
 def full_matrices(path: Path) -> tuple[np.ndarray, sparse.csc_array, sparse.csc_array]:
@@ -57,12 +60,15 @@ def full_matrices(path: Path) -> tuple[np.ndarray, sparse.csc_array, sparse.csc_
     InputError
         A file of another kind or damaged, or DOFs that are none of a body.
     """
-    from ansys.mapdl import reader
-
-    full = _called(lambda: reader.read_binary(str(path)), path)
-    if not hasattr(full, "load_km"):
-        raise InputError(f"{path} is no .full file: {_REMEDY}")
-    reference, *matrices = _called(lambda: full.load_km(sort=True), path)
+    found = _read(path, "matrices")
+    reference, size = found["reference"], len(found["reference"])
+    matrices = []
+    for name in ("stiffness", "mass"):
+        rows, columns, values = (found[f"{name}_{part}"] for part in ("rows", "columns", "values"))
+        if rows.size and max(rows.max(), columns.max()) >= size:
+            raise InputError(f"{path} is damaged (an entry in row {max(rows.max(), columns.max())} "
+                             f"of {size}): {_REMEDY}")
+        matrices.append(sparse.csc_array((values, (rows, columns)), shape=(size, size)))
     wrong = (reference[:, 1] > 5) | (reference[:, 1] < 0)
     if wrong.any():
         row = int(np.argmax(wrong))
@@ -78,44 +84,30 @@ def _whole(triangle: sparse.spmatrix) -> sparse.csc_array:
                             else matrix)
 
 
-def _mesh(path: Path) -> Any:
-    from ansys.mapdl import reader
-
+def _mesh(path: Path) -> dict[str, np.ndarray]:
     for suffix in (".rst", ".cdb"):
         beside = path.with_suffix(suffix)
         if beside.exists():
-            make = reader.Archive if suffix == ".cdb" else reader.read_binary
-            return _called(lambda make=make, beside=beside: _nodes_of(make(str(beside))), beside)
+            return _read(beside, "mesh")
     raise InputError(f"{path} has no coordinates: put {path.with_suffix('.rst')} or "
                      f"{path.with_suffix('.cdb')} of the same model beside it (CDWRITE)")
 
 
-def _nodes_of(file: Any) -> Any:
-    """The object that has nnum and nodes: results keep it as `mesh`, archives are it."""
-    return getattr(file, "mesh", file)
+def _read(path: Path, what: str) -> dict[str, np.ndarray]:
+    existing(path, "file", _REMEDY)
+    return read_apart("sebody.io.ansys_apart", path, what, remedy=_REMEDY)
 
 
-def _sets(mesh: Any, labels: np.ndarray) -> dict[str, list[int]]:
-    found = getattr(mesh, "node_components", None) or {}
-    return {str(name): np.unique(np.searchsorted(labels, nodes)).tolist()
-            for name, nodes in found.items()}
+def _sets(mesh: dict[str, np.ndarray], labels: np.ndarray) -> dict[str, list[int]]:
+    return {name.removeprefix("set "): np.unique(np.searchsorted(labels, nodes)).tolist()
+            for name, nodes in mesh.items() if name.startswith("set ")}
 
 
-def _cells(mesh: Any, labels: np.ndarray) -> list[tuple[str, np.ndarray]]:
+def _cells(mesh: dict[str, np.ndarray], labels: np.ndarray) -> list[tuple[str, np.ndarray]]:
     """Solids of full numbers of nodes; others are left out of the picture."""
     found: dict[str, list] = {}
-    for element in mesh.elem:
-        nodes = np.asarray(element)[10:]
+    for nodes in np.split(mesh["elements"], mesh["ends"][:-1]):
         nodes = nodes[nodes > 0]
         if len(nodes) in _SOLIDS and len(set(nodes)) == len(nodes):
             found.setdefault(_SOLIDS[len(nodes)], []).append(np.searchsorted(labels, nodes))
     return [(kind, np.array(cells)) for kind, cells in found.items()]
-
-
-def _called(function: Callable[[], Any], path: Path) -> Any:
-    """What the reader makes of a file; whatever it raises is said of the file."""
-    try:
-        return function()
-    except Exception as error:      # of many classes, of files that are cut off or of other kinds
-        raise InputError(f"{path} is damaged or of another kind ({type(error).__name__}: {error}): "
-                         f"{_REMEDY}") from error

@@ -5,13 +5,13 @@ Arrays are members by name (``stiffness``, ``mass``, ``coordinates``, ``invarian
 format and version, layout, names of the boundary nodes, units, provenance.
 """
 
+from __future__ import annotations
+
 import json
-import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,16 +19,24 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.beam_stress import BeamStress
+from sebody.fem.materials import doubts
 from sebody.fem.stress import SolidStress, StressModes
 from sebody.files import check_target, replacing
+from sebody.files.arrays import json_of, opened
+from sebody.files.checksums import changed, checksums
+from sebody.io.body_table import body_table
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.missing import lacks, sentences
 from sebody.reduction.recovery import Recovery
+from sebody.tabular import brief
+from sebody.units import parsed_units
 
 FORMAT, VERSION = "sebody body", 1
 TARGET = "body file", (".npz",)     # see `files.check_target`
 STRESSES = SolidStress, BeamStress, StressModes     # of a Recovery
 PARTS = {"invariants": InertiaInvariants, "recovery": Recovery}     # of a ReducedBody
+_LEAN = "shapes and mesh of the FE model were left out of the file; write it with them"
 _REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
 
 
@@ -43,15 +51,20 @@ class BodyFile:
     names : tuple of str
         Of the boundary nodes.
     units : str
-        In words; the program has none.
+        Units of its numbers, such as ``mm t N s``; empty if they are not known.
     provenance : dict of str
         What the body was made from and how.
+    changed : tuple of str
+        Members that are not those that were written.
     """
 
     parts: dict[str, Any]
     names: tuple[str, ...]
     units: str = ""
     provenance: Mapping[str, str] = field(default_factory=dict)
+    changed: tuple[str, ...] = ()
+
+    __repr__ = brief
 
     @property
     def mesh(self) -> tuple[NDArray, tuple[tuple[str, NDArray], ...]] | None:
@@ -59,15 +72,28 @@ class BodyFile:
         recovery = self.parts.get("recovery")
         return recovery and (recovery.points, recovery.cells)
 
+    @property
+    def cautions(self) -> list[str]:
+        """What the body does not know, and materials of other units: ``what; what to do``."""
+        parts = self.parts
+        stressed = parts.get("recovery") is not None and bool(parts["recovery"].stress)
+        found = lacks(stressed, parts.get("invariants") is not None, parts.get("missing", {}))
+        return sentences(found, stressed) + doubts(parts.get("materials", ()), self.units)
+
     def body(self) -> ReducedBody:
         """The body, checked.
 
         Raises
         ------
         InputError
-            See `ReducedBody`.
+            See `ReducedBody`, or members that are not those that were written.
         """
-        return ReducedBody(**self.parts)
+        found = ReducedBody(**self.parts, units=self.units)
+        if self.changed:
+            raise InputError(f"{', '.join(self.changed)} changed since the file was written; "
+                             "import the body again, or write what was changed with "
+                             "sebody.io.save_body")
+        return found
 
 
 def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None, *,
@@ -80,7 +106,7 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     names : tuple of str, optional
         Of the boundary nodes, ``node 0``, ``node 1``, ... by default.
     units : str
-        Units of its numbers, in words.
+        Units of its numbers, such as ``mm t N s``; those of the body by default.
     provenance : dict of str, optional
         What the body was made from and how.
     recovery : bool
@@ -96,10 +122,24 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     """
     inputs.instance(body, "body", ReducedBody, "give a ReducedBody")
     names = checked_names(names, len(body.keeps))
-    parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
-    if not inputs.flag(recovery, "recovery"):
-        parts["recovery"] = None
-    return write_body_file(BodyFile(parts, names, units, provenance or {}), path)
+    remedy = "give a dict of texts"
+    provenance = inputs.mapping({} if provenance is None else provenance, "provenance", remedy)
+    for text in (*provenance, *provenance.values()):
+        inputs.text(text, "provenance")
+    file = BodyFile(body_parts(body), names, str(parsed_units(units) or body.units), provenance)
+    return write_body_file(file if inputs.flag(recovery, "recovery") else lean(file), path)
+
+
+def body_parts(body: ReducedBody) -> dict[str, Any]:
+    """Arguments of a body but for its units."""
+    return {one.name: getattr(body, one.name) for one in fields(ReducedBody)
+            if one.name != "units"}
+
+
+def lean(file: BodyFile) -> BodyFile:
+    """A body file without the shapes and the mesh of the FE model."""
+    missing = {**file.parts.get("missing", {}), "stresses": _LEAN}
+    return replace(file, parts={**file.parts, "recovery": None, "missing": missing})
 
 
 def load_body(path: str | Path) -> ReducedBody:
@@ -126,7 +166,7 @@ def write_body_file(file: BodyFile, path: str | Path) -> Path:
     texts: dict[str, Any] = {}
     _flatten(file.parts, "", arrays, texts)
     notes = {"format": FORMAT, "version": VERSION, "names": list(file.names), "units": file.units,
-             "provenance": dict(file.provenance), "body": texts}
+             "provenance": dict(file.provenance), "body": texts, "checksums": checksums(arrays)}
     with replacing(path, TARGET[0]) as stream:
         np.savez_compressed(stream, notes=np.array(json.dumps(notes)), **arrays)
     return path
@@ -138,28 +178,18 @@ def read_body_file(path: str | Path) -> BodyFile:
     Raises
     ------
     InputError
-        No such file, or one of another kind or version.
+        No such file, one of another kind or version, or parts that are missing, unknown, of
+        another type or shape, or not finite.
     """
-    path = inputs.path(path, TARGET[0])
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-        notes = json.loads(str(arrays.pop("notes")))
+    with opened(path, TARGET[0], _REMEDY) as reader:
+        notes = json_of(reader, "notes")
         if notes["format"] != FORMAT:
             raise InputError(f"{path} is a file of another kind ({inputs.shown(notes['format'])}):"
                              f" {_REMEDY}")
         _check_version(path, notes["version"])
+        table = body_table(f"{TARGET[0]} {path}", reader.headers, notes)
+        arrays = table.read(reader, others=["notes"])
         return _made(arrays, notes)
-    except FileNotFoundError as error:
-        raise InputError(f"body file {path} does not exist: {_REMEDY}") from error
-    except InputError:
-        raise
-    except (BadZipFile, zlib.error, ValueError, KeyError, IndexError, TypeError, AttributeError,
-            EOFError) as error:
-        raise InputError(f"{path} is damaged or no body file: {_REMEDY}") from error
-    except OSError as error:
-        raise InputError(f"body file {path} cannot be read ({error.strerror}): {_REMEDY}"
-                         ) from error
 
 
 def checked_names(names: tuple[str, ...] | None, count: int) -> tuple[str, ...]:
@@ -196,7 +226,10 @@ def _flatten(parts: Mapping[str, Any], prefix: str, arrays: dict, texts: dict) -
         elif isinstance(value, np.ndarray):
             arrays[prefix + name] = value
         elif isinstance(value, Mapping):
-            arrays |= {f"{prefix}{name}.{key}": array for key, array in value.items()}
+            arrays |= {f"{prefix}{name}.{key}": one for key, one in value.items()
+                       if isinstance(one, np.ndarray)}
+            if texted := {key: one for key, one in value.items() if isinstance(one, str)}:
+                texts[prefix + name] = texted
         elif value is not None:
             texts[prefix + name] = _named(value, prefix + name, arrays)
 
@@ -226,10 +259,9 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
             parts[part] = kind(**found)
     parts["loads"] = {name.removeprefix("loads."): array for name, array in arrays.items()
                       if name.startswith("loads.")}
-    missing = {"stiffness", "mass", "coordinates", "keeps"} - set(parts)
-    if missing:
-        raise KeyError(missing)
-    return BodyFile(parts, tuple(notes["names"]), notes["units"], notes["provenance"])
+    return BodyFile(parts, checked_names(notes["names"], len(parts["coordinates"])),
+                    notes["units"], notes["provenance"],
+                    tuple(changed(arrays, notes.get("checksums"))))
 
 
 def _restored(value: Any, arrays: dict[str, NDArray]) -> Any:
@@ -239,6 +271,8 @@ def _restored(value: Any, arrays: dict[str, NDArray]) -> Any:
     if isinstance(value, dict) and "array" in value:
         return arrays[value["array"]]
     if isinstance(value, dict) and "part" in value:
-        kind = {one.__name__: one for one in STRESSES}[value["part"]]
+        kind = {one.__name__: one for one in STRESSES}.get(value["part"])
+        if kind is None:
+            raise ValueError(f"unknown part {inputs.shown(value['part'])}")
         return kind(**{name: _restored(one, arrays) for name, one in value["fields"].items()})
     return value

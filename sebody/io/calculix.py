@@ -6,23 +6,26 @@
 of their rotation vector.
 """
 
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from sebody.errors import InputError
-from sebody.fem.model import FEModel
-from sebody.io.deck import Deck, deck_cells, deck_sets, read_deck
-from sebody.io.prestress import deck_prestress, deck_stress
+from sebody.io.deck.model import deck_model
+from sebody.io.deck.reading import Deck, read_deck
 from sebody.io.reading import Reading
 from sebody.io.text import fault, first_repeated, read_text
-from sebody.io.tied import tied_mass_field
 from sebody.io.triplets import read_triplets
 
-_NAMES = ("x", "y", "z", "rx", "ry", "rz")
 _REMEDY = ("run ccx with *FREQUENCY, SOLVER=MATRIXSTORAGE, which writes .sti, .mas and .dof beside "
            "the deck")
+_OWN_WAYS = ("C3D8R",)      # hourglass control
+# beginnings of the types of elements that CalculiX makes solids of, with nodes of its own
+_EXPANDED = ("S3", "S4", "S6", "S8", "B2", "B3", "CP", "CA", "M3D", "T2D", "T3D")
+
 
 def read(path: Path) -> Reading:
     """The FE model of a deck and the matrices beside it.
@@ -35,43 +38,46 @@ def read(path: Path) -> Reading:
     Raises
     ------
     InputError
-        A file that is missing, cut off or of another run; labels that repeat; nodes of which some
-        directions have no rows.
+        A file that is missing, cut off or of another run; elements that have no rows of their
+        own; supports; labels that repeat; nodes of which some directions have no rows.
     """
     deck = read_deck(path.with_suffix(".inp"))
-    labels = _labels(path.with_suffix(".dof"), deck)
+    _check_free(deck)
+    labels = _labels(path.with_suffix(".dof"))
     stiffness, mass = (
         read_triplets(path.with_suffix(suffix), len(labels), what, _REMEDY,
                       str(path.with_suffix(".dof")))
         for suffix, what in ((".sti", "stiffness file"), (".mas", "mass file")))
-    partners = {body.rotation: body.reference for body in deck.rigid_bodies
-                if body.rotation != body.reference}
-    order = [label for label in deck.nodes if label not in partners]
-    index = {label: k for k, label in enumerate(order)}
-    rows = np.full((len(order), 6), -1)
-    dof_map = []
-    for row, (label, direction) in enumerate(labels):
-        at = index[partners.get(label, label)]
-        kind = direction + 3 * (label in partners)
-        rows[at, kind] = row
-        dof_map.append((at, _NAMES[kind]))
-    _check_directions(rows, order, path)
-    points = np.array([deck.nodes[label] for label in order])
-    present = rows[:, 0] >= 0
-    field = tied_mass_field(mass, points[present], rows[present])
-    notes = {} if field else {"exact inertia": "none: the mass matrix is not that of solids whose "
-                              "nodes are free or tied by *RIGID BODY"}
-    geometric, note = deck_prestress(deck, index, points, rows, stiffness)
-    notes["geometric stiffness"] = note
-    model = FEModel(stiffness, mass, points, dof_map=tuple(dof_map), labels=tuple(order),
-                    node_sets=deck_sets(deck, index), cells=deck_cells(deck, index),
-                    mass_field=field, geometric_stiffness=geometric,
-                    stress=deck_stress(deck, index, points, rows),
-                    source=f"CalculiX {path.with_suffix('.inp').name}")
-    return Reading(model, rotation_nodes=partners, notes=notes)
+    partners = _rotation_nodes(deck, labels, stiffness, path.with_suffix(".dof"))
+    dofs = [(partners.get(label, label), direction + 3 * (label in partners))
+            for label, direction in labels]
+    _check_directions(dofs, deck, path)
+    nodes = [label for label in deck.nodes if label not in partners]
+    source = f"CalculiX {path.with_suffix('.inp').name}"
+    reading = deck_model(deck, nodes, dofs, stiffness, mass, source, _OWN_WAYS)
+    return reading._replace(rotation_nodes={
+        rotation: node for rotation, node in partners.items() if rotation in deck.nodes})
 
 
-def _labels(path: Path, deck: Deck) -> list[tuple[int, int]]:
+def _check_free(deck: Deck) -> None:
+    """Refuse elements that CalculiX replaces, and supports."""
+    for group in deck.elements:
+        if group.kind.startswith(_EXPANDED):
+            raise group.row.fault(
+                f"CalculiX makes solids of beams, shells and plane elements ({group.kind}), whose "
+                "rows have labels that are not in the deck", "use solids, such as C3D20 or C3D10, "
+                "and delete elements of surfaces and lines that the mesher has written")
+        if group.kind == "C3D8I":
+            raise group.row.fault(
+                "CalculiX gives the incompatible modes of C3D8I rows and masses of their own, "
+                "which belong to no node of the deck", "use C3D20R, C3D20 or C3D10")
+    if deck.supports:
+        raise deck.supports[0].fault(
+            "*BOUNDARY holds nodes, whose rows are not in the matrices", "take it out and run ccx "
+            "again: the body must be free, joints of the model hold it")
+
+
+def _labels(path: Path) -> list[tuple[int, int]]:
     """Node and direction, from 0, of every row."""
     found = []
     for number, line in enumerate(read_text(path, "DOF file", _REMEDY).splitlines(), 1):
@@ -79,9 +85,6 @@ def _labels(path: Path, deck: Deck) -> list[tuple[int, int]]:
         if not (point and node.isdecimal() and direction in ("1", "2", "3")):
             raise fault(path, number, f"{line.strip()!r} is no node.direction with a direction "
                         "from 1 to 3", "write the matrices of a mechanical model again")
-        if int(node) not in deck.nodes:
-            raise fault(path, number, f"node {node} is not in the deck {deck.path}",
-                        "give files of one run of ccx")
         found.append((int(node), int(direction) - 1))
     if not found:
         raise InputError(f"DOF file {path} is empty: {_REMEDY}")
@@ -94,13 +97,49 @@ def _labels(path: Path, deck: Deck) -> list[tuple[int, int]]:
     return found
 
 
-def _check_directions(rows: NDArray, order: list[int], path: Path) -> None:
+def _rotation_nodes(deck: Deck, labels: list[tuple[int, int]], stiffness: sparse.csc_array,
+                    path: Path) -> dict[int, int]:
+    """Nodes whose rows are rotations, and the nodes these belong to.
+
+    Where *RIGID BODY names no ROT NODE, and for *KINEMATIC, CalculiX makes one itself. It has the
+    entries in the same columns as its reference node, zeros among them: those of the elements at
+    the nodes that both move.
+
+    Raises
+    ------
+    InputError
+        Rows of nodes that the deck does not have, and that are none of these.
+    """
+    found = {body.rotation: body.reference for body in deck.rigid_bodies
+             if body.rotation not in (None, body.reference)}
+    unknown = {label: row for row, (label, _) in enumerate(labels) if label not in deck.nodes}
+    without = {body.reference for body in deck.rigid_bodies if body.rotation is None}
+    rows = {label: row for row, (label, _) in enumerate(labels) if label in without}
+    for label, row in unknown.items():
+        alike = [node for node, own in rows.items() if np.array_equal(
+            _columns(stiffness, own), _columns(stiffness, row))]
+        if len(alike) != 1 or alike[0] in found.values():
+            number = next(k for k, (other, _) in enumerate(labels, 1) if other == label)
+            raise fault(path, number, f"node {label} is not in the deck {deck.path}", (
+                "give every *RIGID BODY a ROT NODE, and tie with *RIGID BODY in place of "
+                "*KINEMATIC" if without else "give files of one run of ccx"))
+        found[label] = alike[0]
+    return found
+
+
+def _columns(matrix: sparse.csc_array, row: int) -> NDArray:
+    return np.sort(matrix.indices[matrix.indptr[row]:matrix.indptr[row + 1]])
+
+
+def _check_directions(dofs: list[tuple[int, int]], deck: Deck, path: Path) -> None:
     """Refuse nodes of which some directions alone have rows."""
-    for columns, what in ((slice(0, 3), "translations"), (slice(3, 6), "rotations")):
-        there = (rows[:, columns] >= 0).sum(axis=1)
-        if np.any((there > 0) & (there < 3)):
-            k = int(np.argmax((there > 0) & (there < 3)))
+    counts = Counter((label, direction // 3) for label, direction in dofs)
+    for (label, turns), count in counts.items():
+        if count < 3:
+            cards = [f"*{keyword} (line {deck.places[keyword].number})"
+                     for keyword in ("EQUATION", "MPC") if keyword in deck.places]
             raise InputError(
-                f"{path.with_suffix('.dof')} has {there[k]} of 3 {what} of node {order[k]}: take "
-                "*BOUNDARY, *EQUATION and *MPC off the body, which must be free, and tie nodes "
-                "with *RIGID BODY")
+                f"{path.with_suffix('.dof')} has {count} of 3 "
+                f"{'rotations' if turns else 'translations'} of node {label}: take "
+                f"{' and '.join(cards) or '*BOUNDARY, *EQUATION and *MPC'} off the body, which "
+                "must be free, and tie nodes with *RIGID BODY")

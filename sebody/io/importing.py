@@ -1,8 +1,9 @@
 """From the files of an FE program to a body and its file."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import fields
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -10,16 +11,18 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.files import check_target
-from sebody.io.body_file import TARGET, BodyFile, write_body_file
-from sebody.io.interfaces import Interface, boundary_items, parsed
+from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
+from sebody.io.interfaces import Interface, parsed, tied
 from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
 from sebody.io.reduced import chosen_interfaces
-from sebody.io.registry import read_source
+from sebody.io.registry import naming, read_source
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.methods import reduce
 from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.watch import SILENT, Watch, watching
+from sebody.units import parsed_units
 
 
 def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
@@ -46,7 +49,8 @@ def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
 def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable[str] = (),
                 modes: int | Accuracy = 0, method: str = "craig-bampton", *,
                 kind: str | None = None, units: str = "",
-                output: str | Path | None = None) -> ReducedBody:
+                damping: float | Sequence[float] = 0.0, output: str | Path | None = None,
+                progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:
     """A body of the files of an FE program, as ``sebody import`` makes it.
 
     Parameters
@@ -55,8 +59,9 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
         One of the files; those beside it with the same stem are found.
     interfaces : dict of texts by name, or texts ``name=...``
         Boundary nodes in order: the label of a node, two labels ``"1/2"`` where rotations have a
-        node of their own, or ``"rbe2:SET"`` and ``"rbe3:SET"`` for named sets. Of files with
-        reduced matrices their own boundary nodes, all of them and in their order by default.
+        node of their own, ``"rbe2:SET"`` and ``"rbe3:SET"`` for named sets and surfaces, or
+        ``"cylinder:x,y,z;axis;radius"`` for a hole. Of files with reduced matrices their own
+        boundary nodes, all of them and in their order by default.
     modes : int or Accuracy
         Number of internal modes, or what they are to achieve.
     method : 'craig-bampton', 'guyan', 'macneal' or 'rubin'
@@ -64,9 +69,15 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     kind : str, optional
         Name of the source, see `SOURCES`; guessed from the files by default.
     units : str
-        Units of the numbers, in words.
+        Units of the numbers, such as ``mm t N s``.
+    damping : float or sequence of float
+        Part of critical damping of the free vibration modes: of all, or of each from the lowest
+        up, the last number also of those beyond.
     output : str or Path, optional
         Body file to write.
+    progress : function of a text, or True, optional
+        Is told what takes long, what it will cost, and what costs less; True for lines on standard
+        error.
 
     Raises
     ------
@@ -77,31 +88,64 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     """
     if output is not None:
         check_target(output, *TARGET)
-    file = imported(read_source(path, kind), parsed(interfaces), modes, method, units, path)
-    body = file.body()
+    watch = watching(progress)
+    wanted = Wanted(parsed(interfaces), modes, method, units, damping)
+    watch.stage(f"reading {path}")
+    file = imported(read_source(path, kind), wanted, path, watch)
+    with naming(path):
+        body = file.body()
     if output is not None:
         write_body_file(file, output)
     return body
 
 
-def imported(reading: Reading, interfaces: list[Interface], modes: int | Accuracy, method: str,
-             units: str, path: str | Path) -> BodyFile:
+class Wanted(NamedTuple):
+    """What is to be made of the files, see `import_body`."""
+
+    interfaces: list[Interface]
+    modes: int | Accuracy = 0
+    method: str = "craig-bampton"
+    units: str = ""
+    damping: float | Sequence[float] = 0.0
+
+
+def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = SILENT
+             ) -> BodyFile:
     """What is to be written of a reading."""
-    model = reading.model
+    model, units = reading.model, str(parsed_units(wanted.units) or "")
     if not isinstance(model, FEModel):
-        return _reduced(reading, interfaces, modes, units)
-    items = boundary_items(model, interfaces, reading.rotation_nodes)
+        return _damped(_reduced(reading, wanted.interfaces, wanted.modes, units), wanted.damping)
+    interfaces, method = wanted.interfaces, wanted.method
+    boundary = tied(model, interfaces, reading.rotation_nodes)
     try:
-        body = reduce(model, items, modes, method)
+        body = reduce(model, boundary.items, wanted.modes, method, judged=True, progress=watch)
     except InputError as error:
         by_area = any(one.tie == "rbe3" for one in interfaces) and "weights='equal'" in str(error)
         raise InputError(f"{path}: {error}" + by_area * ", rbe3-equal:SET") from error
     names = tuple(one.name for one in interfaces)
     provenance = {"source": model.source or str(path), "method": f"{method}, {body.modes} modes",
                   "FE matrices": f"{model.stiffness.shape[0]} rows, |K R| of rigid "
-                  f"motions up to {rigid_residual(model):.4e} of a row's entries", **reading.notes}
-    parts = {one.name: getattr(body, one.name) for one in fields(ReducedBody)}
-    return BodyFile(parts, names, units or model.units, provenance)
+                  f"motions up to {rigid_residual(model):.4e} of a row's entries", **reading.notes,
+                  **{f"interface {name}": note for name, note in boundary.notes.items()}}
+    for note in body.notes:
+        if note.startswith(_ACCURACY):
+            provenance["accuracy"] = note.removeprefix(_ACCURACY)
+    return _damped(BodyFile(body_parts(body), names, units or model.units, provenance),
+                   wanted.damping)
+
+
+_ACCURACY = "accuracy: "        # beginning of a note of a reduction
+
+
+def _damped(file: BodyFile, ratios: float | Sequence[float]) -> BodyFile:
+    """The body with modal damping."""
+    if not np.any(ratios):
+        return file
+    body = file.body().damped(ratios)
+    shown = ", ".join(f"{ratio:g}" for ratio in np.atleast_1d(ratios))
+    return replace(file, parts=body_parts(body), provenance={
+        **file.provenance, "damping": f"{shown} of critical, of the free vibration modes"
+        + " from the lowest up, the last also of those beyond" * (np.ndim(ratios) > 0)})
 
 
 def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accuracy,

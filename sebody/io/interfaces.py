@@ -1,4 +1,4 @@
-"""Interfaces as text: ``root=900001/900002``, ``tip=rbe2:FACEB``, ``hook=12:translation``."""
+"""Interfaces as text: ``root=900001/900002``, ``tip=rbe2:FACEB``, ``pin=cylinder:0,0,5;z;12``."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -8,14 +8,33 @@ import numpy as np
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.cylinders import Cylinder, Middle, middle_of, nodes_on_cylinder_faces
 from sebody.fem.model import FEModel
 from sebody.reduction.boundary import BoundaryItem
 from sebody.reduction.checks import KEEPS
 from sebody.reduction.interfaces import MeanFace, RigidFace
 
 REMEDY = ("write name=NODE, name=NODE/NODE where rotations have their own node, name=rbe2:SET, "
-          "name=rbe3:SET (by area) or name=rbe3-equal:SET; with @x,y,z, the reference point of "
-          "a set if that is not its middle, and :translation or :rotation to keep these alone")
+          "name=rbe3:SET (by area) or name=rbe3-equal:SET of a node set or surface, "
+          "name=cylinder:x,y,z;axis;radius of a hole or a journal; with @x,y,z, the reference "
+          "point if that is not the middle, and :translation or :rotation to keep these alone")
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_SHOWN = 5      # nodes left out that a note names
+
+
+class Round(NamedTuple):
+    """Where a cylinder is: a point and a direction of its axis, radius, and length or None."""
+
+    point: tuple[float, ...]
+    axis: tuple[float, ...]
+    radius: float
+    length: float | None
+
+    @property
+    def cylinder(self) -> Cylinder:
+        """With a unit vector along its axis."""
+        axis = np.array(self.axis)
+        return Cylinder(np.array(self.point), axis / np.linalg.norm(axis), self.radius)
 
 
 class Interface(NamedTuple):
@@ -27,11 +46,13 @@ class Interface(NamedTuple):
     nodes : tuple of int
         Label of a node, or of two: that of the translations and that of the rotations.
     tie : str
-        'rbe2', 'rbe3' or 'rbe3-equal' for a set, else empty.
+        'rbe2', 'rbe3' or 'rbe3-equal' for a set or a cylinder, else empty.
     node_set : str
         Name of the set.
+    cylinder : Round, optional
+        Whose faces are tied.
     point : tuple of float
-        Its reference point; the middle of its nodes if empty.
+        Reference point of a set; the middle of its faces if empty.
     keeps : str
         Triplets kept; those that the node has if empty.
     """
@@ -40,8 +61,16 @@ class Interface(NamedTuple):
     nodes: tuple[int, ...] = ()
     tie: str = ""
     node_set: str = ""
+    cylinder: Round | None = None
     point: tuple[float, ...] = ()
     keeps: str = ""
+
+
+class Tied(NamedTuple):
+    """The boundary of a reduction, and what the interfaces are, in words by their names."""
+
+    items: list[BoundaryItem]
+    notes: dict[str, str]
 
 
 def parsed(interfaces: Mapping[str, str | int] | Iterable[str]) -> list[Interface]:
@@ -75,18 +104,38 @@ def parsed(interfaces: Mapping[str, str | int] | Iterable[str]) -> list[Interfac
 def _one(name: str, text: str) -> Interface:
     name = inputs.name(name, "name of an interface").strip()
     text = text.strip()
-    if match := re.fullmatch(r"(rbe2|rbe3|rbe3-equal):([^@:]+)(?:@([^@:]+))?(?::(\w+))?", text):
-        tie, node_set, place, keeps = match.groups()
-        try:
-            point = tuple(map(float, place.split(","))) if place else ()
-        except ValueError as error:
-            raise inputs.refusal(f"interface {name!r}", text, REMEDY) from error
-        return Interface(name, (), tie, node_set.strip(), point, _keeps(name, text, keeps))
     if match := re.fullmatch(r"(\d+)(?:/(\d+))?(?::(\w+))?", text):
         first, second, keeps = match.groups()
         nodes = (int(first),) if second is None else (int(first), int(second))
         return Interface(name, nodes, keeps=_keeps(name, text, keeps))
-    raise inputs.refusal(f"interface {name!r}", text, REMEDY)
+    what = r"cylinder:([^@:]+)|([^@:]+)"
+    match = re.fullmatch(rf"(?:(rbe2|rbe3|rbe3-equal):)?(?:{what})(?:@([^@:]+))?(?::(\w+))?", text)
+    if not match or not (match[1] or match[2]):
+        raise inputs.refusal(f"interface {name!r}", text, REMEDY)
+    tie, cylinder, node_set, place, keeps = match.groups()
+    try:
+        point = tuple(map(float, place.split(","))) if place else ()
+        where = _round(cylinder) if cylinder else None
+    except ValueError as error:
+        raise inputs.refusal(f"interface {name!r}", text, REMEDY) from error
+    return Interface(name, (), tie or "rbe2", (node_set or "").strip(), where, point,
+                     _keeps(name, text, keeps))
+
+
+def _round(text: str) -> Round:
+    """``x,y,z;axis;radius`` with ``;length`` behind it, if the cylinder is not endless.
+
+    Raises
+    ------
+    ValueError
+        Another text.
+    """
+    point, axis, radius, *length = text.split(";")
+    if len(length) > 1:
+        raise ValueError(text)
+    x, y, z = map(float, point.split(","))
+    direction = _AXES.get(axis.strip().lower()) or tuple(map(float, axis.split(",")))
+    return Round((x, y, z), direction, float(radius), float(length[0]) if length else None)
 
 
 def _keeps(name: str, text: str, keeps: str | None) -> str:
@@ -95,8 +144,7 @@ def _keeps(name: str, text: str, keeps: str | None) -> str:
     return keeps or ""
 
 
-def boundary_items(model: FEModel, interfaces: list[Interface],
-                   rotation_nodes: Mapping[int, int]) -> list[BoundaryItem]:
+def tied(model: FEModel, interfaces: list[Interface], rotation_nodes: Mapping[int, int]) -> Tied:
     """The boundary of a reduction.
 
     Parameters
@@ -112,7 +160,16 @@ def boundary_items(model: FEModel, interfaces: list[Interface],
     """
     if not interfaces:
         raise InputError(f"the body has no interface: {REMEDY}")
-    items = [_item(model, one, rotation_nodes) for one in interfaces]
+    items, notes = [], {}
+    for one in interfaces:
+        try:
+            item, note = _face(model, one) if one.tie else (_node(model, one, rotation_nodes), "")
+        except InputError as error:
+            if str(error).startswith(f"interface {one.name!r}"):
+                raise
+            raise InputError(f"interface {one.name!r}: {error}") from error
+        items.append(item)
+        notes |= {one.name: note} if note else {}
     owners: dict[int, str] = {}
     for one, (item, _) in zip(interfaces, items, strict=True):
         for node in [item] if isinstance(item, int) else item.nodes:
@@ -120,49 +177,91 @@ def boundary_items(model: FEModel, interfaces: list[Interface],
             if other != one.name:
                 raise InputError(f"interfaces {other!r} and {one.name!r} share "
                                  f"{model.node_name(node)}: give each nodes of its own")
-    return items
+    return Tied(items, notes)
 
 
-def _item(model: FEModel, one: Interface, rotation_nodes: Mapping[int, int]) -> BoundaryItem:
-    if one.tie:
-        return _tied(model, one)
+def _node(model: FEModel, one: Interface, rotation_nodes: Mapping[int, int]) -> BoundaryItem:
+    """A node, with what it keeps."""
     for label in one.nodes[:1]:
         if label in rotation_nodes and len(one.nodes) == 1:
-            raise InputError(f"interface {one.name!r}: node {label} is there for the rotations of "
-                             f"node {rotation_nodes[label]}: write {one.name}="
+            raise InputError(f"node {label} is there for the rotations of node "
+                             f"{rotation_nodes[label]}: write {one.name}="
                              f"{rotation_nodes[label]}/{label}")
     if len(one.nodes) == 2 and rotation_nodes.get(one.nodes[1]) != one.nodes[0]:
         known = ", ".join(f"{a}/{b}" for b, a in rotation_nodes.items()) or "none"
-        raise InputError(f"interface {one.name!r}: node {one.nodes[1]} does not have the rotations "
-                         f"of node {one.nodes[0]}; pairs of the model: {known}")
-    node = _node(model, one)
+        raise InputError(f"node {one.nodes[1]} does not have the rotations of node "
+                         f"{one.nodes[0]}; pairs of the model: {known}")
+    node = (inputs.integer(one.nodes[0], "node", most=len(model.coordinates) - 1)
+            if model.labels is None else model.node(one.nodes[0]))
     has = [kind for kind in ("translation", "rotation") if len(model.dofs(node, kind))]
     if not has:
-        raise InputError(f"interface {one.name!r}: node {one.nodes[0]} has no rows in the "
-                         "matrices: it is tied to another node or its coupling leaves it out "
-                         "(CalculiX: *DISTRIBUTING); tie with *RIGID BODY or use a set, "
-                         f"{one.name}=rbe3:SET")
+        raise InputError(f"node {one.nodes[0]} has no rows in the matrices: no element has it, or "
+                         "it is tied to another node, or its coupling leaves it out (CalculiX: "
+                         "*DISTRIBUTING); name the reference node of its *RIGID BODY, or use a "
+                         f"set, {one.name}=rbe3:SET")
     return node, one.keeps or ("full" if len(has) == 2 else has[0])
 
 
-def _node(model: FEModel, one: Interface) -> int:
-    try:
-        if model.labels is None:
-            return inputs.integer(one.nodes[0], "node", most=len(model.coordinates) - 1)
-        return model.node(one.nodes[0])
-    except InputError as error:
-        raise InputError(f"interface {one.name!r}: {error}") from error
-
-
-def _tied(model: FEModel, one: Interface) -> BoundaryItem:
-    names = {name.upper(): name for name in model.node_sets}
-    nodes = model.node_set(names.get(one.node_set.upper(), one.node_set))
+def _face(model: FEModel, one: Interface) -> tuple[BoundaryItem, str]:
+    """A tie of the faces of a set or a cylinder, and what it is in words."""
+    nodes = nodes_on_cylinder_faces(model, *one.cylinder) if one.cylinder else _set(model, one)
+    dimension = model.coordinates.shape[1]
+    there = (model.rows[list(nodes), :dimension] >= 0).all(axis=1)
+    left = [node for node, has in zip(nodes, there, strict=True) if not has]
+    nodes = tuple(node for node, has in zip(nodes, there, strict=True) if has)
     if not nodes:
-        raise InputError(f"interface {one.name!r}: node set {one.node_set!r} is empty: name the "
-                         "nodes of the face")
+        raise InputError(f"none of its {len(left)} nodes has rows in the matrices: no element has "
+                         "them, or the FE program has tied them, whose reference node is the "
+                         f"interface then, such as {one.name}=900001/900002")
+    middle = middle_of(model, nodes)
+    if one.cylinder and middle is not None:     # of little of which the faces may be
+        given = one.cylinder.cylinder
+        middle = Middle(given.foot(middle.point), given)
+    point = np.array(one.point) if one.point else _middle(model, middle, nodes, one)
     keeps = one.keeps or "full"
-    if one.tie != "rbe2":
-        place = np.array(one.point) if one.point else None
-        return MeanFace(nodes, place, "area" if one.tie == "rbe3" else "equal"), keeps
-    point = np.array(one.point) if one.point else model.coordinates[list(nodes)].mean(axis=0)
-    return RigidFace(point, nodes), keeps
+    note = _described(model, one, nodes, left, middle)
+    if one.tie == "rbe2":
+        return (RigidFace(point, nodes, one.name), keeps), note
+    weights = "area" if one.tie == "rbe3" else "equal"
+    return (MeanFace(nodes, point, weights, one.name), keeps), note
+
+
+def _set(model: FEModel, one: Interface) -> tuple[int, ...]:
+    """Nodes of a named set or surface; capitals and blanks do not matter."""
+    plain = {"".join(name.upper().split()): name for name in model.node_sets}
+    nodes = model.node_set(plain.get("".join(one.node_set.upper().split()), one.node_set))
+    if not nodes:
+        raise InputError(f"node set {one.node_set!r} is empty: name the nodes of the face")
+    return nodes
+
+
+def _middle(model: FEModel, middle: Middle | None, nodes: tuple[int, ...], one: Interface
+            ) -> np.ndarray | None:
+    """Reference point: middle of the faces; without faces the mean of nodes, or the face's own."""
+    if one.tie == "rbe3-equal":
+        return None
+    if middle is not None:
+        return middle.point
+    return model.coordinates[list(nodes)].mean(axis=0) if one.tie == "rbe2" else None
+
+
+def _described(model: FEModel, one: Interface, nodes: tuple[int, ...], left: list[int],
+               middle: Middle | None) -> str:
+    """What an interface is, for the provenance of the body."""
+    how = {"rbe2": "rigid face of", "rbe3": "mean by area of", "rbe3-equal": "mean of"}[one.tie]
+    text = f"{how} {len(nodes)} nodes"
+    if one.point:
+        text += ", about the point given"
+    elif middle is None and one.tie == "rbe2":
+        text += ", about their mean: no faces lie within them"
+    elif middle is not None and one.tie != "rbe3-equal":
+        text += ", about the centroid of their faces"
+        if middle.cylinder is not None:
+            axis = ", ".join(f"{x:.6g}" for x in middle.cylinder.axis.round(9) + 0.0)
+            text = text.replace("centroid of their faces", "middle of the cylinder of radius "
+                                f"{middle.cylinder.radius:.6g} along ({axis})")
+    if left:
+        names = ", ".join(model.node_name(node).removeprefix("node ") for node in left[:_SHOWN])
+        text += (f"; {len(left)} nodes without rows left out: {names}"
+                 + ", ..." * (len(left) > _SHOWN))
+    return text

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 from scipy import sparse
-from scipy.io import mmread
 
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
+from sebody.io.market_text import parsed
 from sebody.io.reading import Reading
 from sebody.io.reduced import NAMES
 from sebody.io.text import fault, first_repeated, read_text
@@ -21,6 +21,8 @@ from sebody.io.text import fault, first_repeated, read_text
 _DIRECTIONS = {word: name for k, name in enumerate(NAMES)
                for word in (("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ")[k], str(k + 1),
                             name.upper())}
+_NO_MESH = ("the files have no mesh and no materials; give the FE model of read_fe_model its "
+            "stress=solid_stress(...), or divide the body where it spins fast")
 _REMEDY = "give NAME_K.mtx, NAME_M.mtx, NAME.mapping and NAME.nodes, see sebody/io/README.md"
 
 
@@ -53,19 +55,22 @@ def read(path: Path) -> Reading:
                              f"{path.with_name(f'{name}.nodes')}: list all nodes there")
     model = FEModel(stiffness, mass, np.array(list(points.values())),
                     dof_map=[(index[label], kind) for label, kind in rows],
-                    labels=np.array(list(points)), source=f"Matrix Market {name}")
+                    labels=np.array(list(points)), source=f"Matrix Market {name}",
+                    missing=dict.fromkeys(("stresses", "stiffening"), _NO_MESH))
     return Reading(model)
 
 
 def _matrix(path: Path, size: int, mapping: Path) -> sparse.csc_array:
-    read_text(path, "matrix file", _REMEDY)
+    text = read_text(path, "matrix file", _REMEDY)
     try:
-        matrix = sparse.csc_array(mmread(path))
-    except (ValueError, OverflowError, TypeError, StopIteration) as error:
+        market = parsed(text)
+        if market.shape == (size, size):
+            matrix = market.matrix()
+    except ValueError as error:
         raise InputError(f"matrix file {path} is no Matrix Market file, or cut off ({error}): "
                          "export it again") from error
-    if matrix.shape != (size, size):
-        raise InputError(f"matrix file {path} has shape {matrix.shape}, but {mapping} tells of "
+    if market.shape != (size, size):
+        raise InputError(f"matrix file {path} has shape {market.shape}, but {mapping} tells of "
                          f"{size} rows: give files of one export")
     lower, upper = sparse.tril(matrix, -1), sparse.triu(matrix, 1)
     if bool(lower.count_nonzero()) != bool(upper.count_nonzero()):   # one triangle, called general

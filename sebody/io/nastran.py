@@ -15,8 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.files.reading import called, existing
 from sebody.io.reading import Reading
 from sebody.io.reduced import reduced_parts
+from sebody.io.text import read_text
 
 _REMEDY = "write it with EXTSEOUT(STIFFNESS, MASS, ASMBULK, DMIGOP4) or DMIGPCH"
 _CARDS = (".asm", ".pch", ".bdf", ".dat")       # that may hold GRID cards, in this order
@@ -35,9 +37,15 @@ def read_op4(path: Path) -> Reading:
     stiffness, mass = _pair(found, path)
     cards = _beside(path)
     table = _uset(cards)
-    if len(table.index) != len(stiffness):
-        raise InputError(f"{path} has {len(stiffness)} rows and {cards} tells of "
-                         f"{len(table.index)}: give files of one run")
+    told = len(table.index)
+    if told < len(stiffness) and not (table.index.get_level_values("dof") == 0).any():
+        raise InputError(f"{path} has {len(stiffness)} rows, {len(stiffness) - told} more than the "
+                         f"nodes of {cards}, which has no SPOINT cards: modes are scalar points; "
+                         "put the .asm that EXTSEOUT(ASMBULK) writes beside it, or add its SPOINT "
+                         "cards")
+    if told != len(stiffness):
+        raise InputError(f"{path} has {len(stiffness)} rows and {cards} tells of {told}: give "
+                         "files of one run")
     return _reading(stiffness, mass, list(table.index), table, path)
 
 
@@ -55,7 +63,7 @@ def read_dmig(path: Path) -> Reading:
     indices = [list(frame.index) for frame in frames.values() if frame.shape == stiffness.shape]
     if indices[0] != indices[1]:
         raise InputError(f"{path}: stiffness and mass are of different DOFs: {_REMEDY}")
-    own = path.suffix == ".pch" and "GRID" in path.read_text(encoding="latin-1")
+    own = path.suffix == ".pch" and "GRID" in read_text(path, "punch file", _REMEDY)
     return _reading(stiffness, mass, indices[0], _grids(path if own else _beside(path)), path)
 
 
@@ -95,7 +103,7 @@ def _uset(cards: Path) -> Any:
     if cards.suffix != ".asm":
         return _grids(cards)
     punch = cards.with_suffix(".pch")       # its EXTRN card says which DOFs nodes keep
-    fewer = punch.exists() and "EXTRN" in punch.read_text(encoding="latin-1")
+    fewer = punch.exists() and "EXTRN" in read_text(punch, "punch file", _REMEDY)
     return _called(lambda: _nastran().asm2uset(str(cards), try_rdextrn=fewer), cards)[0]
 
 
@@ -137,14 +145,7 @@ def _pair(found: dict[str, NDArray], path: Path) -> tuple[NDArray, NDArray]:
 
 def _called(function: Callable[[], Any], path: Path) -> Any:
     """What pyyeti makes of a file; whatever it raises is said of the file."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", RuntimeWarning)      # of files that end early
-            return function()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read ({error.strerror or error}): {_REMEDY}"
-                         ) from error
-    except Exception as error:      # of many classes, of files that are cut off or of other kinds
-        raise InputError(f"{path} is damaged or of another kind ({type(error).__name__}: {error}): "
-                         f"{_REMEDY}") from error
-
+    existing(path, "file", _REMEDY)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)      # of files that end early
+        return called(function, path, _REMEDY)

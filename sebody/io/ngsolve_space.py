@@ -1,5 +1,7 @@
 """NGSolve: an FE model of a space of displacements and the matrices assembled with it."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
@@ -8,11 +10,13 @@ from scipy import sparse
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.materials import uniform_material
 from sebody.fem.model import FEModel
 from sebody.fem.solids import TETRAHEDRON_EDGES, SolidPrestress, knows
-from sebody.fem.stress import solid_stress
+from sebody.fem.stress import elasticity, solid_stress
 from sebody.io.tied import motion_of
 
+_NO_MATERIAL = "no material was given; pass youngs_modulus and poisson_ratio"
 _REMEDY = "give VectorH1(mesh, order=1) or order=2, whole (no dirichlet), on straight cells"
 _NAMES = ("x", "y", "z")
 _KINDS = {("TET", 1): "tetra", ("TET", 2): "tetra10"}
@@ -34,7 +38,7 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
     youngs_modulus, poisson_ratio : float, optional
         Isotropic material, for stresses and geometric stiffness; none without them.
     units : str
-        In words.
+        Of the numbers, such as ``mm t N s``.
 
     Raises
     ------
@@ -45,7 +49,7 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
     ends = np.array([[v.nr for v in edge.vertices] for edge in mesh.edges]).reshape(-1, 2)
     corners = np.array([vertex.point for vertex in mesh.vertices])
     ends = ends[:rows.shape[0] - len(corners)]
-    points = np.vstack([corners, corners[ends].mean(axis=1)])
+    points = np.vstack([corners, _middles(space, mesh, rows, ends)])
     turn = _nodal(space, mesh, rows, ends)
     matrices = [sparse.csc_array(turn.T @ _matrix(form, name, space.ndof) @ turn)
                 for form, name in ((stiffness, "stiffness"), (mass, "mass"))]
@@ -54,7 +58,8 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
         for row, name in zip(own, _NAMES, strict=False):
             dof_map[row] = (node, name)
     cells = _cells(mesh, points, len(corners), ends)
-    geometric, stress = None, ()
+    geometric, stress, materials = None, (), ()
+    missing = dict.fromkeys(("stresses", "stiffening"), _NO_MATERIAL)
     if youngs_modulus is not None and poisson_ratio is not None:
         law = (inputs.number(youngs_modulus, "youngs_modulus", above=0),
                inputs.number(poisson_ratio, "poisson_ratio", above=-1, below=0.5))
@@ -63,12 +68,15 @@ def from_ngsolve(space: Any, stiffness: Any, mass: Any, youngs_modulus: float | 
                              "the material")
         whole = np.hstack([rows, np.full(rows.shape, -1)])
         stress = solid_stress(points, cells, *law)
-        geometric = SolidPrestress(points, [(*cells[0], *law)],
+        geometric = SolidPrestress(points, [(*cells[0], elasticity(*law))],
                                    motion_of(whole, np.zeros_like(points), space.ndof))
+        materials = [uniform_material(law[0], matrices[1].sum() / dimension, geometric.volume)]
+        missing = {}
     return FEModel(*matrices, points, dof_map=dof_map, cells=cells,
                    node_sets=_boundaries(mesh, ends),
                    geometric_stiffness=geometric, stress=stress,
-                   source=f"NGSolve, VectorH1 of order {2 if len(ends) else 1}", units=units)
+                   source=f"NGSolve, VectorH1 of order {2 if len(ends) else 1}", units=units,
+                   missing=missing, materials=materials)
 
 
 def _rows(space: Any) -> tuple[Any, int, NDArray]:
@@ -123,6 +131,33 @@ def _nodal(space: Any, mesh: Any, rows: NDArray, ends: NDArray) -> sparse.csr_ar
     return sparse.csr_array(matrix)
 
 
+def _middles(space: Any, mesh: Any, rows: NDArray, ends: NDArray) -> NDArray:
+    """Places of the middles of edges, (n_edges, dimension), which ``mesh.Curve(2)`` has moved.
+
+    The geometry of order two is a displacement field of the space: its coefficients are exact.
+
+    Raises
+    ------
+    InputError
+        A mesh of higher order.
+    """
+    order = mesh.GetCurveOrder()
+    if order > (2 if len(ends) else 1):
+        raise InputError(
+            f"the mesh is curved, of order {order}, beyond what the space has nodes for: " + (
+                "call mesh.Curve(2)" if len(ends) else
+                "take VectorH1(mesh, order=2) with mesh.Curve(2), or mesh.Curve(1)"))
+    if order < 2 or not len(ends):
+        corners = np.array([vertex.point for vertex in mesh.vertices])
+        return corners[ends].mean(axis=1).reshape(len(ends), corners.shape[1])
+    from ngsolve import CoefficientFunction, GridFunction, x, y, z
+
+    field = GridFunction(space)
+    field.Set(CoefficientFunction((x, y, z)[:mesh.dim]))
+    values = np.array(field.vec)[rows]
+    return values[ends].mean(axis=1) + _edge_value(space, mesh, rows, ends) * values[mesh.nv:]
+
+
 def _edge_value(space: Any, mesh: Any, rows: NDArray, ends: NDArray) -> float:
     """Value of the shape of an edge at its middle, the same of all edges."""
     from ngsolve import GridFunction
@@ -132,11 +167,25 @@ def _edge_value(space: Any, mesh: Any, rows: NDArray, ends: NDArray) -> float:
     for edge in {0, len(ends) // 2, len(ends) - 1}:
         field.vec[:] = 0.0
         field.vec[int(rows[mesh.nv + edge, 0])] = 1.0
-        middle = np.mean([mesh.vertices[int(v)].point for v in ends[edge]], axis=0)
-        found.append(field(mesh(*middle))[0])
+        found.append(_at_middle(field, mesh, edge))
     if np.ptp(found) > 1e-12 or not abs(found[0]) > 1e-12:
         raise InputError(f"the shapes of edges have the values {found} in their middles: {_REMEDY}")
     return float(found[0])
+
+
+def _at_middle(field: Any, mesh: Any, edge: int) -> float:
+    """First component of a field in the middle of an edge, where it is straight or not."""
+    from ngsolve import EDGE, NodeId
+
+    element = next(iter(mesh[NodeId(EDGE, edge)].elements))
+    corners = [vertex.nr for vertex in mesh[element].vertices]
+    wanted = {vertex.nr for vertex in mesh[NodeId(EDGE, edge)].vertices}
+    # NGSolve's reference simplices have their corners at e_1, e_2, (e_3,) and the origin
+    places = np.vstack([np.eye(mesh.dim), np.zeros(mesh.dim)])
+    at = np.mean([place for place, corner in zip(places, corners, strict=True)
+                  if corner in wanted], axis=0)
+    element_map = mesh.GetTrafo(element)        # which the point needs as long as it is used
+    return field(element_map(*at))[0]
 
 
 def _cells(mesh: Any, points: NDArray, count: int, ends: NDArray) -> list[tuple[str, NDArray]]:

@@ -1,13 +1,15 @@
 """The table of sources: kinds of files, their readers, and what must be installed for them."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.files.reading import existing
 from sebody.io import abaqus, ansys, calculix, matrix_market, nastran, sid
 from sebody.io.reading import Reading
 from sebody.io.text import read_text
@@ -83,20 +85,37 @@ def read_source(path: str | Path, kind: str | None = None) -> Reading:
     InputError
         An unknown kind, a package that is not installed, or files that cannot be used.
     """
-    path = inputs.path(path, "file to import")
-    if not path.exists():
-        raise InputError(f"file to import {path} does not exist: give the path of a file of an FE "
-                         "program")
-    source = _guessed(path) if kind is None else _named(kind)
+    path = existing(path, "file to import", "give the path of a file of an FE program")
+    source = _guessed(path) if kind is None else _named(kind, path)
     if source.needs and not _installed(source.needs):
         raise InputError(f"files of {source.name} are read by {source.needs}, which is not "
                          f'installed: pip install "sebody[{source.extra}]"')
-    return source.read(path)
+    with naming(path):
+        return source.read(path)
 
 
-def _named(kind: str) -> Source:
+@contextmanager
+def naming(path: str | Path) -> Iterator[None]:
+    """Input errors that name the file, whose matrices know nothing of it."""
+    try:
+        yield
+    except InputError as error:
+        if Path(path).stem in str(error):
+            raise
+        raise InputError(f"{path}: {error}") from error
+
+
+def _named(kind: str, path: Path) -> Source:
+    """The source of a name, refused where the file has the ending of another one."""
     by_name = {source.name: source for source in SOURCES}
-    return by_name[inputs.choice(kind, "format", by_name)]
+    found = by_name[inputs.choice(kind, "format", by_name)]
+    ending = path.suffix.lower()
+    others = [source.name for source in SOURCES if ending in source.suffixes]
+    if others and found.name not in others:
+        raise InputError(f"{path} is a file of {' or '.join(others)}, by its ending, and the "
+                         f"format is {kind}, which reads {', '.join(found.suffixes)}: leave the "
+                         "format out, or give it the ending of its kind")
+    return found
 
 
 def _guessed(path: Path) -> Source:

@@ -1,5 +1,7 @@
 """scikit-fem: an FE model of a basis and the matrices that were assembled with it."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
@@ -9,10 +11,12 @@ from scipy import sparse
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.isoparametric import reference_nodes
+from sebody.fem.materials import uniform_material
 from sebody.fem.model import FEModel, fe_matrix
 from sebody.fem.solids import SolidPrestress, knows
-from sebody.fem.stress import solid_stress
+from sebody.fem.stress import elasticity, solid_stress
 
+_NO_MATERIAL = "no material was given; pass youngs_modulus and poisson_ratio"
 _REMEDY = ("give a Basis of an ElementVector of Lagrange elements of order one or two, such as "
            "ElementVector(ElementHex1()) or ElementVector(ElementTetP2())")
 # scikit-fem's elements of solids by meshio's names, with the scale and shift of its [0, 1]
@@ -35,7 +39,7 @@ def from_skfem(basis: Any, stiffness: sparse.spmatrix, mass: sparse.spmatrix,
     youngs_modulus, poisson_ratio : float, optional
         Isotropic material, for stresses and geometric stiffness; none without them.
     units : str
-        In words.
+        Of the numbers, such as ``mm t N s``.
 
     Raises
     ------
@@ -56,7 +60,8 @@ def from_skfem(basis: Any, stiffness: sparse.spmatrix, mass: sparse.spmatrix,
     cells = _cells(basis, owner, points)
     if (youngs_modulus is None) != (poisson_ratio is None):
         raise InputError("give both youngs_modulus and poisson_ratio, or none of them")
-    geometric, stress = None, ()
+    geometric, stress, materials = None, (), ()
+    missing = dict.fromkeys(("stresses", "stiffening"), _NO_MATERIAL)
     if youngs_modulus is not None:
         law = (inputs.number(youngs_modulus, "youngs_modulus", above=0),
                inputs.number(poisson_ratio, "poisson_ratio", above=-1, below=0.5))
@@ -66,10 +71,13 @@ def from_skfem(basis: Any, stiffness: sparse.spmatrix, mass: sparse.spmatrix,
         by_nodes = sparse.csr_array((np.ones(basis.N), (3 * owner + axis, np.arange(basis.N))),
                                     shape=(basis.N, basis.N))
         stress = solid_stress(points, cells, *law)
-        geometric = SolidPrestress(points, [(*cells[0], *law)], by_nodes)
+        geometric = SolidPrestress(points, [(*cells[0], elasticity(*law))], by_nodes)
+        materials = [uniform_material(law[0], mass.sum() / dimension, geometric.volume)]
+        missing = {}
     return FEModel(stiffness, mass, points, dof_map=dof_map, cells=cells,
                    node_sets=_boundaries(basis, owner), geometric_stiffness=geometric,
-                   stress=stress, source=f"scikit-fem, {_name(basis)}", units=units)
+                   stress=stress, source=f"scikit-fem, {_name(basis)}", units=units,
+                   missing=missing, materials=materials)
 
 
 def _nodes(basis: Any) -> NDArray:

@@ -13,6 +13,8 @@ each ``M0 + sum_j M1(row, j, column) q_j``; ``x = X + Phi q`` and what follows i
 which is the geometric stiffness of accelerations and spin.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -199,6 +201,11 @@ def _modal(path: Path, found: dict[str, NDArray], nodes: list[ModalNode]) -> Mod
         if node.phi is None or node.psi is None or {node.phi.shape, node.psi.shape} != {(3, nq)}:
             raise InputError(f"SID file {path}: node {node.name} has no shapes phi and psi of "
                              f"{nq} modes: {_REMEDY}")
+    for name, what in (("Me", "mass"), ("Ke", "stiffness")):
+        own = np.diag(found[name])
+        if (own < 0).any():
+            raise InputError(f"SID file {path}: mode {np.argmin(own) + 1} has the {what} "
+                             f"{own.min():g}: write the file again")
     J = found["J"]
     if J.shape == (6, 1):
         whole = np.zeros((3, 3))
@@ -216,7 +223,9 @@ def _modal(path: Path, found: dict[str, NDArray], nodes: list[ModalNode]) -> Mod
 def _blocks(path: Path) -> Iterator[tuple[str | None, str, NDArray]]:
     """Node or None, name and M0 of every matrix; the mass of the body as ``mass``."""
     node, block, sizes, entries = None, None, {}, []
-    for number, line in enumerate(read_text(path, "SID file", _REMEDY).splitlines(), 1):
+    lines = read_text(path, "SID file", _REMEDY).splitlines()
+    most = 9 * len(lines)       # every mode has a line of its own, and no matrix is longer
+    for number, line in enumerate(lines, 1):
         words = line.strip()
         key, equals, value = (part.strip() for part in words.partition("="))
         if key == "new node":
@@ -224,7 +233,10 @@ def _blocks(path: Path) -> Iterator[tuple[str | None, str, NDArray]]:
         elif words == "end node":
             node = None
         elif key == "mass" and equals:
-            yield None, "mass", np.array([[_value(path, number, value)]])
+            mass = _value(path, number, value)
+            if mass <= 0:
+                raise fault(path, number, f"the mass is {mass:g}", "give the body a density")
+            yield None, "mass", np.array([[mass]])
         elif words in _NAMES:
             block, sizes, entries = words, {}, []
         elif block and words == f"end {block}":
@@ -234,7 +246,7 @@ def _blocks(path: Path) -> Iterator[tuple[str | None, str, NDArray]]:
             i, j = map(int, re.findall(r"\d+", key[2:]))
             entries.append((i, j, _value(path, number, value)))
         elif block and key in ("nrow", "ncol", "structure"):
-            sizes[key] = int(_value(path, number, value))
+            sizes[key] = _size(path, number, key, value, most)
     if block:
         raise InputError(f"SID file {path} ends within {block}: it is cut off, write it again")
 
@@ -252,6 +264,15 @@ def _matrix(path: Path, number: int, sizes: dict[str, int], entries: list) -> ND
         upper, lower = np.triu(found, 1), np.tril(found, -1)
         found += (upper.T if not lower.any() else 0) + (lower.T if not upper.any() else 0)
     return found
+
+
+def _size(path: Path, number: int, key: str, text: str, most: int) -> int:
+    """Rows or columns of a matrix, or a number for its structure."""
+    value = _value(path, number, text)
+    if not (value == np.floor(value) and 0 <= value <= (4 if key == "structure" else most)):
+        raise fault(path, number, f"{key} = {text.strip()} in a file of {most // 9} lines",
+                    "write the file again")
+    return int(value)
 
 
 def _value(path: Path, number: int, text: str) -> float:

@@ -8,28 +8,12 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.files.reading import text as read_text
 
 
 def fault(path: Path, line: int, what: str, remedy: str) -> InputError:
     """The exception for a line that cannot be used; lines count from 1."""
     return InputError(f"{path}, line {line}: {what}: {remedy}")
-
-
-def read_text(path: Path, what: str, remedy: str) -> str:
-    """The text of a file, whose line ends may be those of any system.
-
-    Raises
-    ------
-    InputError
-        It cannot be read or is no text.
-    """
-    path = inputs.path(path, what)
-    try:
-        return path.read_text(encoding="latin-1")
-    except FileNotFoundError as error:
-        raise InputError(f"{what} {path} does not exist: {remedy}") from error
-    except OSError as error:
-        raise InputError(f"{what} {path} cannot be read ({error.strerror}): {remedy}") from error
 
 
 def table(path: Path, columns: int, what: str, remedy: str) -> NDArray:

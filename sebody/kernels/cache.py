@@ -68,10 +68,8 @@ class FunctionCache(NullCache):
             entries = pickle.loads(content) | entries
         entries[sig] = dumps(data._reduce())
         if not store.write(self._source, self._name, self._made_from, dumps(entries)):
-            tried = ", ".join(map(str, store.folders(self._source)))
             store.say_once("writing", "compiled code cannot be kept, every start compiles it "
-                           f"again: no folder of {tried} can be written; set NUMBA_CACHE_DIR to "
-                           "one that can")
+                           f"again: {store.not_writable(self._source)}")
 
 
 def is_kept(source: Path, function: str, made_from: str) -> bool:

@@ -1,4 +1,4 @@
-"""Files kept from run to run: read wherever they are, written to the first folder that allows it.
+"""Files kept from run to run, in the folder that a user names or else in one found by itself.
 
 A file holds its checksum, a line with the hash of its sources, and the content. A file that is
 damaged or made from other sources counts as absent.
@@ -8,6 +8,7 @@ import os
 import warnings
 import zlib
 from collections.abc import Iterator
+from functools import cache
 from hashlib import sha1
 from pathlib import Path
 from uuid import uuid4
@@ -20,16 +21,22 @@ _said = set()       # topics of warnings
 
 
 def folders(source: Path) -> list[Path]:
-    """Folders in which files about a module are looked for, in this order.
+    """The folders in which files about a module are looked for and written, in this order.
 
-    ``NUMBA_CACHE_DIR`` if it is set, the ``__pycache__`` beside the module, the user's cache.
+    A folder below ``NUMBA_CACHE_DIR`` and no other where that is set; otherwise the ``__pycache__``
+    beside the module and the user's cache.
     """
-    users = AppDirs(appname="sebody", appauthor=False).user_cache_dir
-    roots = [root for root in (config.CACHE_DIR, users) if root and os.path.isabs(root)]
     private = f"{source.parent.name}_{sha1(str(source.parent).encode()).hexdigest()}"
-    found = [Path(root) / private for root in roots]
-    found.insert(1 if config.CACHE_DIR else 0, source.parent / "__pycache__")
-    return found
+    if config.CACHE_DIR:
+        return [_absolute(config.CACHE_DIR) / private]
+    users = AppDirs(appname="sebody", appauthor=False).user_cache_dir
+    return [source.parent / "__pycache__"] + [Path(users) / private] * os.path.isabs(users)
+
+
+@cache
+def _absolute(folder: str) -> Path:
+    """A folder as it was meant when it was first asked for, before the process changes its own."""
+    return Path(folder).absolute()
 
 
 def read(source: Path, name: str, made_from: str) -> Iterator[bytes]:
@@ -62,6 +69,15 @@ def writable(source: Path) -> bool:
         if existing.is_dir() and os.access(existing, os.W_OK):
             return True
     return False
+
+
+def not_writable(source: Path) -> str:
+    """Why nothing about a module can be kept, and the remedy."""
+    tried = " and ".join(map(str, folders(source)))
+    if config.CACHE_DIR:
+        return (f"{tried} cannot be written; set NUMBA_CACHE_DIR, now {config.CACHE_DIR}, to a "
+                "folder that can be written, or unset it")
+    return f"{tried} cannot be written; set NUMBA_CACHE_DIR to a folder that can be written"
 
 
 def _content(path: Path, made_from: str) -> bytes | None:

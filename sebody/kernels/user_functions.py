@@ -5,7 +5,8 @@ NaN: no state that contains it is accepted, and the run stops. The arguments are
 """
 
 import math
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numba import carray, cfunc, njit, types
@@ -31,10 +32,16 @@ class UserFunction:
         As the user wrote it.
     arguments : int
         Numbers it gets, the time included.
+
+    Attributes
+    ----------
+    read : mapping
+        Values from outside that it was compiled with, by name.
     """
 
     def __init__(self, function: Callable, arguments: int):
         self.function = function
+        self.read: Mapping[str, object] = {}
         self.record = np.zeros(1 + arguments)
         self.compiled = None            # by `compile_history` or `compile_force`
 
@@ -117,8 +124,8 @@ def compile_history(function: Callable[[float], float], what: str) -> UserFuncti
         made.compiled = cfunc(HISTORY)(call)
     except Exception as error:      # Numba does not raise its own exceptions alone
         raise InputError(f"{what} {getattr(function, '__name__', function)!r} cannot be compiled: "
-                         f"use only arithmetic, math and numpy in it, and one argument, the time "
-                         f"({error})") from error
+                         f"use only arithmetic, math and numpy in it ({_reason(error)})"
+                         ) from error
     return made
 
 
@@ -156,8 +163,17 @@ def compile_force(name: str, function: Callable[..., None], coordinates: int) ->
     except Exception as error:
         raise InputError(f"user force {name!r} cannot be compiled: write function(t, x, v, force) "
                          "with arithmetic, math and numpy only, which sets entries of force and "
-                         f"changes nothing else ({error})") from error
+                         f"changes nothing else ({_reason(error)})") from error
     return made
+
+
+def _reason(error: Exception) -> str:
+    """What Numba says of a function it cannot compile, on one line."""
+    lines = re.sub(r"\x1b\[\d*m", "", str(error)).splitlines()
+    said = [line.strip() for line in lines if line.strip() and not line.startswith("Failed in ")]
+    place = next((line for line in said if line.startswith("File ")), "")
+    first = said[0] if said else type(error).__name__
+    return first + (f"; {place.rstrip(':')}" if place and place != first else "")
 
 
 def _inner(signature, function: Callable) -> Callable:

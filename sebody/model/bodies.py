@@ -1,5 +1,7 @@
 """Bodies of a model: superelements, rigid bodies and point masses."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
@@ -70,6 +72,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         raise InputError(f"superelement {name!r} is {'planar' if body.planar else 'spatial'} "
                          f"and the model is {'planar' if model.planar else 'spatial'}: use one "
                          "kind in a model")
+    _check_units(model, name, body)
     placed = body if rotation is None else body.rotated(rotation)
     if frame is None:
         frame = default_frame(placed, inertia)
@@ -81,6 +84,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     layout = layout_name(placed.keeps, placed.planar)
     kernel = superelement_kernel_name(layout, own.kernel, inertia, placed.modes,
                                       needs_damped_kernel(placed, inertia))
+    model.units = model.units or body.units
     model.bodies[name] = Superelement(name, placed, nodes, frame, inertia, stiffening, layout,
                                       alpha, alpha_r, kernel, np.zeros(placed.modes))
     model.own_names.add(name)
@@ -147,6 +151,12 @@ def _check_name(model: Mechanism, name: str, what: str) -> None:
     if name in model.bodies or name in model.rigid_bodies:
         raise InputError(f"{what} {name!r} exists already: give it its own name")
     refuse_taken(model, name, f"{what} {name!r}")
+
+
+def _check_units(model: Mechanism, name: str, body: ReducedBody) -> None:
+    if body.units and model.units and body.units != model.units:
+        raise InputError(f"superelement {name!r}: the body is in the units {body.units} and the "
+                         f"model in {model.units}: import the body in the model's units")
 
 
 def _check_rigid(model: Mechanism, name: str, mass: float) -> float:

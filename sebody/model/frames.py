@@ -41,7 +41,8 @@ def known_frame(frame: str) -> Frame:
         There is none of this name.
     """
     if not isinstance(frame, str) or frame not in FRAMES:
-        raise InputError(f"frame {frame!r} is unknown: use one of {', '.join(sorted(FRAMES))}")
+        raise InputError(f"frame {inputs.shown(frame)} is unknown: use one of "
+                         f"{', '.join(sorted(FRAMES))}")
     return FRAMES[frame]
 
 

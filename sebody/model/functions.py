@@ -1,9 +1,60 @@
-"""Functions of users as they can be compiled: with the functions they call."""
+"""Functions of users as they can be compiled: with the functions they call and their defaults."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from types import CellType, CodeType, FunctionType
 
+import numpy as np
 from numba import njit
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.kernels.user_functions import UserFunction, compile_force, compile_history
+from sebody.model.outside import defaults, is_helper, refuse, values_read
+
+OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")       # arguments
+
+
+def compiled_history(function: Callable[[float], float], what: str) -> UserFunction:
+    """A function of time, compiled for the time loop.
+
+    Raises
+    ------
+    InputError
+        It has other arguments, reads what may change, or Numba cannot compile it; the message
+        begins with `what` it is.
+    """
+    own = _python(function, what, f"{what} {getattr(function, '__name__', '')!r}", OF_TIME)
+    return _remembered(compile_history(compilable(own), what), own)
+
+
+def compiled_force(function: Callable[..., None], name: str, coordinates: int) -> UserFunction:
+    """A user's ``function(t, x, v, force)``, compiled for the time loop.
+
+    Raises
+    ------
+    InputError
+        As of `compiled_history`.
+    """
+    own = _python(function, f"user force {name!r}", f"user force {name!r}", FORCE)
+    return _remembered(compile_force(name, compilable(own), coordinates), own)
+
+
+def compilable(function: FunctionType) -> FunctionType:
+    """A function whose helpers, and theirs, and values of default arguments are Numba's to see."""
+    made: dict[int, Callable] = {}
+
+    def compiled(value: object) -> object:
+        options = getattr(value, "targetoptions", {})       # of what the user compiles by Numba
+        helper = getattr(value, "py_func", value)
+        if not is_helper(helper):
+            return value
+        if id(helper) not in made:
+            made[id(helper)] = helper       # what calls itself is left to Numba's message
+            made[id(helper)] = njit(**_without(options, "nopython"))(rebuilt(helper, compiled))
+        return made[id(helper)]
+    copy, values = rebuilt(function, compiled), defaults(function).values()
+    return _bound(copy, [compiled(value) for value in values]) if values else copy
 
 
 def rebuilt(function: FunctionType, replaced: Callable[[object], object]) -> FunctionType:
@@ -25,28 +76,53 @@ def rebuilt(function: FunctionType, replaced: Callable[[object], object]) -> Fun
     return copy
 
 
-def with_compiled_helpers(function: Callable) -> Callable:
-    """A function whose plain helpers, and theirs, are handed to Numba; unchanged if it has none."""
-    if not isinstance(function, FunctionType) or not any(
-            isinstance(one, FunctionType) for one in _used(function)):
-        return function
-    made: dict[int, Callable] = {}
+def _python(function: Callable, what: str, named: str, arguments: tuple[str, ...]
+            ) -> FunctionType:
+    """What a user gave as a function that is written in Python and has these arguments.
 
-    def compiled(value: object) -> object:
-        if not isinstance(value, FunctionType):
-            return value
-        if id(value) not in made:
-            made[id(value)] = value         # what calls itself is left to Numba's message
-            made[id(value)] = njit(rebuilt(value, compiled))
-        return made[id(value)]
-    return rebuilt(function, compiled)
+    Messages begin with `what` it is or, of a function, with how it is `named`.
+    """
+    function = getattr(function, "py_func", function)       # of what the user compiles by Numba
+    name = getattr(function, "__name__", "")
+    if arguments == OF_TIME and function in (getattr(math, name, None), getattr(np, name, None)):
+        return lambda t: function(t)        # such as math.sin
+    shape = ", ".join(arguments)
+    if not isinstance(function, FunctionType):
+        raise inputs.refusal(what, function, f"give a function of ({shape}), made by def or lambda")
+    code = function.__code__
+    has = code.co_varnames[:code.co_argcount + code.co_kwonlyargcount]
+    needed = [one for one in has if one not in defaults(function)]
+    if len(needed) != len(arguments) or code.co_argcount < len(needed) or code.co_flags & 12:
+        raise InputError(f"{named} has the arguments ({', '.join(has)}): give a function "
+                         f"of ({shape}); further arguments need defaults")
+    refuse(function, named)
+    return function
 
 
-def _used(function: FunctionType) -> list[object]:
-    """What a function refers to by name."""
-    outer = function.__globals__
-    return [*(outer[name] for name in _names(function.__code__) & outer.keys()),
-            *(cell.cell_contents for cell in function.__closure__ or ())]
+def _remembered(made: UserFunction, function: FunctionType) -> UserFunction:
+    """What was compiled, with the function as its user wrote it and what it was compiled with."""
+    made.function, made.read = function, values_read(function)
+    return made
+
+
+def _bound(function: FunctionType, values: Sequence[object]) -> FunctionType:
+    """A function whose default arguments have these values, as one that reads the values."""
+    code = function.__code__
+    # arguments that are given by keyword alone become the last ones
+    code = code.replace(co_argcount=code.co_argcount + code.co_kwonlyargcount,
+                        co_kwonlyargcount=0)
+    inner = FunctionType(code, function.__globals__, function.__name__, None, function.__closure__)
+    names = [f"default_{k}" for k in range(len(values))]
+    arguments = list(code.co_varnames[:code.co_argcount - len(values)])
+    made = dict(zip(names, values, strict=True)) | {"inner": njit(inner)}
+    exec(f"def bound({', '.join(arguments)}):\n    return inner({', '.join(arguments + names)})",
+         made)
+    made["bound"].__name__ = function.__name__
+    return made["bound"]
+
+
+def _without(options: dict[str, object], name: str) -> dict[str, object]:
+    return {key: value for key, value in options.items() if key != name}
 
 
 def _names(code: CodeType) -> set[str]:

@@ -47,7 +47,8 @@ def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
 
 def _check_option(inertia: str, frame: str) -> None:
     if not isinstance(inertia, str) or inertia not in INERTIAS:
-        raise InputError(f"inertia {inertia!r} is unknown: use one of {', '.join(INERTIAS)}")
+        raise InputError(f"inertia {inputs.shown(inertia)} is unknown: use one of "
+                         f"{', '.join(INERTIAS)}")
     if options.INERTIA_OPTIONS[inertia].rates and FRAMES[frame].traits.incremental:
         raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "
                          f"the state alone, which {frame!r} does not: use one of "

@@ -7,6 +7,9 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
+from sebody.spelling import unknown
+
+PLANE = 1e-9        # largest part of an axis in the plane that is rounding
 
 
 def known(model: Mechanism, node: Node | str) -> Node:
@@ -15,8 +18,7 @@ def known(model: Mechanism, node: Node | str) -> Node:
         raise inputs.refusal("node", node, "give a node of the model or its name")
     name = node.name if isinstance(node, Node) else node
     if name not in model.nodes:
-        raise InputError(f"node {name!r} is unknown: the model has "
-                         f"{', '.join(model.nodes) or 'no nodes'}")
+        raise unknown("node", name, model.nodes, "the model has", "the model has no nodes")
     if isinstance(node, Node) and model.nodes[name] is not node:
         raise InputError(f"node {name!r} is of another model: use that of this one")
     return model.nodes[name]
@@ -64,6 +66,36 @@ def axes(model: Mechanism, axis: ArrayLike, what: str,
     first = np.cross(e, np.eye(3)[np.argmin(np.abs(e))])
     first /= np.linalg.norm(first)
     return e, first, np.cross(e, first)
+
+
+def turning_axes(model: Mechanism, axis: ArrayLike, what: str, node: Node, signed: bool = False
+                 ) -> tuple[NDArray, NDArray, NDArray] | None:
+    """Axes as of `axes` of what turns; none in a plane, where the axis is normal to it.
+
+    Parameters
+    ----------
+    signed : bool
+        Whether it makes a difference which way the axis points.
+
+    Raises
+    ------
+    InputError
+        In a plane, an axis that is not normal to it or, where signs matter, points to -z.
+    """
+    if not model.planar:
+        return axes(model, axis, what, node)
+    what = f"axis of the {what} at {node.name!r}"
+    remedy = "the model is planar, in which everything turns about (0, 0, 1): leave the axis out, "
+    other = remedy + "or take a model in space, Model()"
+    normal = np.array([0.0, 0.0, 1.0])
+    given = (inputs.number(axis, what, remedy=other) * normal if np.ndim(axis) == 0 else
+             inputs.vector(axis, what, 3, remedy=other))
+    size = np.abs(given).max()
+    if not size > 0 or np.abs(given[:2]).max() > PLANE * size:
+        raise inputs.refusal(what, axis, other)
+    if signed and given[2] < 0:
+        raise inputs.refusal(what, axis, remedy + "and change the sign of what is about it")
+    return None
 
 
 def along(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> tuple[NDArray, ...]:

@@ -6,6 +6,8 @@ and its moment are those on `node`, the first of its arguments, from `to` or the
 `sebody.Result`; a joint with an axis has axes whose first direction is this axis.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -14,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import along, axes, chosen_name, known, triplet
+from sebody.model.inputs import along, axes, chosen_name, known, triplet, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import NEAR, check_together, pair
 from sebody.model.parts import (
@@ -66,7 +68,7 @@ def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.
     """
     what = "revolute joint"
     a, b = pair(model, node, to, what)
-    vectors = None if model.planar else axes(model, axis, what, a)
+    vectors = turning_axes(model, axis, what, a)
     name = _named(model, name, what, a)
     equations = _together(model, a, b, to, what, explicit)
     shared = () if equations else ("position",)

@@ -1,26 +1,27 @@
 """Loads of a model: forces and torques, each with a name and its work, and gravity."""
 
-from collections.abc import Callable, Iterable
-from difflib import get_close_matches
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
 
 from numpy.typing import ArrayLike
 
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.names import body_load_kind
-from sebody.kernels.user_functions import compile_force
 from sebody.model.frames import FRAMES
-from sebody.model.functions import with_compiled_helpers
+from sebody.model.functions import compiled_force
 from sebody.model.histories import History, clock, history
 from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
+from sebody.spelling import offered, unknown
 
 
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,
           amplitude: ArrayLike | Callable[[float], float] | History | None = None,
           follower: bool = False, name: str | None = None) -> Element:
-    """Force on a node: `direction` times a history.
+    """Force on a node: `direction` times a number, a table, a function of time or a profile.
 
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
@@ -40,7 +41,9 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
 def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
            amplitude: ArrayLike | Callable[[float], float] | History | None = None,
            follower: bool = False, name: str | None = None) -> Element:
-    """Torque on a node: `direction` (a number in a plane) times a history.
+    """Torque on a node: `direction` times a number, a table, a function of time or a profile.
+
+    In a plane the direction is a number.
 
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
@@ -97,7 +100,7 @@ def body_load(model: Mechanism, body: str, load: str,
     loads = placed.body.loads
     if not isinstance(load, str) or load not in loads:
         raise InputError(f"superelement {body!r} has no load {load!r}: "
-                         + _others(str(load), loads, "it has", "it was reduced without loads, give "
+                         + offered(load, loads, "it has", "it was reduced without loads, give "
                                    "craig_bampton loads={...}"))
     kind = body_load_kind(FRAMES[placed.frame].kernel, model.planar)
     course = history(amplitude)
@@ -107,7 +110,7 @@ def body_load(model: Mechanism, body: str, load: str,
 
 
 def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
-               function: Callable[..., None]) -> Element:
+               function: Callable[..., None], corners: Sequence[float] = ()) -> Element:
     """Forces by a function of the user, compiled for the loop.
 
     Parameters
@@ -117,11 +120,13 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
     function : callable
         ``function(t, x, v, force)`` with arrays of all coordinates, node after node; it sets
         `force`, which is zero before. Numba compiles it; derivatives are central differences.
+    corners : sequence of float
+        Times at which the forces jump: steps end there.
 
     Raises
     ------
     InputError
-        A function that cannot be compiled, or no nodes.
+        A function that cannot be compiled, no nodes, or corners that are no times.
     """
     inputs.name(name, "name of a user force")
     places = positions(*(known(model, n) for n in inputs.items(
@@ -130,9 +135,9 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
         triplet(place.node, "position")
     if not places:
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")
-    compiled = compile_force(name, with_compiled_helpers(function), model.dimension * len(places))
+    compiled = compiled_force(function, name, model.dimension * len(places))
     name = chosen_name(model, name, "user force")
-    return _add(model, Element(name, "user_force", places, {}, history=clock(),
+    return _add(model, Element(name, "user_force", places, {}, history=clock(corners),
                                function=compiled))
 
 
@@ -155,18 +160,8 @@ def gravity(model: Mechanism, field: ArrayLike) -> None:
 def _body(model: Mechanism, name: str) -> Superelement:
     """A superelement by its name."""
     if not isinstance(name, str) or name not in model.bodies:
-        raise InputError(f"superelement {name!r} is unknown: "
-                         + _others(str(name), model.bodies, "the model has", "the model has none"))
+        raise unknown("superelement", name, model.bodies, "the model has", "the model has none")
     return model.bodies[name]
-
-
-def _others(name: str, known: Iterable[str], have: str, without: str) -> str:
-    """Names that are near, or all there are."""
-    known = list(known)
-    near = get_close_matches(name, known)
-    if near:
-        return f"did you mean {' or '.join(map(repr, near))}?"
-    return f"{have} {', '.join(known)}" if known else without
 
 
 def _add(model: Mechanism, load: Element) -> Element:

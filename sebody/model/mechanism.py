@@ -1,9 +1,10 @@
 """The data of a model, and how its parts are found by name."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +22,11 @@ from sebody.model.parts import (
     Triplet,
 )
 from sebody.model.plane import Plane
+from sebody.spelling import unknown
+from sebody.units import parsed_units
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Mechanism:
     """A mechanism: nodes, superelements, rigid bodies, joints and forces.
 
@@ -31,9 +34,13 @@ class Mechanism:
     ----------
     planar : bool
         Motion in the x-y plane: positions (x, y) and one angle a node.
+    units : str
+        Units of all numbers, such as ``mm t N s``, for legends, axes and tables; those of its
+        bodies by default.
     """
 
     planar: bool = False
+    units: str = ""
     nodes: dict[str, Node] = field(default_factory=dict, init=False)
     bodies: dict[str, Superelement] = field(default_factory=dict, init=False)
     rigid_bodies: dict[str, Element] = field(default_factory=dict, init=False)
@@ -49,6 +56,7 @@ class Mechanism:
 
     def __post_init__(self) -> None:
         self.planar = inputs.flag(self.planar, "planar")
+        self.units = str(parsed_units(self.units, "units of the model") or "")
         self.gravity_field = np.zeros(self.dimension)
 
     @property
@@ -99,8 +107,5 @@ class Mechanism:
         if found:
             raise InputError(f"{len(found)} elements are called {name!r}: build them with name= to "
                              "tell them apart")
-        names = list(dict.fromkeys(e.name for e in self.elements()))
-        near = get_close_matches(str(name), names)
-        raise InputError(f"element {name!r} is unknown: " + (
-            f"did you mean {' or '.join(map(repr, near))}?" if near else
-            f"the model has {', '.join(map(repr, names)) or 'none'}"))
+        raise unknown("element", name, (e.name for e in self.elements()), "the model has",
+                      "the model has none")

@@ -10,7 +10,7 @@ from html import escape
 from sebody.model import beams, bodies, drives, joints, loads, nodes, springs
 from sebody.model.atomic import atomic
 from sebody.model.mechanism import Mechanism
-from sebody.model.tables import model_tables, summary
+from sebody.model.tables import described, model_tables, summary
 
 
 class Model(Mechanism):
@@ -22,7 +22,21 @@ class Model(Mechanism):
     ----------
     planar : bool
         Motion in the x-y plane: positions (x, y) and one angle a node.
+    units : str
+        Units of all numbers, such as ``mm t N s``, for legends, axes and tables; those of its
+        bodies by default.
     """
+
+    def summary(self) -> str:
+        """The model in words and tables, to be checked before a run.
+
+        Unknowns and what they are of, masses, bodies, nodes and their state, joints, loads; bodies
+        that nothing ties to the ground.
+        """
+        return described(self)
+
+    def __repr__(self) -> str:
+        return f"<{summary(self)}>"
 
     def _repr_html_(self) -> str:
         """What notebooks show."""

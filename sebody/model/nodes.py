@@ -1,5 +1,9 @@
 """Nodes of a model: positions, shared triplets, rigid links and initial velocities."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -8,6 +12,7 @@ from sebody.errors import InputError
 from sebody.model.inputs import known, rotation_vector, triplet, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Node, Triplet
+from sebody.spelling import unknown
 
 RESERVED = ("constraints", "energy")    # first parts of quantities of the whole model
 
@@ -103,19 +108,59 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
 
 
 def rigid_velocity(model: Mechanism, linear: ArrayLike, angular: ArrayLike,
-                   about: ArrayLike | None = None) -> None:
-    """Start all free triplets in a rigid motion of the whole model."""
+                   about: ArrayLike | None = None, body: str | None = None,
+                   nodes: Iterable[Node | str] | None = None) -> None:
+    """Start the whole model, a body or some nodes in a rigid motion.
+
+    Of the whole model all that is free starts with it, as far as joints and drives allow: a run
+    warns where they demand other velocities. A body or nodes keep it as they keep what
+    `initial_velocity` gives: a run is refused where it contradicts a joint or drive.
+
+    Parameters
+    ----------
+    linear : (3,), planar (2,)
+        Velocity of the point `about`, global axes.
+    angular : (3,), planar a number
+    about : (3,), planar (2,), optional
+        The origin by default.
+    body : str, optional
+        Name of a superelement, a rigid body or a beam: its nodes alone.
+    nodes : iterable of Node or str, optional
+        These nodes alone.
+
+    Raises
+    ------
+    InputError
+        Wrong shapes, a body or node there is not, or both `body` and `nodes`.
+    """
     linear = vector(model, linear, "linear velocity")
     angular = rotation_vector(model, angular, "angular velocity")
     centre = np.zeros(model.dimension) if about is None else vector(model, about, "about")
-    for node in model.nodes.values():
-        if node.position is not None and node.position.solved:
-            arm = node.point - centre
-            spin = (angular[0] * np.array([-arm[1], arm[0]]) if model.planar
-                    else np.cross(angular, arm))
-            node.position.rate = linear + spin
-        if node.rotation is not None and node.rotation.solved:
-            node.rotation.rate = angular.copy()
+    whole = body is None and nodes is None
+    moved = model.nodes.values() if whole else _moved(model, body, nodes)
+    for node in moved:
+        arm = node.point - centre
+        spin = (angular[0] * np.array([-arm[1], arm[0]]) if model.planar
+                else np.cross(angular, arm))
+        for own, rate in ((node.position, linear + spin), (node.rotation, angular)):
+            if own is not None and (own.solved or not whole):
+                own.rate, own.given = rate.copy(), own.given or not whole
+
+
+def _moved(model: Mechanism, body: str | None,
+           nodes: Iterable[Node | str] | None) -> list[Node]:
+    """The nodes of a body, or some nodes."""
+    if body is None:
+        return [known(model, node) for node in inputs.items(nodes, "nodes", "give a list of nodes")]
+    if nodes is not None:
+        raise InputError("rigid_velocity takes body= or nodes=: leave one of them out")
+    named = {beam.name: beam.nodes for beam in model.beams}
+    named |= {one.name: one.nodes for one in model.bodies.values()}
+    named |= {one.name: [place.node for place in one.places]
+              for one in model.rigid_bodies.values()}
+    if not isinstance(body, str) or body not in named:
+        raise unknown("body", body, named, "the model has", "the model has none")
+    return list({id(node): node for node in named[body]}.values())
 
 
 def _check_new(model: Mechanism, name: str) -> None:

@@ -11,6 +11,7 @@ from sebody.fem.section import AnySection
 from sebody.model.histories import History
 from sebody.reduction import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
+from sebody.tabular import counted, vector
 
 
 class Motion(NamedTuple):
@@ -21,8 +22,11 @@ class Motion(NamedTuple):
     history: History
     place: "Place"
 
+    def __repr__(self) -> str:
+        return f"<Motion {self.name!r} along {vector(self.direction)}: {self.history.described()}>"
 
-@dataclass(eq=False)
+
+@dataclass(eq=False, repr=False)
 class Triplet:
     """A block of unknowns: a position or a rotation (in a plane two coordinates or an angle).
 
@@ -49,8 +53,20 @@ class Triplet:
         """The triplets that determine this one: itself, or root and rotations of the arms."""
         return [self] if self.root is None else [self.root, *(r for r, _ in self.arms)]
 
+    @property
+    def state(self) -> str:
+        """Whether its coordinates are unknowns, and why not."""
+        if self.root is not None:
+            return "follows by a rigid link"
+        if self.motions:
+            return f"prescribed by {', '.join(motion.name for motion in self.motions)}"
+        return "fixed" if self.fixed else counted(self.start.size, "unknown")
 
-@dataclass(eq=False)
+    def __repr__(self) -> str:
+        return f"<{self.name}: {self.state}>"
+
+
+@dataclass(eq=False, repr=False)
 class Node:
     """A named point of the model; either triplet may be absent or shared with another node."""
 
@@ -58,6 +74,11 @@ class Node:
     point: NDArray
     position: Triplet | None
     rotation: Triplet | None
+
+    def __repr__(self) -> str:
+        states = ", ".join(f"{kind} {getattr(self, kind).state}" for kind in (
+            "position", "rotation") if getattr(self, kind) is not None)
+        return f"<Node {self.name!r} at {vector(self.point)}: {states}>"
 
 
 class Place(NamedTuple):
@@ -77,7 +98,7 @@ def rotations(*nodes: Node) -> tuple[Place, ...]:
     return tuple(Place(node, "rotation") for node in nodes)
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Superelement:
     """A reduced body placed on nodes, with its matrices in global axes."""
 
@@ -92,6 +113,12 @@ class Superelement:
     alpha_r: NDArray        # and of the rotations
     kernel: str             # name of the generated module
     mode_rates: NDArray     # initial velocities of the internal modes
+
+    def __repr__(self) -> str:
+        nodes = ", ".join(node.name for node in self.nodes)
+        return (f"<Superelement {self.name!r} on {nodes}: mass {self.body.total_mass:.6g}, "
+                f"{counted(self.body.modes, 'mode')}, frame {self.frame}, inertia {self.inertia}"
+                + (", stiffening>" if self.stiffening else ">"))
 
     @property
     def invariants(self) -> InertiaInvariants | None:
@@ -116,7 +143,7 @@ class Superelement:
                 + rotations(*(self.nodes[i] for i in self.body.rotation_nodes)))
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Element:
     """A rigid body, load, spring, or constraint of a joint: a generated kernel on triplets."""
 
@@ -126,6 +153,7 @@ class Element:
     constants: Mapping[str, ArrayLike]      # by the names that the kernel has for them
     multipliers: int = 0
     history: History | None = None
+    keeps_angle: bool = False               # from step to step, to count its turns
     mode: tuple[str, int] | None = None     # superelement and internal mode of a mode force
     function: object = None                 # compiled function of a user force, kept alive
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
@@ -139,6 +167,15 @@ class Element:
         """Direction of a force or torque."""
         return self.constants["d"]
 
+    def __repr__(self) -> str:
+        nodes = dict.fromkeys(place.node.name for place in self.places)
+        numbers = [f"{name} {np.asarray(value).item():.6g}" for name, value in
+                   self.constants.items() if np.size(value) == 1]
+        course = [self.history.described()] if self.history and self.function is None else []
+        said = "; ".join([", ".join(numbers), *course]).strip("; ")
+        return (f"<{self.kind.replace('_', ' ')} {self.name!r}"
+                + f" on {', '.join(nodes)}" * bool(nodes) + f": {said}" * bool(said) + ">")
+
 
 class Beam(NamedTuple):
     """How a beam of superelements was built."""
@@ -150,6 +187,11 @@ class Beam(NamedTuple):
     options: Mapping[str, object]       # the further arguments of `Model.beam`
     parts: tuple[Superelement, ...]
     bodies: tuple[ReducedBody, ...]     # of these parts, as built
+
+    def __repr__(self) -> str:
+        return (f"<Beam {self.name!r} from {self.nodes[0].name} to {self.nodes[-1].name}: "
+                f"{counted(self.elements, 'element')} in "
+                f"{counted(len(self.parts), 'superelement')}>")
 
 
 class Axes(NamedTuple):
@@ -165,7 +207,7 @@ class Axes(NamedTuple):
                    np.column_stack(vectors))
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Joint:
     """A joint or drive: its constraints; none if its nodes are fixed or share triplets."""
 
@@ -175,6 +217,11 @@ class Joint:
     to: Node            # from this one, which is fixed if the joint is to the ground
     axes: Axes | None   # none of a distance, whose axis is the line between the nodes
     kind: str           # revolute, universal, ..., weld, distance; drive
+
+    def __repr__(self) -> str:
+        course = f"; {self.history.described()}" if self.history else ""
+        return (f"<{self.kind} {self.name!r} of {self.node.name} to {self.to.name}: "
+                f"{counted(self.multipliers, 'equation')}{course}>")
 
     @property
     def multipliers(self) -> int:

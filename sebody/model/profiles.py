@@ -6,6 +6,8 @@ starts: the value at t = 0 is taken off. A drive may have a speed at t = 0, with
 simulation starts; later on its speed must not jump.
 """
 
+from __future__ import annotations
+
 from math import comb, copysign, inf, sqrt
 
 import numpy as np

@@ -1,6 +1,9 @@
 """Fixed and shared triplets: joints without equations."""
 
+import numpy as np
+
 from sebody.errors import InputError
+from sebody.inputs import shown
 from sebody.model.inputs import triplet
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Node, Triplet
@@ -37,7 +40,11 @@ def share(model: Mechanism, gone: Triplet, kept: Triplet, kind: str) -> None:
         return
     if not gone.solved:
         gone, kept = kept, gone
-    if gone.given and not kept.given:
+    if gone.given and kept.given and not np.array_equal(gone.rate, kept.rate):
+        raise InputError(f"{gone.name} is given the initial velocity {shown(gone.rate)} and "
+                         f"{kept.name} {shown(kept.rate)}, but a joint makes them one: give both "
+                         "the same, or only one")
+    if gone.given:
         kept.rate, kept.given = gone.rate, True
     for node in (*model.nodes.values(), *model.grounds):
         if getattr(node, kind) is gone:

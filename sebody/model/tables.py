@@ -1,48 +1,66 @@
-"""A model as tables of HTML, for notebooks and reports."""
+"""A model as tables: of HTML for notebooks and reports, of text for its summary."""
 
 from collections.abc import Iterable, Sequence
-from html import escape
+from typing import NamedTuple
 
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Triplet
+from sebody.model.ties import untied
+from sebody.tabular import counted, table, text, vector
 
-MOST_ROWS = 40          # of a table that is not folded
+
+class Unknowns(NamedTuple):
+    """How many unknowns a model has, and of what."""
+
+    nodes: int
+    modes: int
+    equations: int
 
 
-def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """A table; one of many rows is folded."""
-    rows = list(rows)
-    head = "".join(f"<th>{escape(one)}</th>" for one in heads)
-    body = "".join("<tr>" + "".join(f"<td>{escape(str(one))}</td>" for one in row) + "</tr>"
-                   for row in rows)
-    text = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-    if len(rows) <= MOST_ROWS:
-        return text
-    return f"<details><summary>{len(rows)} rows</summary>{text}</details>"
+def unknowns(model: Mechanism) -> Unknowns:
+    """Unknowns of a model: coordinates of nodes, amplitudes of modes, multipliers."""
+    return Unknowns(sum(t.start.size for t in model.triplets() if t.solved),
+                    sum(body.body.modes for body in model.bodies.values()),
+                    sum(joint.multipliers for joint in model.joints))
 
 
 def model_tables(model: Mechanism) -> list[tuple[str, str]]:
-    """Titles and tables: bodies, nodes and what their coordinates are, joints, loads."""
-    found = [("Bodies", table(("body", "kind", "mass", "nodes", "formulation"), _bodies(model))),
-             ("Nodes", table(("node", "point", "position", "rotation"), _nodes(model))),
-             ("Joints and drives", table(("name", "kind", "of", "to", "equations"),
-                                         _joints(model))),
-             ("Loads, springs and dampers", table(("name", "kind", "on"), _loads(model)))]
-    return [(title, text) for title, text in found if "<td>" in text]
+    """Titles and tables of HTML: bodies, nodes and what their coordinates are, joints, loads."""
+    return [(title, table(heads, rows)) for title, heads, rows in _tables(model)]
 
 
 def summary(model: Mechanism) -> str:
     """A line on a model."""
     parts = ((len(model.bodies), "superelement"), (len(model.rigid_bodies), "rigid body"),
              (len(model.nodes), "node"), (len(model.joints), "joint"), (len(model.loads), "load"))
-    counted = [f"{count} {what if count == 1 else _plural(what)}" for count, what in parts if count]
+    found = [counted(count, what) for count, what in parts if count]
     gravity = ", ".join(f"{value:g}" for value in model.gravity_field)
-    return (f"{'planar' if model.planar else 'spatial'} model: {', '.join(counted) or 'empty'}"
+    return (f"{'planar' if model.planar else 'spatial'} model: {', '.join(found) or 'empty'}"
             + (f"; gravity ({gravity})" if model.gravity_field.any() else ""))
 
 
-def _plural(what: str) -> str:
-    return what[:-1] + "ies" if what.endswith("y") else what + "s"
+def described(model: Mechanism) -> str:
+    """A model in words and tables: what there is to check before a run."""
+    nodes, modes, equations = unknowns(model)
+    masses = [body.body.total_mass for body in model.bodies.values()]
+    masses += [float(body.constants["mass"]) for body in model.rigid_bodies.values()]
+    lines = [summary(model),
+             f"unknowns  {nodes + modes + equations}: {nodes} of nodes, {modes} of modes, "
+             f"{equations} of the equations of joints",
+             f"mass      {sum(masses):.6g}"]
+    if loose := [name for group in untied(model) for name in group]:
+        lines.append("free      " + ", ".join(loose) + ": nothing ties them to the ground")
+    return "\n\n".join(["\n".join(lines), *(text(*one) for one in _tables(model))])
+
+
+def _tables(model: Mechanism) -> list[tuple[str, Sequence[str], list[tuple]]]:
+    """Titles, heads and rows of the tables that have rows."""
+    found = [("Bodies", ("body", "kind", "mass", "nodes", "formulation"), _bodies(model)),
+             ("Nodes", ("node", "point", "position", "rotation", "initial velocity"),
+              _nodes(model)),
+             ("Joints and drives", ("name", "kind", "of", "to", "equations"), _joints(model)),
+             ("Loads, springs and dampers", ("name", "kind", "on", "course"), _loads(model))]
+    return [one for one in found if one[2]]
 
 
 def _bodies(model: Mechanism) -> list[tuple]:
@@ -58,9 +76,16 @@ def _bodies(model: Mechanism) -> list[tuple]:
 
 def _nodes(model: Mechanism) -> list[tuple]:
     first: dict[int, str] = {}      # triplet -> the node it is told of
-    return [(node.name, "(" + ", ".join(f"{value:.6g}" for value in node.point) + ")",
-             *(_state(first, node, triplet) for triplet in (node.position, node.rotation)))
-            for node in model.nodes.values()]
+    return [(node.name, vector(node.point),
+             *(_state(first, node, triplet) for triplet in (node.position, node.rotation)),
+             _rates(node)) for node in model.nodes.values()]
+
+
+def _rates(node: Node) -> str:
+    """Initial velocities that a user gave."""
+    given = (("", node.position), ("rotation ", node.rotation))
+    return ", ".join(f"{what}{vector(one.rate)}" for what, one in given
+                     if one is not None and one.solved and (one.given or one.rate.any()))
 
 
 def _state(first: dict[int, str], node: Node, triplet: Triplet | None) -> str:
@@ -70,14 +95,7 @@ def _state(first: dict[int, str], node: Node, triplet: Triplet | None) -> str:
     owner = first.setdefault(id(triplet), node.name)
     if owner != node.name:
         return f"that of {owner}"
-    count = triplet.start.size
-    if triplet.root is not None:
-        return "follows by a rigid link"
-    if triplet.motions:
-        return f"prescribed by {', '.join(motion.name for motion in triplet.motions)}"
-    if triplet.fixed:
-        return "fixed"
-    return f"{count} unknown{'s' * (count > 1)}"
+    return triplet.state
 
 
 def _joints(model: Mechanism) -> list[tuple]:
@@ -92,7 +110,9 @@ def _joints(model: Mechanism) -> list[tuple]:
 def _loads(model: Mechanism) -> list[tuple]:
     return [(load.name, _plain(load),
              _named({place.node.name: place.node for place in load.places}.values())
-             or (load.mode[0] if load.mode else "")) for load in model.loads]
+             or (load.mode[0] if load.mode else ""),
+             load.history.described() if load.history and load.function is None else "")
+            for load in model.loads]
 
 
 def _plain(element: Element) -> str:

@@ -1,27 +1,16 @@
-"""How many fixed-interface modes are enough, by the error of the interface's dynamic stiffness.
+"""How many vibration modes are enough for a band of frequencies.
 
-With all modes, ``D(w) = K - w^2 M - w^4 sum_j p_j p_j^T / (w_j^2 - w^2)`` is the exact dynamic
-stiffness of the interface, K and M reduced to constraint modes Psi, ``p_j = Psi^T M phi_j``.
-Leaving out the modes above the n-th leaves out
-
-    E(w) = w^4 sum_{j > n} p_j p_j^T / (w_j^2 - w^2),
-
-positive semidefinite below the next mode and growing with w. Beside the modes computed, sums over
-all others are known: with ``Y = M Psi - M Phi p`` and the static answer S of the clamped body,
-
-    sum p p^T / w_j^2 = Y^T S Y,    sum p p^T / w_j^4 = Y^T S M S Y,
-
-so that E lies between ``w^4 (S1 + w^2 S2)`` and ``w^4 (S1 + w^2 S2 / (1 - w^2 / w_N^2))``, of which
-the upper is taken; w_N is the last mode computed. The error is that of the work of any interface
-motion b, relative to strain and kinetic energy: the largest ``b^T E b / b^T (K + w^2 M) b``, no
-matter which units or axes. It grows with w, so it is largest at the end of the band. At a free
-vibration it is, to first order, the relative error of the frequency.
+Of Craig and Bampton's bodies errors are known from static solutions, see
+`sebody.reduction.omission`; Rubin's have the free frequencies of the modes that they keep.
 
 Estimates for the same purpose: S.-H. Boo, J.-G. Kim and P.-S. Lee, Int. J. Numer. Meth. Engng 106,
 2016 (frequencies); B. Frie and P. Eberhard, 2023 (sampled transfer functions). With sums of all
 modes neither an expansion in the unknown frequency nor samples are needed.
 """
 
+from __future__ import annotations
+
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,50 +18,67 @@ from numpy.typing import NDArray
 from scipy import linalg, sparse
 
 from sebody import inputs
+from sebody.errors import InputError
 from sebody.reduction.clamped import ClampedInterior
 from sebody.reduction.component import ComponentModes
+from sebody.reduction.omission import Omission
+from sebody.reduction.watch import SILENT, Watch
 
-_BEYOND = 1.2   # last mode computed over the end of the band, so that the two bounds are close
-_UNCOUPLED = 1e-12  # part of the energy by which a mode that the interface does not move takes part
+CRITERIA = ("stiffness", "frequencies")
 _FIRST = 12     # modes computed at first
+_MORE, _MOST = 1.25, 6.0        # modes computed next, over those expected and those before
+_TOLERANCES = (1e-3, 1e-2)      # of which the bands are told
 
 
 @dataclass(frozen=True)
 class Accuracy:
-    """As many modes as the interface's dynamic stiffness needs; in place of a number of modes.
+    """As many modes as a band of frequencies needs; in place of a number of modes.
 
     Parameters
     ----------
     tolerance : float
-        Largest relative error of the dynamic stiffness: of the work of any motion of the boundary,
-        relative to the strain and kinetic energy that the motion has without internal modes. To
-        first order it bounds the relative errors of free vibration frequencies.
+        Largest relative error.
     up_to : float
         End of the band, in cycles per unit of time (Hz where time is in seconds).
+    of : 'stiffness' or 'frequencies', optional
+        What the tolerance is of: of the dynamic stiffness of the interface, that is of the work of
+        any motion of the boundary, relative to the strain and kinetic energy that the motion has
+        without internal modes; or of the frequencies of free vibration alone, which takes far
+        fewer modes. By default the first, with 'rubin' the second.
 
     Raises
     ------
     InputError
-        Numbers that are not positive, or a tolerance of 1 or more.
+        Numbers that are not positive, a tolerance of 1 or more, or another criterion.
     """
 
     tolerance: float
     up_to: float
+    of: str = ""
 
     def __post_init__(self) -> None:
         inputs.number(self.tolerance, "Accuracy: tolerance", above=0, below=1)
         inputs.number(self.up_to, "Accuracy: up_to", above=0)
+        if self.of != "":
+            inputs.choice(self.of, "criterion of Accuracy", CRITERIA)
+
+    @property
+    def omega(self) -> float:
+        """End of the band as an angular frequency."""
+        return 2 * np.pi * self.up_to
 
 
 def enough_modes(static: ComponentModes, interior: ClampedInterior,
-                 matrices: tuple[sparse.csc_array, sparse.csc_array], accuracy: Accuracy
-                 ) -> tuple[int, float]:
+                 matrices: tuple[sparse.csc_array, sparse.csc_array], accuracy: Accuracy,
+                 watch: Watch = SILENT) -> tuple[int, float]:
     """Least number of modes whose estimated error is within the tolerance, and that estimate.
 
     Parameters
     ----------
     matrices : pair of (n_dofs, n_dofs), sparse
         Stiffness and mass.
+    watch : Watch
+        Is told how many modes are expected, and how long they take.
 
     Raises
     ------
@@ -81,45 +87,91 @@ def enough_modes(static: ComponentModes, interior: ClampedInterior,
     """
     if not isinstance(accuracy, Accuracy):
         raise inputs.refusal("modes", accuracy, "give a number, or Accuracy(tolerance, up_to)")
-    wanted, omega = _FIRST, 2 * np.pi * accuracy.up_to
+    wanted = _FIRST
     while True:
-        errors = stiffness_errors(static, interior, matrices, omega, wanted)
+        began = time.perf_counter()
+        try:
+            known = Omission(static, interior, matrices, wanted)
+            errors = _errors(known, accuracy)
+        except linalg.LinAlgError as error:
+            raise InputError("the error of a number of modes is unknown: motions of the interfaces "
+                             "have no mass or stiffness, or a negative one; check the matrices, "
+                             "or give a number of modes") from error
         enough = np.flatnonzero(errors <= accuracy.tolerance)
         if len(enough):
             return int(enough[0]), float(errors[enough[0]])
-        wanted *= 2
+        expected = _expected(known, errors, accuracy)
+        seconds = (time.perf_counter() - began) * expected / wanted
+        watch.remark(_forecast(known, accuracy, errors[-1], expected, seconds))
+        wanted = int(np.clip(_MORE * expected + 4, 1.5 * wanted, _MOST * wanted))
+
+
+def _errors(known: Omission, accuracy: Accuracy) -> NDArray:
+    return (known.frequency_errors if accuracy.of == "frequencies" else known.stiffness_errors)(
+        accuracy.omega)
 
 
 def stiffness_errors(static: ComponentModes, interior: ClampedInterior,
                      matrices: tuple[sparse.csc_array, sparse.csc_array], omega: float, wanted: int
                      ) -> NDArray:
-    """Error of the dynamic stiffness up to `omega` with 0, 1, ... modes, of `wanted` computed.
+    """Errors of the dynamic stiffness up to `omega`, see `Omission.stiffness_errors`."""
+    return Omission(static, interior, matrices, wanted).stiffness_errors(omega)
 
-    Infinite where a mode below `omega` is left out, and where too few modes are computed to tell.
-    """
-    mass = matrices[1]
-    stiffness, static_mass = static.project(*matrices)
-    squares, shapes = interior.lowest(wanted)
-    momenta = mass @ static.constraint
-    parts = shapes.T @ momenta
-    errors = np.full(len(squares) + 1, np.inf)
-    omitted = np.zeros(stiffness.shape)
-    if len(squares) >= wanted:      # there are more
-        if squares[-1] < (_BEYOND * omega)**2:
-            return errors
-        rest = momenta - mass @ (shapes @ parts)
-        answers = interior.displacement(rest)
-        factor = omega**2 / (1 - omega**2 / squares[-1])
-        omitted = omega**4 * (rest.T @ answers + factor * (answers.T @ (mass @ answers)))
-    norm = stiffness + omega**2 * static_mass
-    for count in range(len(squares), -1, -1):
-        errors[count] = max(linalg.eigh(omitted, norm, eigvals_only=True)[-1], 0.0)
-        if not count:
-            break
-        square, part = squares[count - 1], parts[count - 1]
-        if square > omega**2:
-            omitted = omitted + omega**4 / (square - omega**2) * np.outer(part, part)
-        elif square * (part @ linalg.solve(stiffness + square * static_mass, part, assume_a="pos")
-                       ) > _UNCOUPLED:
-            break
-    return errors
+
+def _expected(known: Omission, errors: NDArray, accuracy: Accuracy) -> int:
+    """Modes that the tolerance will take, from how errors or frequencies have gone on so far."""
+    computed = len(known.squares)
+    if not np.isfinite(errors[-1]):     # frequencies are not there yet
+        numbers, values, aim = np.arange(1, computed + 1), known.squares, (1.2 * accuracy.omega)**2
+    else:
+        numbers, values, aim = np.arange(computed + 1), errors, accuracy.tolerance
+    numbers, values = numbers[computed // 2:], values[computed // 2:]
+    there = np.isfinite(values) & (values > 0) & (numbers > 0)
+    if not there.any() or np.ptp(np.log(values[there])) < 1e-6:
+        return 2 * computed         # there is no trend to follow
+    slope, start = np.polyfit(np.log(values[there]), np.log(numbers[there]), 1)
+    found = np.exp(np.clip(start + slope * np.log(aim), 0.0, np.log(1e6)))
+    return int(max(found, computed + 1))
+
+
+def _forecast(known: Omission, accuracy: Accuracy, error: float, expected: int, seconds: float
+              ) -> str:
+    """What the tolerance will cost, and what costs less."""
+    text = f"{len(known.squares)} modes with the interfaces clamped: "
+    if np.isfinite(error):
+        what = "free frequencies" if accuracy.of == "frequencies" else "the dynamic stiffness"
+        text += f"{what} within {error:.2g} up to {accuracy.up_to:g}"
+    else:
+        text += (f"up to {np.sqrt(known.squares[-1]) / (2 * np.pi):.4g}, the band ends at "
+                 f"{accuracy.up_to:g}")
+    text += f"; about {expected} for {accuracy.tolerance:g}, which take some {_rounded(seconds)}"
+    if accuracy.of == "frequencies":
+        return text + "; method 'rubin' has these frequencies exactly"
+    fewer = np.flatnonzero(known.frequency_errors(accuracy.omega) <= accuracy.tolerance)
+    modes = f" with {fewer[0]} modes" if len(fewer) else ""
+    return text + (f"; the free frequencies alone are within it{modes} by the criterion "
+                   "'frequencies', and exact with method 'rubin'")
+
+
+def _rounded(seconds: float) -> str:
+    """A duration to one digit or two."""
+    if seconds < 100:
+        return f"{max(seconds, 1.0):.1g} s" if seconds < 10 else f"{10 * round(seconds / 10)} s"
+    return f"{round(seconds / 60)} minutes"
+
+
+def reached(static: ComponentModes, interior: ClampedInterior,
+            matrices: tuple[sparse.csc_array, sparse.csc_array], modes: int) -> str:
+    """What a number of modes is good for, in words."""
+    try:
+        known = Omission(static, interior, matrices, modes + 4)
+        frequencies, stiffness = known.bands(min(modes, len(known.squares)), _TOLERANCES)
+    except linalg.LinAlgError:      # coordinates of the boundary without mass and stiffness
+        return "unknown, as motions of the interfaces have neither mass nor stiffness"
+    parts = []
+    for what, bands in (("free frequencies", frequencies),
+                        ("dynamic stiffness of the interfaces", stiffness)):
+        parts.append(f"{what} " + " and ".join(
+            f"within {tolerance:g} up to {omega / (2 * np.pi):.4g}"
+            for tolerance, omega in zip(_TOLERANCES, bands, strict=True)))
+    return f"{'; '.join(parts)} (estimates, in cycles per unit of time)"

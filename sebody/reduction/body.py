@@ -1,22 +1,30 @@
 """The superelement in the form the multibody code takes: reduced matrices and their layout."""
 
-from collections.abc import Iterable, Mapping
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import LinAlgError, block_diag, eigh
+from scipy.linalg import block_diag
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.fem.materials import Material, checked_materials
 from sebody.reduction import checks
+from sebody.reduction.damping import modal_damping
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.loads import named_vectors
+from sebody.reduction.missing import checked_missing, lacks, sentences
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.recovery_checks import check_recovery
 from sebody.reduction.rigid import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
+from sebody.tabular import counted
+from sebody.units import parsed_units
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -53,6 +61,12 @@ class ReducedBody:
         How the body was made, in sentences, for `summary`.
     loads : mapping of str to (n,), optional
         Reduced loads by name, ``Phi^T p``; see `Model.body_load`.
+    missing : mapping of str to str
+        Why the body has no 'stresses', 'stiffening' or 'exact inertia', ``why; what to do``.
+    materials : tuple of Material
+        What it is made of.
+    units : str
+        Units of its numbers, such as ``mm t N s``; empty if they are not known.
 
     Raises
     ------
@@ -71,6 +85,9 @@ class ReducedBody:
     recovery: Recovery | None = None
     notes: tuple[str, ...] = ()
     loads: Mapping[str, NDArray] = field(default_factory=dict)
+    missing: Mapping[str, str] = field(default_factory=dict)
+    materials: tuple[Material, ...] = ()
+    units: str = ""
 
     def __post_init__(self) -> None:
         coordinates = inputs.reals(self.coordinates, "coordinates",
@@ -78,6 +95,10 @@ class ReducedBody:
         keeps = tuple(inputs.items(self.keeps, "keeps", "give a text per boundary node"))
         object.__setattr__(self, "modes", inputs.integer(self.modes, "modes", least=0))
         checks.check_layout(coordinates, keeps)
+        rows = np.shape(self.stiffness)[:1]
+        if rows and self.modes > rows[0]:
+            raise inputs.refusal("modes", self.modes, f"the stiffness has {rows[0]} rows in all, "
+                                 "give fewer")
         names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
         self._store("coordinates", coordinates)
         object.__setattr__(self, "keeps", keeps)
@@ -88,14 +109,14 @@ class ReducedBody:
         object.__setattr__(self, "notes", tuple(notes))
         for name in ("stiffness", "mass"):
             matrix = inputs.reals(getattr(self, name), name, "give a matrix of real numbers")
-            checks.check_matrix(name, matrix, names)
+            checks.check_matrix(name, matrix, names, coordinates)
             self._store(name, (matrix + matrix.T) / 2)
         rigid = self.rigid_modes_about(coordinates.mean(axis=0))
         checks.check_stiffness(self.stiffness, rigid, names)
         checks.check_mass(self.mass, rigid, names)
         if self.damping is not None:
             damping = inputs.reals(self.damping, "damping", "give a matrix of real numbers")
-            checks.check_matrix("damping", damping, names)
+            checks.check_matrix("damping", damping, names, coordinates)
             self._store("damping", (damping + damping.T) / 2)
             checks.check_damping(self.damping, rigid, names)
         if self.invariants is not None:
@@ -103,8 +124,16 @@ class ReducedBody:
                             "give InertiaInvariants, as a reduction makes them")
             check_invariants(self.invariants, self.stiffness, self.mass,
                              self.rigid_modes_about(self.invariants.origin), names)
+        if self.recovery is not None:
+            inputs.instance(self.recovery, "recovery", Recovery,
+                            "give a Recovery, as a reduction makes it")
+            check_recovery(self.recovery, self.planar, len(names), len(names) - self.modes,
+                           self.invariants and self.invariants.slaved)
         loads = named_vectors(self.loads, len(names), "coordinates of the body")
         object.__setattr__(self, "loads", {n: _read_only(load) for n, load in loads.items()})
+        object.__setattr__(self, "missing", checked_missing(self.missing))
+        object.__setattr__(self, "materials", checked_materials(self.materials))
+        object.__setattr__(self, "units", str(parsed_units(self.units) or ""))
 
     def _store(self, name: str, array: NDArray) -> None:
         object.__setattr__(self, name, _read_only(array))
@@ -156,6 +185,25 @@ class ReducedBody:
         moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
         return _read_only(middle + moments / self.total_mass)
 
+    @property
+    def lacks(self) -> dict[str, str]:
+        """Which of stresses, stiffening and exact inertia the body does not know, and why."""
+        return lacks(self._stressed, self.invariants is not None, self.missing)
+
+    @property
+    def cautions(self) -> list[str]:
+        """The same in sentences ``no stresses: why; what to do``."""
+        return sentences(self.lacks, self._stressed)
+
+    @property
+    def _stressed(self) -> bool:
+        return self.recovery is not None and bool(self.recovery.stress)
+
+    def __repr__(self) -> str:
+        nodes = ", ".join(self.keeps)
+        return (f"<ReducedBody: mass {self.total_mass:.6g}, nodes {nodes}, "
+                f"{counted(self.modes, 'mode')}>")
+
     def summary(self) -> str:
         """Order, mass, frequencies and effective masses of the internal modes, and the notes."""
         nodes, n = len(self.coordinates), len(self.mass)
@@ -168,7 +216,7 @@ class ReducedBody:
             *(f"boundary node {k} at {place(point)} keeps {keep!r}"
               for k, (point, keep) in enumerate(kept)),
             *mode_lines(self.stiffness, self.mass, self.rigid_modes_about(centre), self.modes),
-            *self.notes])
+            *self.notes, *(f"caution: {text}" for text in self.cautions)])
 
     def displacements(self, y: ArrayLike) -> NDArray:
         """Displacements of all FE nodes, with those of second order, (n_nodes, dofs_per_node).
@@ -186,7 +234,8 @@ class ReducedBody:
         if self.recovery is None:
             raise InputError("the body has no shapes of an FE model, so it knows no displacements "
                              "inside; reduce the FE model with craig_bampton")
-        field = self.recovery.all_dofs(self.with_followers(np.asarray(y, dtype=float)[None]))
+        y = inputs.vector(y, "y", len(self.mass))
+        field = self.recovery.all_dofs(self.with_followers(y[None]))
         return field.reshape(len(self.recovery.coordinates), -1)
 
     def with_followers(self, y: NDArray) -> NDArray:
@@ -195,7 +244,7 @@ class ReducedBody:
             return y
         return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
 
-    def recovering(self, nodes: Iterable[int]) -> "ReducedBody":
+    def recovering(self, nodes: Iterable[int]) -> ReducedBody:
         """The same body with the shapes of some FE nodes alone.
 
         Parameters
@@ -218,14 +267,15 @@ class ReducedBody:
             raise InputError(f"recover names no node: {remedy}")
         return replace(self, recovery=self.recovery.restricted(np.array(found)))
 
-    def damped(self, ratio: float = 0.0, *, mass: float = 0.0,
-               stiffness: float = 0.0) -> "ReducedBody":
+    def damped(self, ratio: float | Sequence[float] = 0.0, *, mass: float = 0.0,
+               stiffness: float = 0.0) -> ReducedBody:
         """The same body with structural damping of its deformation.
 
         Parameters
         ----------
-        ratio : float
-            Part of critical damping of every free vibration mode.
+        ratio : float or sequence of float
+            Part of critical damping of every free vibration mode, or of each from the lowest
+            frequency up; the last number is also that of all modes beyond.
         mass, stiffness : float
             Rayleigh's coefficients, ``mass * M + stiffness * K`` on the vibration modes; rigid
             motion is not damped.
@@ -233,23 +283,14 @@ class ReducedBody:
         Raises
         ------
         InputError
-            A number that is negative or not finite, or a body with massless coordinates.
+            A number that is negative or not finite, more ratios than modes, or a body with
+            massless coordinates.
         """
-        ratio, mass, stiffness = (inputs.number(value, f"damping: {name}", least=0) for name, value
-                                  in (("ratio", ratio), ("mass", mass), ("stiffness", stiffness)))
-        try:
-            squares, shapes = eigh(self.stiffness, self.mass)
-        except LinAlgError as error:
-            raise InputError("damping: the mass is singular, so the body has motions without a "
-                             "frequency; give every coordinate inertia, or damping=, a matrix"
-                             ) from error
-        rigid = self.rigid_modes.shape[1]
-        omega, momenta = np.sqrt(squares[rigid:]), self.mass @ shapes[:, rigid:]
-        momenta[strainless_coordinates(self.keeps, self.coordinates.shape[1])] = 0.0   # to rounding
-        damping = (momenta * (2 * ratio * omega + mass + stiffness * omega**2)) @ momenta.T
-        return replace(self, damping=damping)
+        return replace(self, damping=modal_damping(
+            self.stiffness, self.mass, self.rigid_modes,
+            strainless_coordinates(self.keeps, self.coordinates.shape[1]), ratio, mass, stiffness))
 
-    def rotated(self, rotation: ArrayLike) -> "ReducedBody":
+    def rotated(self, rotation: ArrayLike) -> ReducedBody:
         """The same body rotated by `rotation` about the FE origin, in the old axes.
 
         Parameters

@@ -139,8 +139,12 @@ def boundary_of(fe_model: FEModel, items: Items) -> Boundary:
         tuple((mean_rows[item]["translation"], mean_rows[item]["rotation"], motion)
               for item, motion in motions.items()
               if len(mean_rows[item]["rotation"]) or motion.off_centre),
-        tuple(f"boundary node {k} is {_described(fe_model, item)}"
+        tuple(f"boundary node {k}{_name(item)} is {_described(fe_model, item)}"
               for k, (item, _) in enumerate(pairs)))
+
+
+def _name(item: int | RigidFace | MeanFace) -> str:
+    return f", {item.name!r}," if not isinstance(item, int) and item.name else ""
 
 
 def _described(fe_model: FEModel, item: int | RigidFace | MeanFace) -> str:
@@ -157,8 +161,9 @@ def _mean_motion(fe_model: FEModel, face: MeanFace, keep: str) -> MeanMotion:
     """The mean, refused where its nodes do not hold the rotation that is needed."""
     motion = MeanMotion(fe_model, face)
     if not motion.turns and (keep != "translation" or motion.off_centre):
-        raise InputError("the nodes of a mean face lie on a line, so they do not hold its rotation "
-                         "about the line: name more nodes, or keep 'translation' at their centre")
+        raise InputError(f"the nodes of {face.called} lie on a line, so they do not hold its "
+                         "rotation about the line: name more nodes, or keep 'translation' at "
+                         "their centre")
     return motion
 
 
@@ -191,16 +196,17 @@ def _pairs(fe_model: FEModel, items: Items) -> list[BoundaryItem]:
         for node in nodes:
             if not 0 <= node < count:
                 raise InputError(f"{what.format(node)} unknown: the model has nodes 0 to "
-                                 f"{count - 1}")
+                                 f"{count - 1}{_if_label(fe_model, node)}")
         if not isinstance(keep, str) or keep not in KEEPS:
-            raise InputError(f"{what.format(nodes[0])} keeps {keep!r}; choose one of "
+            called = fe_model.node_name(nodes[0]).removeprefix("node ")
+            raise InputError(f"{what.format(called)} keeps {keep!r}; choose one of "
                              f"{', '.join(KEEPS)}")
     _check_shared(fe_model, pairs)
     for item, keep in pairs:
         if isinstance(item, RigidFace):
             _check_rigid(fe_model, item)
         elif isinstance(item, MeanFace):
-            _check_dofs(fe_model, "node {} of a mean face", item.nodes, "translation",
+            _check_dofs(fe_model, f"node {{}} of {item.called}", item.nodes, "translation",
                         "name nodes that have them")
         else:
             _check_node(fe_model, item, keep)
@@ -209,21 +215,28 @@ def _pairs(fe_model: FEModel, items: Items) -> list[BoundaryItem]:
 
 def _named(item: int | RigidFace | MeanFace) -> tuple[str, tuple[int, ...]]:
     """What messages call a node of a boundary item, and its nodes."""
-    if isinstance(item, RigidFace):
-        return "node {} of a rigid face", item.nodes
-    if isinstance(item, MeanFace):
-        return "node {} of a mean face", item.nodes
+    if isinstance(item, RigidFace | MeanFace):
+        return f"node {{}} of {item.called}", item.nodes
     return "boundary node {}", (item,)
+
+
+def _if_label(fe_model: FEModel, node: int) -> str:
+    """The remedy where a label was given for an index."""
+    if fe_model.labels is None or node not in fe_model.labels:
+        return ""
+    return f" by their indices; the index of the node with the label {node} is model.node({node})"
 
 
 def _check_shared(fe_model: FEModel, pairs: list[BoundaryItem]) -> None:
     """Refuse nodes that two interfaces, or one twice, lay claim to."""
     owner: dict[int, int] = {}
+    called = [f"'{item.name}'" if not isinstance(item, int) and item.name else str(position)
+              for position, (item, _) in enumerate(pairs)]
     for position, (item, _) in enumerate(pairs):
         for node in _named(item)[1]:
             if node in owner:
                 whose = ("" if owner[node] == position else
-                         f", in the interfaces {owner[node]} and {position}")
+                         f", in the interfaces {called[owner[node]]} and {called[position]}")
                 raise InputError(f"boundary {fe_model.node_name(node)} appears more than once"
                                  f"{whose}; name it once")
             owner[node] = position
@@ -257,8 +270,8 @@ def _check_dofs(fe_model: FEModel, what: str, nodes: Iterable[int], kind: str, r
 def _check_rigid(fe_model: FEModel, face: RigidFace) -> None:
     dimension = fe_model.coordinates.shape[1]
     if face.point.shape != (dimension,):
-        raise InputError(f"point of a rigid face is {face.point}: give {dimension} finite numbers")
+        raise InputError(f"point of {face.called} is {face.point}: give {dimension} finite numbers")
     turning = fe_model.rows[list(face.nodes), dimension:] >= 0
     if not turning.any() and collinear(fe_model.coordinates[list(face.nodes)]):
-        raise InputError("the nodes of a rigid face lie on a line, so they do not hold its "
+        raise InputError(f"the nodes of {face.called} lie on a line, so they do not hold its "
                          "rotation about the line: name more nodes")

@@ -1,6 +1,7 @@
 """The body with its boundary clamped: static solutions and vibration modes of its interior."""
 
 from collections.abc import Callable
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 
 from sebody.errors import InputError
 from sebody.reduction.factor import FactoredStiffness, motions_without_strain
+from sebody.reduction.watch import SILENT, Watch
 
 _DENSE_LIMIT = 1000  # internal DOFs up to which the dense eigenvalue solver is used
 _REPEATED = 1e-6  # relative distance below which eigenvalues or components count as equal
@@ -38,6 +40,8 @@ class ClampedInterior:
         Unit of the displacement over that of each DOF.
     name : function, optional
         Name of the DOF of a row, for messages.
+    watch : Watch
+        Is told what takes long.
 
     Raises
     ------
@@ -48,7 +52,7 @@ class ClampedInterior:
     def __init__(self, stiffness: sparse.csc_array, mass: sparse.csc_array, held: NDArray,
                  means: sparse.csr_array | None = None, rigid: NDArray | None = None,
                  lengths: NDArray | None = None,
-                 name: Callable[[int], str] = "row {}".format):
+                 name: Callable[[int], str] = "row {}".format, watch: Watch = SILENT):
         size = stiffness.shape[0]
         self.internal = internal = np.setdiff1d(np.arange(size), held)
         self._size = size
@@ -63,10 +67,12 @@ class ClampedInterior:
         if lengths is not None:
             self._free = self._free / lengths[internal, None]
         self._check_held(free[internal], name)
+        watch.stage(f"factoring the stiffness of {len(internal)} DOFs")
         self._factor = FactoredStiffness(self._stiffness, free[internal],
                                          lambda row: name(internal[row]), _REMEDY)
         self._border()
         self._known: tuple[NDArray, NDArray] | None = None
+        self._watch = watch
 
     @property
     def count(self) -> int:
@@ -190,7 +196,12 @@ class ClampedInterior:
         start = np.random.default_rng(0).standard_normal(len(self.internal))
         if self._corner is not None:
             start = self._inner_answer(start)[0]        # whose means are 0
-        inverse = LinearOperator(self._stiffness.shape, lambda force: self._inner_answer(force)[0])
+        solved = count()
+
+        def solution(force: NDArray) -> NDArray:
+            self._watch.stage(f"{wanted} modes: {next(solved) + 1} static solutions")
+            return self._inner_answer(force)[0]
+        inverse = LinearOperator(self._stiffness.shape, solution)
         return eigsh(self._stiffness, wanted, self._mass, sigma=0.0, OPinv=inverse, v0=start)
 
 

@@ -1,5 +1,7 @@
 """Shapes of a reduction: of unit boundary coordinates, and internal ones that leave these 0."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -11,6 +13,7 @@ from scipy.linalg import block_diag
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.reduction.clamped import ClampedInterior
+from sebody.tabular import brief
 
 _ROUNDING = 1e-11  # ratio of stiffness to its summands below which stiffness is rounding error
 
@@ -40,6 +43,8 @@ class ComponentModes:
     on_means: NDArray
     strainless: NDArray = field(default_factory=lambda: np.zeros(0, dtype=int))
 
+    __repr__ = brief
+
     @property
     def basis(self) -> NDArray:
         """All modes side by side, (n_dofs, n_boundary + m)."""
@@ -49,6 +54,7 @@ class ComponentModes:
         """Reduced stiffness (25) and mass (38), (n, n) each, of the FE matrices."""
         static, dynamic = self.constraint, self.fixed_interface
         boundary = static.T @ (stiffness @ static)
+        boundary = (boundary + boundary.T) / 2  # rounding of what is stiff, as axially, is not
         summands = np.abs(static).T @ (abs(stiffness) @ np.abs(static))
         if np.all(np.abs(boundary) <= _ROUNDING * summands):
             boundary[:] = 0.0  # a boundary that holds the body without strain, e.g. one node
@@ -61,7 +67,7 @@ class ComponentModes:
         ])
         return block_diag(boundary, np.diag(self.omega_squared)), reduced_mass
 
-    def with_rigid(self, rigid: NDArray, values: NDArray, strainless: NDArray) -> "ComponentModes":
+    def with_rigid(self, rigid: NDArray, values: NDArray, strainless: NDArray) -> ComponentModes:
         """Constraint modes that make rigid motions (n_dofs, r) of their boundary values (n_b, r).
 
         They are that but for rounding, which is large where parts of the body hang softly. Those
@@ -74,7 +80,7 @@ class ComponentModes:
             np.linalg.pinv(values / unit) / unit.T))
 
     def with_vibrations(self, interior: ClampedInterior, modes: int,
-                        select: Sequence[int] | None = None) -> "ComponentModes":
+                        select: Sequence[int] | None = None) -> ComponentModes:
         """The same boundary with the lowest modes of its interior, or with those selected of them.
 
         Raises

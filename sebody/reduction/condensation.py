@@ -89,7 +89,8 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
         body.invariants and _projected(body.invariants, basis),
         body.recovery and _recovery(body, basis, gone, keeps, len(own)),
         (*body.notes, f"{kind} of boundary node {node} released"),
-        {name: basis.T @ load for name, load in body.loads.items()})
+        {name: basis.T @ load for name, load in body.loads.items()},
+        body.missing, body.materials, body.units)
     kept = min(body.modes if modes is None else modes, len(own))
     return Released(truncated(made, kept), basis[:, :len(bound) + kept], bound)
 

@@ -1,6 +1,7 @@
 """The constants of a body's exact inertia and of its stiffening, from its FE model and modes."""
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +20,14 @@ from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.static_correction import static_correction
 from sebody.reduction.stiffening import GeometricStiffness, Stiffening
+from sebody.reduction.watch import Watch
 
 _ASYMMETRY = 1e-8  # of a geometric stiffness, relative to its largest entry
 
 
 def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
-                   component: ComponentModes, interior: ClampedInterior, forces: NDArray
-                   ) -> ReducedBody:
+                   component: ComponentModes, interior: ClampedInterior, forces: NDArray,
+                   watch: Watch) -> ReducedBody:
     """The body with its shapes, exact inertia if the FE model has a mass field, and stiffening.
 
     Parameters
@@ -38,9 +40,9 @@ def with_constants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     shapes = boundary.ties.spread(component.basis)
     invariants = extra = None
     if fe_model.mass_field is not None:
-        invariants, extra = _invariants(body, fe_model, boundary, component, interior)
+        invariants, extra = _invariants(body, fe_model, boundary, component, interior, watch)
         shapes = np.hstack([shapes, extra.load_modes])
-    notes = (*body.notes, _inertia_note(fe_model), _stiffening_note(extra))
+    notes = (*body.notes, *_inertia_notes(fe_model), *_stiffening_notes(fe_model, extra))
     recovery = _recovery(fe_model, shapes)
     if fe_model.stress:
         static = static_correction(fe_model, boundary, component, interior, body, forces)
@@ -60,28 +62,29 @@ def _recovery(fe_model: FEModel, shapes: NDArray) -> Recovery:
                     outlines=fe_model.outlines)
 
 
-def _inertia_note(fe_model: FEModel) -> str:
+def _inertia_notes(fe_model: FEModel) -> list[str]:
     """What the inertia of the moving body is made of."""
     if fe_model.mass_field is None:
-        return ("no exact inertia: the mass is not that of points at the nodes, as where nodal "
-                "rotations carry a consistent mass; give a mass_field for it")
-    dimension = fe_model.coordinates.shape[1]
-    turning = fe_model.rows[:, dimension:]
-    massless = turning.size and (turning >= 0).any() and fe_model.mass_field.rotation is None
-    return "exact inertia from the points of the mass" + (
-        "; nodal rotations carry none" if massless else "")
+        return []
+    turning = fe_model.rows[:, fe_model.coordinates.shape[1]:]
+    turning = turning[turning >= 0]
+    massless = len(turning) and not fe_model.mass.diagonal()[turning].any()
+    return ["exact inertia from the points of the mass" + (
+        "; nodal rotations carry none" if massless else "")]
 
 
-def _stiffening_note(extra: Stiffening | None) -> str:
-    if extra is None or not len(extra.Q) + len(extra.lam):
-        return "no stiffening by stresses"
+def _stiffening_notes(fe_model: FEModel, extra: Stiffening | None) -> list[str]:
+    if extra is None or fe_model.geometric_stiffness is None:
+        return []
+    if not len(extra.Q) + len(extra.lam):
+        return ["stiffening by stresses: none that matters"]
     rest = "; the others change little" if len(extra.lam) < extra.motions else ""
-    return (f"stiffening by stresses: {len(extra.Q)} load modes, {len(extra.lam)} of "
-            f"{extra.motions} resultants of second order{rest}")
+    return [f"stiffening by stresses: {len(extra.Q)} load modes, {len(extra.lam)} of "
+            f"{extra.motions} resultants of second order{rest}"]
 
 
 def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
-                component: ComponentModes, interior: ClampedInterior
+                component: ComponentModes, interior: ClampedInterior, watch: Watch
                 ) -> tuple[InertiaInvariants, Stiffening]:
     """Integrals about the mean of the boundary nodes, and what is of second order."""
     origin = body.coordinates.mean(axis=0)
@@ -92,7 +95,8 @@ def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
         extra = Stiffening(np.zeros((len(shapes), 0)), np.zeros((0, n, n)), np.zeros(0),
                            np.zeros((n, 0)), np.zeros((0, n, n)))
     else:
-        extra = _stiffening(fe_model, boundary, component, interior, body, integrals)
+        extra = _stiffening(fe_model, boundary, component, interior, body, integrals, watch)
+    watch.stage("integrals of the inertia")
     found = integrals.integrals(np.hstack([shapes, extra.load_modes]))
     _check_mass(found["Mbar"][:len(body.mass), :len(body.mass)], body.mass)
     return InertiaInvariants(
@@ -110,14 +114,17 @@ def _check_mass(found: NDArray, mass: NDArray) -> None:
 
 
 def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes,
-                interior: ClampedInterior, body: ReducedBody, integrals: MassIntegrals
-                ) -> Stiffening:
+                interior: ClampedInterior, body: ReducedBody, integrals: MassIntegrals,
+                watch: Watch) -> Stiffening:
     """Load modes and resultants; a prestress is its displacement above the forces on the means."""
     ties, basis, n = boundary.ties, component.basis, boundary.ties.size
     shapes = ties.spread(basis)
     _check_linear(fe_model, shapes @ np.ones(shapes.shape[1]))
 
+    done = count(1)
+
     def geometric(prestress: NDArray) -> NDArray:
+        watch.stage(f"geometric stiffness of prestress {next(done)}")
         displacement = ties.spread(prestress[:n])
         tangent = fe_model.geometric_stiffness(displacement)
         G = shapes.T @ (tangent @ shapes) + boundary.second_order(

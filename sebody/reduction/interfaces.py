@@ -1,5 +1,7 @@
 """Interfaces that are sets of FE nodes: tied rigidly to a boundary node, or their mean motion."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +13,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.faces import surface_mass
 from sebody.fem.model import FEModel
+from sebody.tabular import brief
 
 _LINE = 1e-6  # spread beside a line, relative to that along it, that does not hold a rotation
 
@@ -25,6 +28,8 @@ class RigidFace:
         The boundary node, in FE axes [length].
     nodes : sequence of int
         FE nodes tied to it, with all their DOFs.
+    name : str
+        For messages and notes.
 
     Raises
     ------
@@ -34,11 +39,19 @@ class RigidFace:
 
     point: NDArray
     nodes: tuple[int, ...]
+    name: str = ""
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
-        point = inputs.vector(self.point, "point of a rigid face")
+        point = inputs.vector(self.point, f"point of {self.called}")
         object.__setattr__(self, "point", point)
-        object.__setattr__(self, "nodes", _nodes(self.nodes, "a rigid face", "tied to it"))
+        object.__setattr__(self, "nodes", _nodes(self.nodes, self.called, "tied to it"))
+
+    @property
+    def called(self) -> str:
+        """What messages call it."""
+        return f"the rigid face {self.name!r}" if self.name else "a rigid face"
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +71,8 @@ class MeanFace:
     weights : 'area', 'equal' or (n_nodes,)
         Weights of the squares: integrals over the faces of elements within the nodes (in a plane,
         over edges), the same for all, or positive numbers.
+    name : str
+        For messages and notes.
 
     Raises
     ------
@@ -68,20 +83,29 @@ class MeanFace:
     nodes: tuple[int, ...]
     point: NDArray | None = None
     weights: str | NDArray = "area"
+    name: str = ""
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "nodes", _nodes(self.nodes, "a mean face", "it is the mean of"))
+        object.__setattr__(self, "nodes", _nodes(self.nodes, self.called, "it is the mean of"))
         if self.point is not None:
-            object.__setattr__(self, "point", inputs.vector(self.point, "point of a mean face"))
+            object.__setattr__(self, "point", inputs.vector(
+                self.point, f"point of {self.called}"))
         remedy = f"give 'area', 'equal' or {len(self.nodes)} positive numbers"
         if isinstance(self.weights, str):
-            inputs.choice(self.weights, "weights of a mean face", ("area", "equal"), remedy)
+            inputs.choice(self.weights, f"weights of {self.called}", ("area", "equal"), remedy)
             return
-        weights = inputs.vector(self.weights, "weights of a mean face", len(self.nodes),
+        weights = inputs.vector(self.weights, f"weights of {self.called}", len(self.nodes),
                                 remedy=remedy)
         if not np.all(weights > 0):
-            raise inputs.refusal("weights of a mean face", self.weights, remedy)
+            raise inputs.refusal(f"weights of {self.called}", self.weights, remedy)
         object.__setattr__(self, "weights", weights)
+
+    @property
+    def called(self) -> str:
+        """What messages call it."""
+        return f"the mean face {self.name!r}" if self.name else "a mean face"
 
 
 def _nodes(nodes: Sequence[int], what: str, how: str) -> tuple[int, ...]:
@@ -118,7 +142,7 @@ class MeanMotion:
         centre = self._portions @ points
         self.point = centre if face.point is None else face.point
         if self.point.shape != (dimension,):
-            raise InputError(f"point of a mean face is {self.point}: give {dimension} finite "
+            raise InputError(f"point of {face.called} is {self.point}: give {dimension} finite "
                              "numbers")
         self._arms = np.zeros((len(points), 3))
         self._arms[:, :dimension] = points - centre
@@ -214,7 +238,7 @@ def _weights(model: FEModel, face: MeanFace) -> sparse.csr_array:
     if len(bare):
         names = ", ".join(model.node_name(face.nodes[k]) for k in bare[:5])
         raise InputError(
-            f"a mean face by area has nodes on no face that lies within it: {names}"
+            f"{face.called} by area has nodes on no face that lies within it: {names}"
             f"{' and more' if len(bare) > 5 else ''}; name all nodes of the faces and no others, "
             "give the FEModel its cells, or use weights='equal'")
     return found

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.reduction.checks import NEGATIVE_STIFFNESS_LIMIT, unit_scale
-from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.invariants import LENGTHS, InertiaInvariants
 
 CONTRADICTION_LIMIT = 1e-6  # relative; matrices from files have some eight digits or more
 _REMEDY = "compute both from one FE model, with the same modes in the same order"
@@ -28,7 +28,7 @@ def check_invariants(invariants: InertiaInvariants, stiffness: NDArray, mass: ND
     names : list of str
         Of the n coordinates.
     """
-    _check_shapes(invariants, len(names))
+    check_shapes(invariants, len(names))
     names = [*names, *(f"mode slaved {b}" for b in range(invariants.slaved))]
     scale = unit_scale(invariants.Mbar, names)
     n = len(mass)
@@ -42,15 +42,13 @@ def check_invariants(invariants: InertiaInvariants, stiffness: NDArray, mass: ND
     _check_resultants(invariants, stiffness, scale[:n])
 
 
-def _check_shapes(invariants: InertiaInvariants, n: int) -> None:
-    D, r = (2, 1) if invariants.planar else (3, 3)
-    eta, e = invariants.slaved, invariants.resultants
-    N = n + eta
-    wanted = {"c0": (D,), "S1": (D, N), "J0": (r, r), "g": (r, N), "h": (r, r, N),
-              "K": (r, N, N), "J2": (r, r, N, N), "Mbar": (N, N), "Q": (eta, n, n), "lam": (e,),
-              "E": (n, e), "Ghat": (e, n, n), "origin": (D,)}
-    for name, shape in wanted.items():
-        array = getattr(invariants, name)
+def check_shapes(invariants: InertiaInvariants, n: int) -> None:
+    """Raise InputError unless the constants are finite and fit so many coordinates."""
+    eta = invariants.slaved
+    lengths = {"D": 2 if invariants.planar else 3, "r": 1 if invariants.planar else 3, "n": n,
+               "N": n + eta, "slaved": eta, "resultants": invariants.resultants}
+    for name, wanted in LENGTHS.items():
+        array, shape = getattr(invariants, name), tuple(lengths[one] for one in wanted)
         if array.shape != shape:
             raise InputError(f"invariants.{name} has shape {array.shape}; {n} coordinates and "
                              f"{eta} slaved ones need {shape}")

@@ -14,6 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
+from sebody.tabular import brief
+
+# of the arrays: D axes of translation, r of rotation, n coordinates, N with the slaved ones
+LENGTHS = {"c0": ("D",), "S1": ("D", "N"), "J0": ("r", "r"), "g": ("r", "N"), "h": ("r", "r", "N"),
+           "K": ("r", "N", "N"), "J2": ("r", "r", "N", "N"), "Mbar": ("N", "N"),
+           "Q": ("slaved", "n", "n"), "lam": ("resultants",), "E": ("n", "resultants"),
+           "Ghat": ("resultants", "n", "n"), "origin": ("D",)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +78,8 @@ class InertiaInvariants:
     E: NDArray
     Ghat: NDArray
     origin: NDArray | None = None
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         if self.origin is None:

@@ -21,8 +21,11 @@ R.J. Guyan, AIAA J. 3, 1965; R.R. Craig and M.C.C. Bampton, AIAA J. 6, 1968; R.H
 Struct. 1, 1971; S. Rubin, AIAA J. 13, 1975.
 """
 
-from collections.abc import Mapping, Sequence
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,7 +34,7 @@ from scipy import linalg, sparse
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.model import FEModel
-from sebody.reduction.accuracy import Accuracy, enough_modes
+from sebody.reduction.accuracy import Accuracy, enough_modes, reached
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.boundary import Boundary, Items, boundary_of
 from sebody.reduction.clamped import ClampedInterior, canonical_turn
@@ -39,7 +42,9 @@ from sebody.reduction.component import ComponentModes, check_count, static_modes
 from sebody.reduction.constants import with_constants, with_shapes
 from sebody.reduction.factor import is_strainless
 from sebody.reduction.loads import fe_loads, with_residual_modes
+from sebody.reduction.missing import missing_of
 from sebody.reduction.rigid import strainless_coordinates
+from sebody.reduction.watch import SILENT, Watch, watching
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
 _DEPENDENT = 1e-10  # strain energy of a shape beside those before it, relative to its own
@@ -49,7 +54,8 @@ _MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to
 def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
            method: str = "craig-bampton", select: Sequence[int] | None = None,
            recover: Sequence[int] | None = None, loads: Mapping[str, ArrayLike] | None = None,
-           residual_modes: bool = False) -> ReducedBody:
+           residual_modes: bool = False, *, judged: bool = False,
+           progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:
     """Superelement of an FE model by one of four methods; see `sebody.reduction.methods`.
 
     Parameters
@@ -62,7 +68,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     modes : int or Accuracy
         Number of vibration modes, from the lowest frequency up: of the clamped body, for 'macneal'
         and 'rubin' elastic ones of the free body, beside which there are up to 6 (planar 3) more
-        internal shapes. Or what the modes are to achieve ('craig-bampton').
+        internal shapes. Or what the modes are to achieve ('craig-bampton', 'rubin').
     method : 'craig-bampton', 'guyan', 'macneal' or 'rubin'
     select : sequence of int, optional
         For 'craig-bampton': which of the modes to keep, counted from 0; default all.
@@ -74,6 +80,11 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     residual_modes : bool
         For 'craig-bampton' and 'guyan': further internal modes that make the static answer to every
         load exact.
+    judged : bool
+        Note up to which frequencies the modes are good ('craig-bampton', 'guyan', 'rubin').
+    progress : function of a text, or True, optional
+        Is told what takes long, what it will cost, and what costs less; True for lines on standard
+        error.
 
     Returns
     -------
@@ -91,20 +102,22 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
     method = inputs.choice(method, "method", METHODS)
     _check_options(method, modes, select, inputs.flag(residual_modes, "residual_modes"))
+    watch = watching(progress)
     names, forces = fe_loads(loads, fe_model.stiffness.shape[0])
     edge = boundary_of(fe_model, boundary)
-    matrices, interior, static = clamped(fe_model, edge)
+    matrices, interior, static = clamped(fe_model, edge, watch)
     notes = [f"{method} from {matrices[0].shape[0]} DOFs", *edge.notes]
     free = None
     if method in ("craig-bampton", "guyan"):
         if isinstance(modes, Accuracy):
             wanted = modes
-            modes, error = enough_modes(static, interior, matrices, wanted)
-            notes.append(f"dynamic stiffness of the interface within {error:.2g} up to the "
-                         f"frequency {wanted.up_to:g}")
+            modes, error = enough_modes(static, interior, matrices, wanted, watch)
+            what = ("free frequencies" if wanted.of == "frequencies" else
+                    "dynamic stiffness of the interface")
+            notes.append(f"{what} within {error:.2g} up to the frequency {wanted.up_to:g}")
         component = static.with_vibrations(interior, modes, select)
     else:
-        free = _FreeModes(edge, *matrices, modes)
+        free = _FreeModes(edge, *matrices, modes, watch)
         component = free.component(static, interior)
     forces = edge.ties.gather(forces)
     if residual_modes:
@@ -112,25 +125,31 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     reduced = component.project(*matrices)
     if method == "macneal":
         component, reduced = _without_residual_mass(component, reduced[0], free, matrices[1])
-        notes.append("no exact inertia: residual modes carry no mass")
     body = ReducedBody(*reduced, edge.coordinates, edge.keeps, len(component.omega_squared),
                        notes=tuple(notes),
-                       loads=dict(zip(names, forces.T @ component.basis, strict=True)))
+                       loads=dict(zip(names, forces.T @ component.basis, strict=True)),
+                       missing=missing_of(fe_model, method), materials=fe_model.materials,
+                       units=fe_model.units)
     if method == "macneal":
         body = with_shapes(body, fe_model, edge, component)
     else:
-        body = with_constants(body, fe_model, edge, component, interior, forces)
+        body = with_constants(body, fe_model, edge, component, interior, forces, watch)
+    if inputs.flag(judged, "judged") and select is None and method != "macneal":
+        told = (free.accuracy() if method == "rubin" else
+                reached(static, interior, matrices, modes))
+        body = replace(body, notes=(*body.notes, f"accuracy: {told}"))
+    watch.close()
     return body if recover is None else body.recovering(recover)
 
 
-def clamped(fe_model: FEModel, edge: Boundary
+def clamped(fe_model: FEModel, edge: Boundary, watch: Watch = SILENT
             ) -> tuple[tuple[sparse.csc_array, sparse.csc_array], ClampedInterior, ComponentModes]:
     """Stiffness and mass of independent DOFs, the interior, and the constraint modes of a boundary.
     """
     ties = edge.ties
     stiffness, mass = (ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
     interior = ClampedInterior(stiffness, mass, edge.held, edge.means, ties.rigid, ties.lengths,
-                               ties.name)
+                               ties.name, watch)
     static = static_modes(stiffness, interior, *edge.unit_motions())
     rigid = ties.rigid / ties.lengths[:, None]
     if is_strainless(stiffness, rigid):
@@ -149,9 +168,14 @@ def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | N
                          "out, or choose another method")
     if select is not None and method != "craig-bampton":
         raise InputError(f"select is for method 'craig-bampton'; {method!r} keeps all its modes")
-    if isinstance(modes, Accuracy) and (method != "craig-bampton" or select is not None):
-        raise InputError("modes=Accuracy(...) counts the modes of method 'craig-bampton' without "
-                         "select; give a number")
+    if not isinstance(modes, Accuracy):
+        return
+    if method not in ("craig-bampton", "rubin") or select is not None:
+        raise InputError("modes=Accuracy(...) counts the modes of methods 'craig-bampton' and "
+                         "'rubin' without select; give a number")
+    if method == "rubin" and modes.of == "stiffness":
+        raise InputError("the dynamic stiffness of method 'rubin' has no estimate: give "
+                         "Accuracy(..., of='frequencies'), or take 'craig-bampton'")
 
 
 class _FreeModes:
@@ -161,7 +185,7 @@ class _FreeModes:
     """
 
     def __init__(self, edge: Boundary, stiffness: sparse.csc_array, mass: sparse.csc_array,
-                 modes: int):
+                 modes: int | Accuracy, watch: Watch):
         ties = edge.ties
         self._edge, self._stiffness, self._mass = edge, stiffness, mass
         rigid = ties.rigid / ties.lengths[:, None]
@@ -169,8 +193,16 @@ class _FreeModes:
         self.rigid = linalg.solve_triangular(factor, rigid.T, trans="T").T
         momenta = sparse.csr_array((mass @ self.rigid).T)
         free = ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
-                               ties.lengths, ties.name)
-        self.elastic = free.vibrations(check_count(modes, free, "body has {} elastic modes"))[1]
+                               ties.lengths, ties.name, watch)
+        count = (_within(free, modes, watch) if isinstance(modes, Accuracy) else
+                 check_count(modes, free, "body has {} elastic modes"))
+        self.squares, self.elastic = free.vibrations(count)
+
+    def accuracy(self) -> str:
+        """What the modes are good for, in words."""
+        last = np.sqrt(self.squares[-1]) / (2 * np.pi) if len(self.squares) else 0.0
+        return (f"the {len(self.squares)} free frequencies up to {last:.4g} are those of the FE "
+                "model (in cycles per unit of time)")
 
     def component(self, static: ComponentModes, interior: ClampedInterior) -> ComponentModes:
         """The constraint modes and the internal shapes that these modes and inertia loads leave."""
@@ -185,6 +217,18 @@ class _FreeModes:
         shapes = trial @ turn
         turn = canonical_turn(omega_squared, shapes)
         return replace(static, fixed_interface=shapes @ turn, omega_squared=omega_squared)
+
+
+def _within(free: ClampedInterior, accuracy: Accuracy, watch: Watch) -> int:
+    """Number of the elastic modes of the free body up to the end of a band."""
+    wanted = 12
+    while True:
+        squares, _ = free.lowest(wanted)
+        if len(squares) < wanted or squares[-1] > accuracy.omega**2:
+            return int(np.sum(squares <= accuracy.omega**2))
+        watch.remark(f"{wanted} free modes up to {np.sqrt(squares[-1]) / (2 * np.pi):.4g}, the "
+                     f"band ends at {accuracy.up_to:g}")
+        wanted *= 2
 
 
 def _without_residual_mass(component: ComponentModes, stiffness: NDArray, free: _FreeModes,

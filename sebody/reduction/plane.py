@@ -111,12 +111,16 @@ def _even_body(body: ReducedBody, kept: NDArray, odd: tuple[str, ...],
     stiffness, mass, damping = (
         None if matrix is None else kept.T @ matrix @ kept
         for matrix in (body.stiffness, body.mass, body.damping))
+    recovery = planar_recovery(body, kept, slaved, [list(body.loads).index(name) for name in even])
+    missing = dict(body.missing)
+    if recovery and body.recovery.stress and not recovery.stress:
+        missing["stresses"] = "a planar body keeps those of beams alone; run the spatial model"
     return ReducedBody(
         stiffness, mass, body.coordinates[:, :2], body.keeps,
-        int((~kept[:held].any(axis=0)).sum()), damping, constants,
-        planar_recovery(body, kept, slaved, [list(body.loads).index(name) for name in even]),
+        int((~kept[:held].any(axis=0)).sum()), damping, constants, recovery,
         notes=(*body.notes, "motion in a plane of symmetry"),
-        loads={name: kept.T @ body.loads[name] for name in even})
+        loads={name: kept.T @ body.loads[name] for name in even},
+        missing=missing, materials=body.materials, units=body.units)
 
 
 def _check_matrix(what: str, matrix: NDArray, signs: NDArray, names: list[str]) -> None:

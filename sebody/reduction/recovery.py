@@ -9,6 +9,7 @@ from scipy.linalg import block_diag
 
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.stress import SolidStress, StressModes
+from sebody.tabular import brief
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +56,8 @@ class Recovery:
     static: NDArray | None = None
     nodes: NDArray | None = None
 
+    __repr__ = brief
+
     @property
     def dimension(self) -> int:
         """Coordinates of a node."""
@@ -76,13 +79,17 @@ class Recovery:
         """Number in the FE model of a node, by its place among those that are kept."""
         return int(place) if self.nodes is None else int(self.nodes[place])
 
+    def called(self, place: int) -> int:
+        """The label of a node that is kept, or its number in the FE model if it has none."""
+        return self.number(place) if self.labels is None else int(self.labels[place])
+
     def displacement(self, z: NDArray, nodes: NDArray | None = None) -> NDArray:
         """Displacements of nodes, all by default, in the axes of the body.
 
         Parameters
         ----------
         z : (n, N)
-            Reduced coordinates and those that follow them, in n states.
+            Reduced coordinates, and those that follow them where these are known, in n states.
         nodes : (k,) of int, optional
 
         Returns
@@ -135,16 +142,16 @@ class Recovery:
         own = np.flatnonzero(np.array(turning) == (kind == "rotation"))
         count, width = len(self.coordinates), len(self.node_dofs)
         if nodes is None and len(own) == width:
-            shapes, nodes = self.shapes, np.arange(count)
+            shapes, nodes = self.shapes[:, :z.shape[1]], np.arange(count)
         else:
             nodes = np.arange(count) if nodes is None else np.asarray(nodes)
-            shapes = self.shapes[(width * nodes[:, None] + own).ravel()]
+            shapes = self.shapes[(width * nodes[:, None] + own).ravel(), :z.shape[1]]
         found = (self.in_fe_axes(z) @ shapes.T).reshape(len(z), len(nodes), len(own))
         return found if self.axes is None or len(own) < 2 else found @ self.axes.T
 
     def all_dofs(self, z: NDArray) -> NDArray:
         """All DOFs in the axes of the body, node after node, (n, n_dofs)."""
-        field = self.in_fe_axes(z) @ self.shapes.T
+        field = self.in_fe_axes(z) @ self.shapes[:, :z.shape[1]].T
         if self.axes is None:
             return field
         angles = sum(name.startswith("r") for name in self.node_dofs)

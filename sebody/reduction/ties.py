@@ -73,7 +73,8 @@ class Ties:
         if row >= self._loose:
             face, part = divmod(row - self._loose, self._dimension + self._angles)
             names = SPATIAL if self._dimension == 3 else PLANAR
-            return f"{names[part]} of rigid face {face}"
+            own = self._faces[face]
+            return f"{names[part]} of {own.called if own.name else f'rigid face {face}'}"
         node, kind = np.argwhere(model.rows == np.flatnonzero(self.independent == row)[0])[0]
         return f"{model.node_dofs[kind]} of {model.node_name(int(node))}"
 

@@ -1,5 +1,7 @@
 """Weights of the boundary nodes in the superelement's reference frame (14), (16)."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import rotational
 from sebody.kernels.layout import ENERGIES
+from sebody.model.extent import extent
 from sebody.model.parts import Element, Node, Superelement
+from sebody.results import energy_balance
 from sebody.results import force_quantities as forces
-from sebody.results.energy_balance import energy_balance
 from sebody.results.recording import Recording, record_counts
 
-BALANCE = 0.05      # share of the energy exchanged: speeds are off by half of it
 DRIFT = 1e-5        # constraints, of the model's extent or rad: a thousand times a step's tolerance
 GOOD = 0.2          # of a limit, up to which a number is good
 IMPULSE = 0.05      # share of the impulse exchanged, as of energies
@@ -70,12 +70,11 @@ def _completion(result: Recording) -> Finding:
 
 
 def _energy(result: Recording) -> Finding:
-    kinetic, strain, potential = (_sums(result, name)[:, 0]
-                                  for name in ("kinetic", "strain", "potential"))
-    balance = energy_balance(kinetic, strain, potential, result.recorded("works").sum(axis=1))
-    return Finding("energy", f"{balance:.2e}", _verdict(balance / BALANCE),
-                   f"largest drift over the energy exchanged; limit {BALANCE:g}. Numerical damping "
-                   "and long steps take energy: a smaller step or a larger rho keeps it")
+    balance = result.energy_balance()
+    return Finding("energy", f"{balance:.2e}", _verdict(balance / energy_balance.LIMIT),
+                   f"largest drift over the energy exchanged; limit {energy_balance.LIMIT:g}. "
+                   "Numerical damping and long steps take energy: a smaller step or a larger rho "
+                   "keeps it")
 
 
 def _momentum(result: Recording, what: str) -> Finding:
@@ -97,8 +96,7 @@ def _momentum(result: Recording, what: str) -> Finding:
 
 
 def _constraints(result: Recording) -> list[Finding]:
-    size = max((np.abs(node.point).max() for node in result.model.nodes.values()),
-               default=0.0) or 1.0
+    size = extent(result.model) or 1.0
     residuals = result.constraint_residuals.max(axis=0)
     off, rate = residuals[0] / size, residuals[1] / max(_fastest(result, size), 1e-300)
     return [Finding("constraints", f"{off:.1e}", _verdict(off / DRIFT),

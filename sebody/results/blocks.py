@@ -1,13 +1,17 @@
 """Arrays as blocks of whole numbers in one stretch of bytes, which the page of an animation reads.
 
-Each column of an array is stored in steps of its own range, 16 bits a number; 32 bits where steps
-of 16 bits would be seen, 8 for colours. Columns that do not change are not stored.
+Each column of an array is stored in steps of its own range, of 16 bits or fewer a number; of 32
+bits where such steps would be seen. Columns that do not change are not stored. The numbers of a
+column are stored as their differences, all low bytes of a block before all high ones: so they
+compress well.
 """
+
+import zlib
 
 import numpy as np
 from numpy.typing import NDArray
 
-ALIGNED = 4             # bytes: where blocks begin
+DIGITS = 12             # of the ranges of columns
 
 
 class Blocks:
@@ -18,47 +22,50 @@ class Blocks:
         self._length = 0
         self._known: dict[bytes, dict] = {}
 
-    def values(self, array: NDArray, seen: float = np.inf) -> dict:
+    def values(self, array: NDArray, seen: float = np.inf, bits: int = 16) -> dict:
         """A block of (rows, columns) of numbers.
 
         Parameters
         ----------
         seen : float
             Smallest difference that is seen: steps are not larger.
+        bits : int
+            Of a number, unless `seen` asks for more; fewer than 16 compress better.
         """
         array = np.asarray(array, dtype=float)
         low, high = (array.min(axis=0), array.max(axis=0)) if len(array) else (
             np.zeros(array.shape[1]),) * 2
+        low = np.array([float(f"{value:.{DIGITS}g}") for value in low])
         varying = np.flatnonzero(high > low)
-        wide = np.any((high - low) / 0xFFFF > seen)
-        most, kind = (0xFFFFFFFF, "<u4") if wide else (0xFFFF, "<u2")
-        step = (high - low)[varying] / most
+        most, kind = (1 << bits) - 1, "<u2"
+        if np.any((high - low) / most > seen):
+            most, kind = 0xFFFFFFFF, "<u4"
+        step = np.array([float(f"{value:.{DIGITS}g}") for value in (high - low)[varying] / most])
         # ranges of denormal numbers have no step: they are constant
         varying, step = varying[step > 0], step[step > 0]
-        whole = np.rint((array[:, varying] - low[varying]) / step).astype(kind)
+        whole = np.clip(np.rint((array[:, varying] - low[varying]) / step), 0, most).astype(kind)
         return self._block(whole, {"shape": list(array.shape), "low": low.tolist(),
                                    "step": step.tolist(), "varying": varying.tolist()})
-
-    def colours(self, array: NDArray) -> dict:
-        """A block of (rows, columns) of numbers from 0 to 1, to 1/255."""
-        whole = np.rint(255 * np.asarray(array)).astype("u1")
-        return self._block(whole, {"shape": list(whole.shape)})
 
     def indices(self, array: NDArray) -> dict:
         """A block of whole numbers >= 0."""
         array = np.asarray(array)
         kind = "<u4" if array.size and array.max() > 0xFFFF else "<u2"
-        return self._block(array.ravel().astype(kind), {"count": int(array.size)})
+        return self._block(array.reshape(-1, 1).astype(kind), {"count": int(array.size)})
 
     def bytes(self) -> bytes:
-        """All blocks, one after the other."""
-        return b"".join(self._pieces)
+        """All blocks, one after the other, compressed."""
+        return zlib.compress(b"".join(self._pieces), 9)
 
     def _block(self, whole: NDArray, described: dict) -> dict:
-        content = whole.tobytes()
+        columns = np.ascontiguousarray(whole.T)
+        steps = np.diff(columns, axis=1, prepend=columns.dtype.type(0))
+        signed = steps.view(steps.dtype.str.replace("u", "i"))
+        # -1, 1, -2 become 1, 2, 3: high bytes of small differences are zero
+        plain = ((signed << 1) ^ (signed >> (8 * signed.itemsize - 1))).view(steps.dtype)
+        content = plain.ravel().view("u1").reshape(-1, plain.itemsize).T.tobytes()
         if content not in self._known:          # bodies of a kind share their shapes
-            padded = content + bytes(-len(content) % ALIGNED)
             self._known[content] = {"at": self._length, "bytes": whole.itemsize}
-            self._pieces.append(padded)
-            self._length += len(padded)
+            self._pieces.append(content)
+            self._length += len(content)
         return self._known[content] | described

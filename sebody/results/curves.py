@@ -5,21 +5,17 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.results.naming import AXES, NORM, Values, is_known, values
 from sebody.results.result import Result
+from sebody.results.units import with_unit
+from sebody.units import Units
 
-AXES = "xyz"
-NORM = "norm"                   # component: the length of a vector
-GROUPS = {"energy": ("energy.kinetic", "energy.strain", "energy.potential",
-                     "energy.external_work"),
-          "constraints": ("constraints.position", "constraints.velocity")}
 SEGMENTS = 4                    # at least, of a history in Welch's method, each half overlapping
 FEWEST = 16                     # samples of a spectrum
 UNEVEN = 1e-6                   # of a step: by how much times of a spectrum may differ from a grid
-SMALL_ANGLE = 1e-6              # rad: below, the axis of a rotation is that of the sample before
 
 
 class Curve(NamedTuple):
@@ -38,14 +34,6 @@ class Panel(NamedTuple):
     y_label: str
     curves: list[Curve]
     kind: str = "history"       # history, phase or spectrum
-
-
-class Values(NamedTuple):
-    """Components of a history."""
-
-    name: str
-    labels: tuple[str, ...]     # of the components; one that is empty for a number
-    numbers: NDArray            # (n, components)
 
 
 def panels(results: Mapping[str, Result], words: Sequence[str], spectrum: bool = False
@@ -79,82 +67,17 @@ def panels(results: Mapping[str, Result], words: Sequence[str], spectrum: bool =
         if pair and spectrum:
             raise InputError(f"{word} is a phase plot, which has no spectrum: name one quantity")
         found += _phase(results, word, *pair) if pair else _histories(results, word)
-    return [_spectrum(panel) for panel in found] if spectrum else found
-
-
-def values(result: Result, word: str) -> Values:
-    """Components of a quantity, of a component, or of a group of numbers.
-
-    Rotations are given by their rotation vector, which is followed through full turns.
-
-    Raises
-    ------
-    InputError
-        A quantity or component there is not.
-    """
-    if word in GROUPS:
-        return Values(word, tuple(name.partition(".")[2].replace("_", " ")
-                                  for name in GROUPS[word]),
-                      np.column_stack([result[name] for name in GROUPS[word]]))
-    name, _, component = word.rpartition(".")
-    if ("." in name or name in GROUPS) and (component in (*AXES, NORM) or component.isdecimal()):
-        return _component(values(result, name), component)
-    history = result[word]
-    if history.ndim == 3:
-        history = rotation_vectors(history)
-    if history.ndim == 1:
-        return Values(word, ("",), history[:, None])
-    count = history.shape[1]
-    labels = tuple(AXES[:count]) if count in (2, 3) and not word.endswith(
-        (".modes", ".multipliers", ".forces")) else tuple(map(str, range(count)))
-    return Values(word, labels, history)
-
-
-def _component(whole: Values, component: str) -> Values:
-    name = f"{whole.name}.{component}"
-    if whole.labels == ("",):
-        raise InputError(f"{name} is unknown: {whole.name} is one number, it has no components")
-    if component == NORM:
-        return Values(name, ("",), np.linalg.norm(whole.numbers, axis=1)[:, None])
-    if component not in whole.labels:
-        raise InputError(f"{name} is unknown: {whole.name} has the components "
-                         f"{', '.join((*whole.labels, NORM))}")
-    k = whole.labels.index(component)
-    return Values(name, ("",), whole.numbers[:, k:k + 1])
-
-
-def rotation_vectors(matrices: NDArray) -> NDArray:
-    """Rotation vectors (n, 3) of matrices (n, 3, 3), continued through full turns."""
-    vectors = Rotation.from_matrix(matrices).as_rotvec()
-    angles = np.linalg.norm(vectors, axis=1)
-    known = angles > SMALL_ANGLE
-    if not known.any():
-        return vectors
-    # the axis of a small rotation is that of the last larger one, of the first ones the first's
-    last = np.maximum.accumulate(np.where(known, np.arange(len(angles)), -1))
-    last[last < 0] = np.flatnonzero(known)[0]
-    axes = (vectors / np.maximum(angles, SMALL_ANGLE)[:, None])[last]
-    rotated = np.einsum("ni,ni->n", axes[1:], axes[:-1]) < 0
-    signs = np.concatenate([[1.0], np.cumprod(np.where(rotated, -1.0, 1.0))])
-    return np.unwrap(signs * angles)[:, None] * signs[:, None] * axes
+    return [_spectrum(panel, _units(results)) for panel in found] if spectrum else found
 
 
 def _pair(result: Result, word: str) -> tuple[str, str] | None:
     """The two sides of the colon of a phase plot; colons in names of parts are none."""
     for at, letter in enumerate(word):
-        if letter == ":" and _is_known(result, word[:at]):
+        if letter == ":" and is_known(result, word[:at]):
             return word[:at], word[at + 1:]
-    if word.count(":") == 1 and not _is_known(result, word):
+    if word.count(":") == 1 and not is_known(result, word):
         return tuple(word.split(":"))
     return None
-
-
-def _is_known(result: Result, word: str) -> bool:
-    try:
-        values(result, word)
-    except InputError:
-        return False
-    return True
 
 
 def _phase(results: Mapping[str, Result], word: str, across: str, up: str) -> list[Panel]:
@@ -163,7 +86,9 @@ def _phase(results: Mapping[str, Result], word: str, across: str, up: str) -> li
     curves = []
     for label in results:
         curves.append(Curve(label, *(_one(results, label, word, side) for side in (across, up))))
-    return [Panel(f"{up} over {across}", across, up, curves, "phase")]
+    units = _units(results)
+    return [Panel(f"{up} over {across}", *(with_unit(side, side, units)
+                                           for side in (across, up)), curves, "phase")]
 
 
 def _one(results: Mapping[str, Result], label: str, word: str, side: str) -> NDArray:
@@ -182,7 +107,7 @@ def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
         t = next(iter(results.values())).t
         curves = [Curve(label, t, column)
                   for label, column in zip(first.labels, first.numbers.T, strict=True)]
-        return [Panel(first.name, "time", _plain(first.name), curves)]
+        return [_history(first.name, curves, results)]
     made = []
     for component in first.labels:
         name = f"{first.name}.{component}".rstrip(".")
@@ -193,8 +118,20 @@ def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
                                  f"{', '.join(one.labels)}")
             curves.append(Curve(label, results[label].t,
                                 one.numbers[:, one.labels.index(component)]))
-        made.append(Panel(name, "time", _plain(name), curves))
+        made.append(_history(name, curves, results))
     return made
+
+
+def _history(name: str, curves: list[Curve], results: Mapping[str, Result]) -> Panel:
+    units = _units(results)
+    return Panel(name, with_unit("time", "t", units), with_unit(_plain(name), name, units),
+                 curves)
+
+
+def _units(results: Mapping[str, Result]) -> Units | None:
+    """The units of results, if all have the same."""
+    found = {result.units for result in results.values()}
+    return found.pop() if len(found) == 1 else None
 
 
 def _values_of(results: Mapping[str, Result], label: str, word: str) -> Values:
@@ -214,10 +151,11 @@ def _plain(name: str) -> str:
     return quantity.replace("_", " ")
 
 
-def _spectrum(panel: Panel) -> Panel:
+def _spectrum(panel: Panel, units: Units | None) -> Panel:
     """Power spectral densities of the curves, by the method of Welch (1967)."""
     curves = [Curve(curve.label, *_density(panel.title, curve)) for curve in panel.curves]
-    return Panel(panel.title, "frequency [1/time]", "power spectral density", curves, "spectrum")
+    return Panel(panel.title, f"frequency [{units.of('1/time') if units else '1/time'}]",
+                 "power spectral density", curves, "spectrum")
 
 
 def _density(title: str, curve: Curve) -> tuple[NDArray, NDArray]:

@@ -15,9 +15,11 @@ from numpy.typing import NDArray
 
 from sebody.assembly import numbering
 from sebody.assembly.numbering import Numbering
+from sebody.fem import materials
 from sebody.model import histories, mechanism, parts
 from sebody.model.mechanism import Mechanism
 from sebody.reduction import invariants, recovery
+from sebody.results.saved_checks import check_numbering, check_part, check_tuple
 
 
 def _kinds(*modules: ModuleType) -> dict[str, type]:
@@ -26,7 +28,7 @@ def _kinds(*modules: ModuleType) -> dict[str, type]:
             if isinstance(kind, type) and (is_dataclass(kind) or hasattr(kind, "_fields"))}
 
 
-KINDS = _kinds(parts, histories, mechanism, numbering, invariants, recovery)
+KINDS = _kinds(parts, histories, mechanism, numbering, invariants, recovery, materials)
 
 
 def described(model: Mechanism, numbers: Numbering) -> tuple[str, NDArray]:
@@ -37,15 +39,22 @@ def described(model: Mechanism, numbers: Numbering) -> tuple[str, NDArray]:
             np.concatenate(writer.arrays) if writer.arrays else np.zeros(0))
 
 
-def restored(text: str, numbers: NDArray) -> tuple[Mechanism, Numbering]:
+def restored(text: dict, numbers: NDArray) -> tuple[Mechanism, Numbering]:
     """The model and numbering of `described`, without compiled functions.
+
+    Parameters
+    ----------
+    text : dict
+        What the JSON says.
 
     Raises
     ------
-    KeyError, IndexError, TypeError, ValueError
+    AttributeError, KeyError, IndexError, TypeError, ValueError
         What was written is not what `described` writes.
     """
-    return _Reader(json.loads(text), numbers).heads
+    model, numbering = _Reader(text, numbers).heads
+    check_numbering(model, numbering)
+    return model, numbering
 
 
 class _Writer:
@@ -103,6 +112,8 @@ class _Reader:
         for part, (_, values) in zip(self._parts, text["parts"], strict=True):
             for name, value in values.items():
                 object.__setattr__(part, name, self.made(value))
+        for part in self._parts:        # which contain each other
+            check_part(part, vars(part))
         self.heads = tuple(map(self.made, text["heads"]))
 
     def made(self, value: Any) -> Any:
@@ -116,11 +127,15 @@ class _Reader:
             first, shape, dtype = rest
             key = first, *shape
             if key not in self._arrays:
+                if type(first) is not int or first < 0 or np.dtype(dtype).hasobject:
+                    raise ValueError(f"an array begins at {first}")
                 values = self._numbers[first:first + int(np.prod(shape))]
                 self._arrays[key] = values.reshape(shape).astype(dtype)
             return self._arrays[key]
         if kind == "tuple of names":
-            return KINDS[rest[0]](*map(self.made, rest[1]))
+            values = list(map(self.made, rest[1]))
+            check_tuple(KINDS[rest[0]], values)
+            return KINDS[rest[0]](*values)
         if kind == "by part":
             return {id(self._parts[place]): self.made(v) for place, v in rest[0]}
         if kind == "dict":

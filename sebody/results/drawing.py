@@ -11,9 +11,9 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target
 from sebody.results.curves import Panel, panels, values
+from sebody.results.notebook import shown
+from sebody.results.palette import CURVES
 from sebody.results.plots import (
-    ACCENT,
-    INK,
     PALE,
     STYLE,
     SUFFIXES,
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLORS = (ACCENT, "#2a7f62", INK, "#d99a2b", "#6a4c93", "#3d8fb5", "#8c564b", "#7f7f7f")
 DASHES = 0, (5, 3)      # of curves that may lie on others
 ON_TOP = "external work"            # which is all kinetic energy in many models
 DEEPEST = 1e-18         # of the highest density: what is below is rounding
@@ -74,17 +73,17 @@ def plot(results: Result | Mapping[str, Result] | Sequence[Result], *quantities:
     figure = draw(panels(labelled, quantities or overview(first), spectrum), len(labelled) > 1)
     if output is not None:
         write_picture(figure, output, 150)
-    return figure
+    return shown(figure)
 
 
 def overview(result: Result) -> list[str]:
     """What is drawn when nothing is named: motion, energies and a force or amplitudes."""
-    moving = _largest(result, "position")
-    turning = _largest(result, "angular_velocity")
+    known = set(names(result))
+    moving = _largest(result, "position", known)
+    turning = _largest(result, "angular_velocity", known)
     found = [f"{moving}.position"] if moving else []
     found += [f"{turning}.angular_velocity"] if turning else []
     found += ["energy"]
-    known = names(result)
     for quantity in ("force", "reaction", "modes"):
         joints = [joint.name for joint in result.model.joints]
         owners = {"force": joints, "reaction": result.model.nodes, "modes": result.model.bodies}
@@ -94,10 +93,10 @@ def overview(result: Result) -> list[str]:
     return found
 
 
-def _largest(result: Result, quantity: str) -> str | None:
+def _largest(result: Result, quantity: str, known: set[str]) -> str | None:
     """The node whose quantity varies most."""
     ranges = {node: np.linalg.norm(np.ptp(values(result, f"{node}.{quantity}").numbers, axis=0))
-              for node in result.model.nodes if f"{node}.{quantity}" in names(result)}
+              for node in result.model.nodes if f"{node}.{quantity}" in known}
     best = max(ranges, key=ranges.get, default=None)
     return best if best is not None and ranges[best] > 0 else None
 
@@ -128,7 +127,7 @@ def _draw_panel(axes: "Axes", panel: Panel, named: bool) -> None:
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
     many = len(panel.curves) > LEGEND
-    for k, (curve, color) in enumerate(zip(panel.curves, cycle(COLORS), strict=False)):
+    for k, (curve, color) in enumerate(zip(panel.curves, cycle(CURVES), strict=False)):
         above = (k > 0 and not named) or curve.label == ON_TOP
         axes.plot(curve.x, curve.y, color=color, linewidth=0.7 if many else 1.1, zorder=3,
                   linestyle=DASHES if above else "-", label=curve.label or None)

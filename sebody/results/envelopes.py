@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
+from sebody.errors import InputError
 from sebody.fem.stress import principal, von_mises
 from sebody.results.field_states import FieldStates
+from sebody.tabular import brief
 
 AT_ONCE = 64        # states whose displacements are computed together
 
@@ -22,16 +24,26 @@ class Envelope(NamedTuple):
     node: int           # where, its number in the FE model
     time: float         # and when
 
+    __repr__ = brief
 
-def envelope(field: FieldStates, quantity: str, static: bool) -> Envelope:
-    """Envelope of one of `ENVELOPES`, computed by blocks of states.
+
+def envelope(field: FieldStates, quantity: str, static: bool,
+             reference: str | None = None) -> Envelope:
+    """Envelope of one of `ENVELOPES`, computed by blocks of states; see `Field.envelope`.
 
     Raises
     ------
     InputError
-        Another quantity, or a body whose FE model has no stress operator.
+        Another quantity, a reference of another one than displacements, or a body whose FE model
+        has no stress operator.
     """
+    inputs.flag(static, "static")
     read = ENVELOPES[inputs.choice(quantity, "quantity of an envelope", ENVELOPES)]
+    if reference is not None:
+        if quantity != "displacement":
+            raise InputError(f"reference is {reference!r}, but {quantity} has none: leave it out, "
+                             "it is that of displacements")
+        read = _displacement(reference)
     value, step = np.full(field.count, -np.inf), np.zeros(field.count, dtype=int)
     sign = -1.0 if quantity == "smallest_principal" else 1.0
     at_once = field.stresses(static).states_at_once if read in _OF_STRESS else AT_ONCE
@@ -50,6 +62,11 @@ def envelope(field: FieldStates, quantity: str, static: bool) -> Envelope:
 
 def _lengths(name: str) -> Callable[[FieldStates, NDArray, bool], NDArray]:
     return lambda field, states, static: np.linalg.norm(getattr(field, name)(states), axis=2)
+
+
+def _displacement(reference: str) -> Callable[[FieldStates, NDArray, bool], NDArray]:
+    return lambda field, states, static: np.linalg.norm(
+        field.displacements(states, reference=reference), axis=2)
 
 
 def _von_mises(field: FieldStates, states: NDArray, static: bool) -> NDArray:

@@ -1,5 +1,7 @@
 """Fields inside a superelement: what its FE nodes do in the recorded states."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +21,8 @@ class Field(FieldStates):
     which takes the nearest recorded state; the last one by default.
 
     Vectors are those in space, by components along the global axes or, with ``axes="body"``,
-    along the axes of the body's floating frame. Stresses are (xx, yy, zz, yz, zx, xy), those of
+    along the axes of the body's floating frame, displacements along those of the undeformed body
+    that they are measured from, see `displacement`. Stresses are (xx, yy, zz, yz, zx, xy), those of
     solids along the axes of the FE model, those of beams along the axes of the section, of its
     most stressed fibre. They contain the static answer of the modes left out to the inertia of the
     body; without it, ``static=False``, stresses near the boundary converge slowly with the modes.
@@ -37,15 +40,28 @@ class Field(FieldStates):
         No such superelement, or one without the shapes of an FE model.
     """
 
+    def __repr__(self) -> str:
+        return f"<Field of {self.name!r}: {self.count} FE nodes, {len(self.t)} states>"
+
     def position(self, step: int | None = None, t: float | None = None,
                  axes: str = "global") -> NDArray:
         """Places of all FE nodes, (nodes, D); in body axes from the origin of the frame."""
         return self.places(self._state(step, t), None, axes)[0]
 
     def displacement(self, step: int | None = None, t: float | None = None,
-                     axes: str = "global") -> NDArray:
-        """Displacements of all FE nodes from the undeformed body, which moves with the frame."""
-        return self.displacements(self._state(step, t), None, axes)[0]
+                     axes: str = "global", reference: str | None = None) -> NDArray:
+        """Displacements of all FE nodes from the undeformed body.
+
+        The undeformed body moves with the `reference`: a node of this body or of one that is
+        welded to it, by its name, or ``"frame"``, the floating frame. By default it is the first
+        node that is fixed, else the first one with a joint, else the floating frame.
+
+        Raises
+        ------
+        InputError
+            A node of another body.
+        """
+        return self.displacements(self._state(step, t), None, axes, reference)[0]
 
     def velocity(self, step: int | None = None, t: float | None = None,
                  axes: str = "global") -> NDArray:
@@ -57,15 +73,18 @@ class Field(FieldStates):
         """Accelerations of all FE nodes, (nodes, D)."""
         return self.accelerations(self._state(step, t), None, axes)[0]
 
-    def at(self, node: int, axes: str = "global", static: bool = True) -> FieldPoint:
+    def at(self, node: int, axes: str = "global", static: bool = True,
+           reference: str | None = None) -> FieldPoint:
         """Histories of one FE node, by its number in the FE model; see `label`.
+
+        Its displacement is measured from the `reference`, see `displacement`.
 
         Raises
         ------
         InputError
             No such node.
         """
-        return FieldPoint(self, self.node(node), axes, static)
+        return FieldPoint(self, self.node(node), axes, static, reference)
 
     def stress(self, step: int | None = None, t: float | None = None, at: str = "nodes",
                static: bool = True) -> NDArray:
@@ -105,7 +124,8 @@ class Field(FieldStates):
         """
         return self.stresses(static).section_forces(self._state(step, t))[0]
 
-    def envelope(self, quantity: str = "von_mises", static: bool = True) -> Envelope:
+    def envelope(self, quantity: str = "von_mises", static: bool = True,
+                 reference: str | None = None) -> Envelope:
         """Largest values over time at every node, with their states.
 
         Parameters
@@ -113,13 +133,24 @@ class Field(FieldStates):
         quantity : str
             von_mises, largest_principal or smallest_principal; displacement, velocity or
             acceleration, of which it is the length.
+        reference : str, optional
+            Where displacements are measured from, see `displacement`.
 
         Raises
         ------
         InputError
             Another quantity, or a body whose FE model has no stress operator.
         """
-        return envelope(self, quantity, static)
+        return envelope(self, quantity, static, reference)
+
+    @property
+    def fe_places(self) -> NDArray:
+        """Undeformed FE nodes in axes of the FE model, (nodes, D)."""
+        return self._recovery.coordinates
+
+    def called(self, place: int) -> int:
+        """The label of a node in the FE program, else its number in the FE model."""
+        return self._recovery.called(place)
 
     @property
     def stress_points(self) -> NDArray:
@@ -160,7 +191,9 @@ class Field(FieldStates):
         if kept is None:
             return inputs.integer(node, f"node of body {self.name!r}", least=0,
                                   most=self.count - 1,
-                                  remedy=f"its FE model has nodes 0 to {self.count - 1}")
+                                  remedy=f"its FE model has nodes 0 to {self.count - 1}" + (
+                                      "" if self._recovery.labels is None else
+                                      "; field.label(label) is the number of a label"))
         node = inputs.integer(node, f"node of body {self.name!r}", least=0)
         place = int(np.searchsorted(kept, node))
         if place == len(kept) or kept[place] != node:

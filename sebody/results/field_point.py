@@ -12,10 +12,17 @@ from sebody.results.stresses import Stresses
 class FieldPoint:
     """Histories of one FE node of a superelement, (n, D): a row of the field for each state."""
 
-    def __init__(self, field: FieldStates, node: int, axes: str, static: bool):
-        self._field, self._nodes, self._static = field, np.array([node]), static
+    def __init__(self, field: FieldStates, node: int, axes: str, static: bool,
+                 reference: str | None = None):
+        self._field, self._nodes = field, np.array([node])
+        self._static = inputs.flag(static, "static")
+        self._reference = reference
         self._axes = inputs.choice(axes, "axes", AXES)
         self._states = np.arange(len(field.t))
+
+    def __repr__(self) -> str:
+        number = self._field.number(int(self._nodes[0]))
+        return f"<FE node {number} of {self._field.name!r}: {len(self._states)} states>"
 
     @property
     def position(self) -> NDArray:
@@ -24,8 +31,9 @@ class FieldPoint:
 
     @property
     def displacement(self) -> NDArray:
-        """Displacement from the undeformed body, which moves with the frame."""
-        return self._field.displacements(self._states, self._nodes, self._axes)[:, 0]
+        """Displacement from the undeformed body, which moves with the reference."""
+        return self._field.displacements(self._states, self._nodes, self._axes,
+                                         self._reference)[:, 0]
 
     @property
     def rotation(self) -> NDArray:

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 from numpy.typing import NDArray
 
+from sebody.reduction.recovery import Recovery
 from sebody.results.field import Field
 from sebody.results.recording import Recording
 
@@ -12,7 +14,10 @@ QUANTITIES = ("position", "velocity", "acceleration", "displacement", "stress", 
 
 
 class FENodes:
-    """Names of all FE nodes of all superelements, without a list of them."""
+    """Names of all FE nodes of all superelements, without a list of them.
+
+    Nodes are named by their labels in the FE program, or by their numbers if they have none.
+    """
 
     def __init__(self, recording: Recording):
         self._bodies = {name: body.body.recovery for name, body in recording.model.bodies.items()
@@ -22,11 +27,11 @@ class FENodes:
         body, dot, node = name.rpartition(".node")
         if not dot or body not in self._bodies or not (node.isascii() and node.isdigit()):
             return False
-        return str(int(node)) == node and self._bodies[body].has(int(node))
+        return str(int(node)) == node and number_of(self._bodies[body], int(node)) is not None
 
     def __iter__(self) -> Iterator[str]:
         for name, recovery in self._bodies.items():
-            yield from (f"{name}.node{recovery.number(place)}"
+            yield from (f"{name}.node{recovery.called(place)}"
                         for place in range(len(recovery.coordinates)))
 
 
@@ -46,4 +51,13 @@ def field_of(recording: Recording, name: str) -> Field:
 def of_fe_node(quantity: str, recording: Recording, name: str) -> NDArray:
     """History of a quantity of one FE node."""
     body, _, node = name.rpartition(".node")
-    return getattr(field_of(recording, body).at(int(node)), quantity)
+    number = number_of(recording.model.bodies[body].body.recovery, int(node))
+    return getattr(field_of(recording, body).at(number), quantity)
+
+
+def number_of(recovery: Recovery, node: int) -> int | None:
+    """Number in the FE model of a node by its label, or number if it has none; None for no node."""
+    if recovery.labels is None:
+        return node if recovery.has(node) else None
+    found = np.flatnonzero(recovery.labels == node)
+    return recovery.number(int(found[0])) if len(found) else None

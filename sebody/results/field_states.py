@@ -1,5 +1,7 @@
 """What the FE nodes of a superelement do in recorded states: kinematics, many states at once."""
 
+from __future__ import annotations
+
 from functools import cached_property
 
 import numpy as np
@@ -10,6 +12,7 @@ from sebody.errors import InputError
 from sebody.results.body_loads import load_amplitudes
 from sebody.results.motion import BodyMotion, body_motion
 from sebody.results.recording import Recording
+from sebody.results.references import Welded, undeformed
 from sebody.results.stresses import Stresses
 
 AXES = "global", "body"
@@ -78,10 +81,24 @@ class FieldStates:
         return self.motion.origin[states][:, None] + self._global(states, local)
 
     def displacements(self, states: ArrayLike, nodes: ArrayLike | None = None,
-                      axes: str = "global") -> NDArray:
-        """Displacements from the undeformed body, which moves with the frame."""
+                      axes: str = "global", reference: str | None = None) -> NDArray:
+        """Displacements from the undeformed body, which moves with the reference.
+
+        With ``axes="body"`` components are along the axes of this undeformed body.
+        """
         states = np.asarray(states)
-        return self._in(axes, states, self._recovery.displacement(self.amplitudes[states], nodes))
+        node = self._welded.reference(self._body, reference)
+        moved = self._recovery.displacement(self.amplitudes[states], nodes)
+        if node is None:
+            return self._in(axes, states, moved)
+        motion = self.motion
+        still = undeformed(self._recording, self._body, motion.rotation[states],
+                           motion.origin[states], node, states)
+        points = self.points if nodes is None else self.points[np.asarray(nodes)]
+        moved = points + moved - still.places(points)
+        if inputs.choice(axes, "axes", AXES) == "body":
+            return moved @ still.rotation
+        return self._global(states, moved)
 
     def rotations(self, states: ArrayLike, nodes: ArrayLike | None = None) -> NDArray:
         """Rotation vectors of nodes in the frame, (states, nodes, 3), in a plane (.., 1)."""
@@ -126,6 +143,10 @@ class FieldStates:
     def number(self, place: int) -> int:
         """Number in the FE model of the node at a place in fields."""
         return self._recovery.number(place)
+
+    @cached_property
+    def _welded(self) -> Welded:
+        return Welded(self._recording.model)
 
     @cached_property
     def _rates(self) -> NDArray:

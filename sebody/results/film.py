@@ -9,21 +9,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.results.plots import ACCENT, INK, PALE, check_matplotlib
-from sebody.results.scenery import Scenery, extent, vertices
+from sebody.results.colouring import colourings, values_of
+from sebody.results.drawn_bodies import DrawnBody, vertices
+from sebody.results.film_marks import Marks
+from sebody.results.palette import WITHOUT_VALUE, rgb
+from sebody.results.plots import INK, check_matplotlib
+from sebody.results.rendering import (
+    Eye,
+    Painter,
+    Solid,
+    add_axes_of_space,
+    add_legend,
+    colours_of,
+    short,
+)
+from sebody.results.scenery import Scenery, extent, seen_places
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+    from PIL import Image
 
 RATES = {".gif": 15, ".mp4": 30}        # frames a second
 MOST_FRAMES = 901       # of a film
 SIZE, DPI = (9.6, 5.4), 100     # inch, pixels an inch
-COLORS = ("#4c78a8", "#e4873f", "#5a9e6f", "#b65d7c", "#8a6fb0", "#c8a23c", "#4aa3a8", "#9c755f")
-ROD, SPRING = "#8d97aa", "#2a7f62"
-LINK = 0.007            # half the width of links, of the model's extent
-MARKS = {"ground": ("^", PALE), "drive": ("o", ACCENT), "mass": ("o", INK)}
-BEHIND = 0.05           # by which faces that face away are put back, of the model's extent
-ROOM = 1.08             # of the picture, over what moves
+COLOURS = 96, 256       # of a picture of a gif; of one with values
+BELOW = 40              # rows of the legend's colours that are put below a picture to choose them
+CLEAR = 0.6             # of rigid bodies, so that joints show through them
+ROOM = 1.12             # of the picture, over what moves
+LEGEND = 0.03, 0.155, 0.26, 0.028      # left, bottom, width and height of the bar, of the picture
 
 
 def check_film(suffix: str) -> None:
@@ -57,149 +71,118 @@ def frames_of(duration: float, speed: float, suffix: str) -> int:
     return max(count, 2)
 
 
-def write_film(drawn: Scenery, title: str, path: Path, count: int, file: BinaryIO) -> None:
-    """Write a film of `count` frames."""
+def write_film(drawn: Scenery, title: str, path: Path, count: int, file: BinaryIO,
+               colour: str | None = None) -> None:
+    """Write a film of `count` frames, with a legend if bodies are coloured by a quantity."""
     times = np.linspace(drawn.t[0], drawn.t[-1], count)
     frames = np.abs(drawn.t[:, None] - times).argmin(axis=0)
     rate = RATES[path.suffix]
+    pictures = _pictures(drawn, title, frames, colour)
     if path.suffix == ".gif":
-        from PIL import Image  # matplotlib needs it
-
-        pictures = (Image.fromarray(picture).quantize(64, dither=Image.Dither.NONE)
-                    for picture in _pictures(drawn, title, frames))
-        first = next(pictures)
-        first.save(file, format="GIF", save_all=True, append_images=pictures, loop=0,
-                   duration=round(1000 / rate))
+        made = _indexed(pictures, colour is not None)
+        next(made).save(file, format="GIF", save_all=True, append_images=made, loop=0,
+                        duration=round(1000 / rate))
         return
     import imageio.v2 as imageio
 
     with imageio.get_writer("<bytes>", format=".mp4", mode="I", fps=rate,
                             macro_block_size=4) as writer:
-        for picture in _pictures(drawn, title, frames):
+        for picture in pictures:
             writer.append_data(picture)
     file.write(writer.request.get_result())
 
 
-def _pictures(drawn: Scenery, title: str, frames: NDArray) -> Iterator[NDArray]:
+def _indexed(pictures: Iterator[NDArray], valued: bool) -> "Iterator[Image.Image]":
+    """Pictures of few colours, those of the legend among them if there is one."""
+    from PIL import Image  # matplotlib needs it
+
+    for picture in pictures:
+        height, width, _ = picture.shape
+        legend = np.rint(255 * colours_of(np.linspace(0.0, 1.0, width), 0.0, 1.0)).astype(np.uint8)
+        rows = np.tile(legend, (BELOW if valued else 0, 1, 1))
+        whole = Image.fromarray(np.concatenate([picture, rows]))
+        yield whole.quantize(COLOURS[valued], dither=Image.Dither.NONE).crop((0, 0, width, height))
+
+
+def _pictures(drawn: Scenery, title: str, frames: NDArray, colour: str | None
+              ) -> Iterator[NDArray]:
     """Pictures (height, width, 3) of some frames."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.collections import PolyCollection
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=SIZE, dpi=DPI)
     canvas = FigureCanvasAgg(figure)
     axes = figure.add_axes((0, 0, 1, 1))
-    eye = _Eye(drawn)
-    _set_up(axes, eye, title)
-    faces = axes.add_collection(PolyCollection([], zorder=3))
+    axes.set_axis_off()
+    eye, half = _eye(drawn)
+    axes.set_xlim(-half * SIZE[0] / SIZE[1], half * SIZE[0] / SIZE[1])
+    axes.set_ylim(-half, half)
+    axes.text(0.015, 0.95, title, transform=axes.transAxes, color=INK, fontsize=13)
+    weight = np.linalg.norm(drawn.gravity)
+    add_axes_of_space(figure, eye, (0.89, 0.06, 0.1, 0.1 * SIZE[0] / SIZE[1]),
+                      drawn.gravity / weight if weight > 0 else None, drawn.planar)
+    bodies = _Bodies(drawn, colour)
+    values = bodies.add_legend(figure)
     clock = axes.text(0.985, 0.03, "", transform=axes.transAxes, ha="right", color=INK)
-    path, = axes.plot([], [], color=ACCENT, linewidth=1.4, zorder=2)
-    springs, = axes.plot([], [], color=SPRING, linewidth=1.6, zorder=4)
-    marks = _marks(axes, drawn)
-    trace = eye.seen(drawn.nodes[drawn.farthest].position)
+    painter, marks = Painter(axes), Marks(axes, drawn, eye)
     for k in frames:
-        polygons, colors = _faces(drawn, eye, k)
-        faces.set_verts(polygons)
-        faces.set_facecolor(colors)
-        faces.set_edgecolor(colors)
-        clock.set_text(f"t = {drawn.t[k]:.4g}")
-        path.set_data(*trace[:k + 1, :2].T)
-        springs.set_data(*_springs(drawn, eye, k))
-        for mark, node in marks:
-            mark.set_data(*eye.seen(drawn.nodes[node].position[k:k + 1])[:, :2].T)
+        painter.draw(eye, bodies.solids(k), marks.links(k))
+        clock.set_text(f"t = {drawn.t[k]:.4g} {drawn.units.time if drawn.units else ''}".rstrip())
+        if values:
+            values.set_text(f"now at most {short(bodies.most)}")
+        marks.draw(k)
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
 
-class _Eye:
-    """Parallel projection: right, up and towards the eye, in units of the model's extent."""
-
-    def __init__(self, drawn: Scenery) -> None:
-        towards = drawn.towards / np.linalg.norm(drawn.towards)
-        right = np.cross(drawn.up, towards)
-        right /= np.linalg.norm(right)
-        self.axes = np.array([right, np.cross(towards, right), towards])
-        self.size = extent(drawn.nodes)
-        places = np.concatenate([node.position for node in drawn.nodes.values()])
-        self.middle = (places.min(axis=0) + places.max(axis=0)) / 2
-        reach = np.abs(self.seen(places)).max(axis=0)
-        self.half = ROOM * max(reach[1], reach[0] * SIZE[1] / SIZE[0], 0.35)
-
-    def seen(self, points: NDArray) -> NDArray:
-        """Points (n, 3) as right, up, and towards the eye."""
-        return (points - self.middle) / self.size @ self.axes.T
+def _eye(drawn: Scenery) -> tuple[Eye, float]:
+    """The eye, and half of the height of what it sees."""
+    places = seen_places(drawn)
+    eye = Eye(drawn.towards, drawn.up, (places.min(axis=0) + places.max(axis=0)) / 2,
+              extent(drawn.nodes))
+    seen = eye.seen(places)
+    middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+    eye.middle = eye.middle + eye.size * middle @ eye.axes
+    reach = np.abs(seen - middle).max(axis=0)
+    return eye, ROOM * max(reach[1], reach[0] * SIZE[1] / SIZE[0], 0.3)
 
 
-def _set_up(axes: "Axes", eye: _Eye, title: str) -> None:
-    axes.set_axis_off()
-    axes.set_xlim(-eye.half * SIZE[0] / SIZE[1], eye.half * SIZE[0] / SIZE[1])
-    axes.set_ylim(-eye.half, eye.half)
-    axes.text(0.015, 0.95, title, transform=axes.transAxes, color=INK, fontsize=13)
+class _Bodies:
+    """Bodies with their colours: those of their entries, or of the values of a quantity."""
 
+    def __init__(self, drawn: Scenery, colour: str | None) -> None:
+        self._drawn = drawn
+        self._colours = {k: rgb(entry.colour) for entry in drawn.entries for k in entry.bodies}
+        fields = colourings(drawn.bodies, drawn.units)
+        self._field = next((one for one in fields if one.name == colour), None)
+        self.most = 0.0         # the largest value of the last picture
 
-def _marks(axes: "Axes", drawn: Scenery) -> list:
-    """Marks of joints and supports, and the nodes that they are at."""
-    found = []
-    for sign in drawn.signs:
-        shape, color = MARKS.get(sign.kind, ("o", INK))
-        below = {"^": 1.5}.get(shape, 4)
-        mark, = axes.plot([], [], shape, color=color, zorder=below,
-                          markersize=10 if shape == "^" else 4.5)
-        found.append((mark, sign.node))
-    return found
+    def add_legend(self, figure: "Figure") -> "Text | None":
+        """The legend, and a text for the largest value of a picture."""
+        field = self._field
+        if field is None:
+            return None
+        title = f"{field.title} [{field.unit}]" if field.unit else field.title
+        axes = add_legend(figure, title, 0.0, field.largest, LEGEND)
+        axes.text(0.0, -2.6, f"largest {short(field.largest)} at t = "
+                  f"{short(self._drawn.t[field.frame])}, "
+                  f"{self._drawn.bodies[field.body].name}", transform=axes.transAxes, fontsize=9,
+                  color=INK)
+        return axes.text(0.0, -3.7, "", transform=axes.transAxes, fontsize=9, color=INK)
 
+    def solids(self, frame: int) -> list[Solid]:
+        """The bodies in a frame."""
+        self.most = 0.0
+        return [self._solid(k, body, frame) for k, body in enumerate(self._drawn.bodies)]
 
-def _faces(drawn: Scenery, eye: _Eye, k: int) -> tuple[list[NDArray], NDArray]:
-    """Polygons from back to front, with their colours."""
-    polygons, colors, depths = [], [], []
-    for number, body in enumerate(drawn.bodies):
-        corners = eye.seen(vertices(body, k))[body.surface.triangles]
-        away = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] < 0
-        colors.append(_shaded(corners, COLORS[number % len(COLORS)]))
-        polygons += list(corners[..., :2])
-        depths.append(corners[..., 2].mean(axis=1) - BEHIND * away)
-    for link in drawn.links:
-        if link.kind != "spring":
-            ends = eye.seen(np.array([drawn.nodes[name].position[k] for name in link.ends]))
-            polygons.append(_ribbon(ends))
-            colors.append(_rgb(COLORS[0] if link.kind == "body" else ROD)[None])
-            depths.append(ends[:, 2].mean(keepdims=True))
-    if not polygons:
-        return [], np.zeros((0, 3))
-    order = np.argsort(np.concatenate(depths))
-    return [polygons[i] for i in order], np.concatenate(colors)[order]
-
-
-def _ribbon(ends: NDArray) -> NDArray:
-    """A line of some width, (4, 2)."""
-    way = ends[1, :2] - ends[0, :2]
-    aside = LINK * np.array([-way[1], way[0]]) / max(np.linalg.norm(way), 1e-12)
-    return np.array([ends[0, :2] - aside, ends[1, :2] - aside, ends[1, :2] + aside,
-                     ends[0, :2] + aside])
-
-
-def _springs(drawn: Scenery, eye: _Eye, k: int) -> tuple[NDArray, NDArray]:
-    """Zigzags, with gaps between them."""
-    part = np.linspace(0.0, 1.0, 17)
-    side = np.where((part > 0.1) & (part < 0.9), 2 * LINK * (-1.0)**np.arange(17), 0.0)
-    points = [np.zeros((0, 2))]
-    for link in drawn.links:
-        if link.kind == "spring":
-            a, b = eye.seen(np.array([drawn.nodes[name].position[k] for name in link.ends]))[:, :2]
-            aside = np.array([a[1] - b[1], b[0] - a[0]]) / max(np.linalg.norm(b - a), 1e-12)
-            points += [a + part[:, None] * (b - a) + side[:, None] * aside, [[np.nan, np.nan]]]
-    return tuple(np.concatenate(points).T)
-
-
-def _shaded(corners: NDArray, color: str) -> NDArray:
-    """Colours of triangles by their slope against the light."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    normals *= np.where(normals[:, 2:] < 0, -1.0, 1.0)
-    light = np.array([-0.35, 0.55, 0.75])
-    bright = 0.55 + 0.5 * np.maximum(normals @ light, 0.0)
-    return np.clip(bright[:, None] * _rgb(color), 0.0, 1.0)
-
-
-def _rgb(color: str) -> NDArray:
-    return np.array([int(color[k:k + 2], 16) for k in (1, 3, 5)]) / 255
+    def _solid(self, k: int, body: DrawnBody, frame: int) -> Solid:
+        triangles, colours = body.surface.triangles, np.array(self._colours[k])
+        if self._field is not None:
+            values = values_of(body, self._field.name, frame)
+            if values is None:
+                colours = np.array(rgb(WITHOUT_VALUE))
+            else:
+                self.most = max(self.most, float(values.max()))
+                colours = colours_of(values[triangles].mean(axis=1), 0.0, self._field.largest)
+        return Solid(vertices(body, frame), triangles, colours, body.surface.features,
+                     CLEAR if body.rigid else 1.0)

@@ -4,19 +4,18 @@ Arrays are written by blocks of rows, packed. The group ``sebody`` holds what a 
 """
 
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from io import BytesIO
-from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.files.hdf5 import SIZE, guarded
+from sebody.version import __version__
 
 SUFFIX = ".h5"
-SIGNATURE = b"\x89HDF\r\n\x1a\n"
 BLOCK = 2**16       # numbers of a block
 SMALL = 100         # numbers of an array that is not packed
 
@@ -54,29 +53,11 @@ def write(file: BinaryIO, members: Mapping[str, NDArray], units: Mapping[str, st
     import h5py
 
     memory = BytesIO()
-    with h5py.File(memory, "w") as made:
-        made.attrs.update(attributes | {"program": f"sebody {_version()}"})
+    with h5py.File(memory, "w", userblock_size=SIZE) as made:
+        made.attrs.update(attributes | {"program": f"sebody {__version__}"})
         for name, values in members.items():
             _write(made, name, np.asarray(values), units.get(name))
-    file.write(memory.getbuffer())
-
-
-def read(path: Path, group: str) -> dict[str, NDArray]:
-    """Arrays and texts of a group by name.
-
-    Raises
-    ------
-    ValueError, KeyError
-        A damaged file, or one without such a group.
-    """
-    import h5py
-
-    try:
-        with h5py.File(path, "r") as file:
-            return {name: np.array(found[()].decode()) if h5py.check_string_dtype(found.dtype)
-                    else found[()] for name, found in file[group].items()}
-    except (OSError, RuntimeError) as error:
-        raise ValueError(str(error)) from error
+    file.write(guarded(bytearray(memory.getbuffer())))
 
 
 def _write(file, name: str, values: NDArray, unit: str | None) -> None:
@@ -97,10 +78,3 @@ def _write(file, name: str, values: NDArray, unit: str | None) -> None:
             made[first:first + rows] = values[first:first + rows]
     if unit is not None:
         made.attrs["units"] = unit
-
-
-def _version() -> str:
-    try:
-        return version("sebody")
-    except PackageNotFoundError:
-        return "of a checkout"

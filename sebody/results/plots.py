@@ -1,5 +1,7 @@
 """Pictures of results (extra ``plot``)."""
 
+from __future__ import annotations
+
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,8 +12,10 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
+from sebody.results.palette import AXES
 from sebody.results.result import Result
 from sebody.results.skeleton import lines_of
+from sebody.results.units import with_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +25,7 @@ INSTANTS = 9            # at which the bodies are drawn
 MOST_TICKS = 5          # of the longest axis of a path
 FLAT = 0.03             # share of the motion below which motion out of the plane is not drawn
 INK, ACCENT, PALE = "#1f2a44", "#c8452d", "#9aa5b8"
-COMPONENTS = ((ACCENT, "x"), ("#2a7f62", "y"), (INK, "z"))
+COMPONENTS = tuple(zip(AXES, "xyz", strict=True))
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
          "axes.edgecolor": PALE, "axes.labelcolor": INK, "axes.titlecolor": INK,
          "axes.titlesize": 10, "axes.titlelocation": "left", "xtick.color": INK,
@@ -82,6 +86,7 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     check_picture(path)
     for node in (base, tip):
         if not isinstance(node, str) or node not in result.model.nodes:
+            node = node if isinstance(node, str) else inputs.shown(node)
             raise InputError(f"'{node}.position' is unknown: nodes are "
                              f"{', '.join(result.model.nodes)}")
     title, rates = _rates(result, base, tip)
@@ -93,13 +98,13 @@ def save_picture(result: Result, path: str | Path, base: str, tip: str) -> Path:
     with rc_context(STYLE):
         figure = Figure(figsize=(9.6, 4.2), layout="constrained")
         FigureCanvasAgg(figure)
-        _draw_rates(figure.add_subplot(1, 2, 1), result.t, rates, title)
+        _draw_rates(figure.add_subplot(1, 2, 1), result, rates, title)
         _draw_path(figure, result, tip)
         write_picture(figure, path, 150, bbox_inches="tight", pad_inches=0.1)
     return Path(path)
 
 
-def write_picture(figure: "Figure", path: str | Path, dpi: int, **options: object) -> None:
+def write_picture(figure: Figure, path: str | Path, dpi: int, **options: object) -> None:
     """Write a figure of matplotlib in the format of the file's ending.
 
     Raises
@@ -114,8 +119,10 @@ def write_picture(figure: "Figure", path: str | Path, dpi: int, **options: objec
 def _rates(result: Result, base: str, tip: str) -> tuple[str, NDArray]:
     """Title and values of the left picture."""
     if result.model.nodes[base].rotation is None:
-        return f"velocity of the {tip}", result[f"{tip}.velocity"]
-    return f"angular velocity of the {base}", result[f"{base}.angular_velocity"]
+        name, title = f"{tip}.velocity", f"velocity of the {tip}"
+    else:
+        name, title = f"{base}.angular_velocity", f"angular velocity of the {base}"
+    return with_unit(title, name, result.units), result[name]
 
 
 def _spatial(points: NDArray) -> NDArray:
@@ -123,9 +130,10 @@ def _spatial(points: NDArray) -> NDArray:
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
 
 
-def _draw_rates(axes, t: NDArray, rates: NDArray, title: str) -> None:
+def _draw_rates(axes, result: Result, rates: NDArray, title: str) -> None:
+    t = result.t
     axes.set_title(title)
-    axes.set_xlabel("time")
+    axes.set_xlabel(with_unit("time", "t", result.units))
     axes.margins(x=0.01)
     about = "about " if title.startswith("angular") else "along "
     if about == "about " and (rates.ndim == 1 or
@@ -159,7 +167,7 @@ def _draw_path(figure, result: Result, tip: str) -> None:
     axes.plot(*path[:1, :size].T, "o", color=ACCENT, markersize=3, zorder=5)
     axes.set_aspect("equal", adjustable="datalim" if flat else "box")
     for name in "xyz"[:size]:
-        getattr(axes, f"set_{name}label")(name)
+        getattr(axes, f"set_{name}label")(with_unit(name, f"{tip}.position", result.units))
         _thin_ticks(axes, name, extent[:size].max())
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12 if flat else -0.05), ncols=3)
 

@@ -4,23 +4,24 @@
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from difflib import get_close_matches
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.errors import InputError
 from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
 from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
+from sebody.results.envelopes import ENVELOPES
 from sebody.results.recording import Recording, record_counts
+from sebody.spelling import alike
 
 FE_NODE = "node inside a body"
 ALIKE = 0.75            # ratio of `difflib` from which a name is near another
+OF_FIELD = (*fields.QUANTITIES, "strain", "principal")
 
 
 class NodeQuantity(NamedTuple):
@@ -41,38 +42,65 @@ class Owner(NamedTuple):
 
 
 def look_up(recording: Recording, name: str) -> NDArray:
-    """History of a quantity by its full name.
+    """History of a whole quantity by its full name.
+
+    Names with components are those of `sebody.results.naming`.
 
     Raises
     ------
     InputError
         A name that nothing has, or a quantity its owner does not have.
     """
-    inputs.name(name, "name of a quantity")
+    read = find(recording, name)
+    if read is None:
+        raise unknown_quantity(recording, name)
+    return read(recording)
+
+
+def find(recording: Recording, name: str) -> Callable[[Recording], NDArray] | None:
+    """What reads a quantity; None if there is none of this name."""
     if name in OF_MODEL:
-        return OF_MODEL[name](recording)
+        return OF_MODEL[name]
     owner, _, quantity = name.rpartition(".")
     for one in OWNERS:      # names of nodes come first: those of others are long to list
         if quantity in one.quantities and owner in one.names(recording):
-            return one.quantities[quantity](recording, owner)
+            return lambda recording: one.quantities[quantity](recording, owner)
+    return None
+
+
+def unknown_quantity(recording: Recording, name: str) -> InputError:
+    """The exception for a name that nothing has: names that are like it, and what there is."""
+    owner, _, quantity = name.rpartition(".")
+    model = recording.model
+    if owner in model.bodies and quantity in OF_FIELD:
+        return _of_field(recording, owner, quantity)
     found = [one for one in OWNERS if owner in one.names(recording)]
     inside = fields.QUANTITIES if owner in fields.FENodes(recording) else ()
-    near = get_close_matches(name, [*names(recording), *(f"{owner}.{q}" for q in inside)],
-                             cutoff=ALIKE)
+    near = alike(name, [*names(recording), *(f"{owner}.{q}" for q in inside)], cutoff=ALIKE)
     meant = f"did you mean {' or '.join(map(repr, near))}? " if near else ""
     if found:
-        raise InputError(f"{quantity!r} is unknown: {meant}" + "; ".join(
+        return InputError(f"{quantity!r} is unknown: {meant}" + "; ".join(
             f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
     *offers, of_fe_nodes = [one.offer.format(names=_listed(one, recording),
                                              quantities=_enumerated(one.quantities))
                             for one in OWNERS]
-    raise InputError(f"{name!r} is unknown: {meant}{'; '.join(offers)}; of the model "
-                     f"{', '.join(OF_MODEL)}{of_fe_nodes}")
+    return InputError(f"{name!r} is unknown: {meant}{'; '.join(offers)}; of the model "
+                      f"{', '.join(OF_MODEL)}{of_fe_nodes}")
 
 
-def _listed(one: Owner, recording: Recording) -> str:
-    """Names of a kind, where its offer lists them."""
-    return ", ".join(one.names(recording) if "{names}" in one.offer else ()) or f"any {one.kind}"
+def _of_field(recording: Recording, body: str, quantity: str) -> InputError:
+    """The exception for a quantity of the FE nodes of a body that is asked of the body."""
+    recovery = recording.model.bodies[body].body.recovery
+    if recovery is None:
+        return InputError(f"'{body}.{quantity}' is unknown: {body!r} was reduced without the "
+                          "shapes of its FE model; reduce it from the FE model, or import it with "
+                          "its mesh")
+    node = f"{body}.node{recovery.number(0)}"
+    return InputError(f"'{body}.{quantity}' is unknown: the FE nodes of a body have it, as in "
+                      f"'{node}.{quantity}'; in a state all of them, result.field({body!r})."
+                      f"{quantity}(t=...)"
+                      + ("; the largest over the run result.field("
+                         f"{body!r}).envelope({quantity!r})" if quantity in ENVELOPES else ""))
 
 
 def names(recording: Recording) -> list[str]:
@@ -81,6 +109,11 @@ def names(recording: Recording) -> list[str]:
         f"{owner}.{quantity}" for one in OWNERS if one.kind != FE_NODE
         for owner in one.names(recording)
         for quantity in one.quantities if _has(recording, one.kind, owner, quantity)))
+
+
+def _listed(one: Owner, recording: Recording) -> str:
+    """Names of a kind, where its offer lists them."""
+    return ", ".join(one.names(recording) if "{names}" in one.offer else ()) or f"any {one.kind}"
 
 
 def _enumerated(names: Iterable[str]) -> str:

@@ -1,17 +1,22 @@
 """The data of a run, from which all results are read."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering
+from sebody.assembly.numbering import Numbering, kept_frames
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.layout import ENERGIES, RECORD
 from sebody.model.mechanism import Mechanism
+from sebody.model.tables import summary
 from sebody.results.balance import Balance
+from sebody.results.energy_balance import energy_balance
+from sebody.results.least_norm import least_norm
 from sebody.results.postprocessing import (
     Forces,
     constraint_residuals,
@@ -26,9 +31,10 @@ class Start(NamedTuple):
 
     changed: dict[str, float]       # triplets whose velocity was solved for, with its change
     redundant: tuple[str, ...]      # joints with constraints that others contain
+    shared: tuple[str, ...] = ()    # joints whose multipliers are not unique at the start
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Recording:
     """A model, its arrays, and the states a run has recorded."""
 
@@ -45,9 +51,25 @@ class Recording:
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
     fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far
 
+    def __repr__(self) -> str:
+        t, kind = self.recorded("t")[:, 0], type(self).__name__
+        end = f"t = {t[0]:.6g} to {t[-1]:.6g}" if len(t) else "no states"
+        return (f"<{kind} of a {summary(self.model)}: {len(t)} states, {end}"
+                + f"; {self.failure}" * bool(self.failure) + ">")
+
     def recorded(self, name: str) -> NDArray:
         """History of one of the parts of `layout.RECORD`, (n, size)."""
         return self.rows[:, RECORD.slices(record_counts(self.numbering))[name]]
+
+    @cached_property
+    def unique_rows(self) -> NDArray:
+        """The recorded states with multipliers of least norm, also those of redundant constraints.
+
+        In the states of the loop these contain a part that exerts no force, and jumps.
+        """
+        if self.system is None or not self.system.relaxed[0]:
+            return self.rows
+        return least_norm(self.model, self.numbering, self.system, self.state, self.rows)
 
     @cached_property
     def counters(self) -> NDArray:
@@ -59,10 +81,20 @@ class Recording:
         """Energies and momenta of every recorded state, rows of `layout.ENERGIES`."""
         return energies(self.system, self.state, self.rows)
 
+    def energy_balance(self) -> float:
+        """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
+
+        Of all recorded states, see `sebody.results.energy_balance`.
+        """
+        columns = ENERGIES.slices(record_counts(self.numbering))
+        kinetic, strain, potential = (self.energies[:, columns[name]][:, 0]
+                                      for name in ("kinetic", "strain", "potential"))
+        return energy_balance(kinetic, strain, potential, self.recorded("works").sum(axis=1))
+
     @cached_property
     def forces(self) -> Forces:
         """Forces in every recorded state."""
-        return forces(self.system, self.state, self.rows)
+        return forces(self.system, self.state, self.unique_rows)
 
     @cached_property
     def balance(self) -> Balance:
@@ -74,8 +106,11 @@ class Recording:
     def powers(self) -> NDArray:
         """Powers of the power ports in every recorded state, (n, ports)."""
         at = ENERGIES.slices(record_counts(self.numbering))["powers"]
+        rows = self.unique_rows
+        evaluated = (self.energies if rows is self.rows else
+                     energies(self.system, self.state, rows))
         return prescribed_powers(self.system, self.recorded("t")[:, 0], self.forces.sums,
-                                 self.energies[:, at])
+                                 evaluated[:, at])
 
     @cached_property
     def constraint_residuals(self) -> NDArray:
@@ -90,4 +125,4 @@ EVALUATED = "counters", "energies", "powers", "constraint_residuals"
 def record_counts(numbering: Numbering) -> dict[str, int]:
     """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
     return {"ports": len(numbering.histories), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "bodies": len(numbering.modes)}
+            "rotations": len(numbering.rotations), "kept": kept_frames(numbering)}

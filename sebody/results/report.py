@@ -9,13 +9,14 @@ from pathlib import Path
 from sebody import inputs
 from sebody.files import check_target, replacing
 from sebody.model.tables import model_tables, summary, table
-from sebody.results.animation import page
 from sebody.results.audit import Finding, audit
 from sebody.results.curves import Curve, Panel, panels
 from sebody.results.drawing import draw, overview
+from sebody.results.page_data import page
 from sebody.results.plots import check_matplotlib
 from sebody.results.result import Result
 from sebody.results.templates import filled
+from sebody.results.units import with_unit
 
 SUFFIXES = (".html",)
 
@@ -51,7 +52,7 @@ def report(result: Result, output: str | Path, *quantities: str, title: str = ""
     """
     inputs.instance(result, "result", Result, "give the Result of a run")
     path = check_report(output)
-    title = title or path.stem
+    title = inputs.text(title, "title") or path.stem
     words = quantities or overview(result)
     drawn = panels({"the result": result}, words)
     text = filled("report.html", {
@@ -95,7 +96,8 @@ def audit_table(findings: list[Finding]) -> str:
 
 def _warnings(result: Result) -> str:
     """What the run has warned of; each names its remedy."""
-    said = [*([result.failure] if result.failure else []), *result.warnings]
+    said = [*([result.failure] if result.failure else []), *result.warnings,
+            *result.cautions]
     said += [f"bodies {', '.join(bodies)} run on a general kernel: one of the layout's own is "
              f"faster, made by {command}" for command, bodies in result.advice.items()]
     if not said:
@@ -107,7 +109,9 @@ def _drift(result: Result) -> Panel:
     """Energy that the run has gained or lost."""
     total = sum(result[f"energy.{name}"] for name in ("kinetic", "strain", "potential"))
     balance = total - result["energy.external_work"]
-    return Panel("energy gained by the run", "time", "energy", [
+    labels = (with_unit(label, name, result.units) for label, name in (("time", "t"),
+                                                                       ("energy", "energy")))
+    return Panel("energy drift: all energies less the work of loads", *labels, [
         Curve("", result.t, balance - balance[0])])
 
 

@@ -1,6 +1,8 @@
 """Results of a run by name: histories of nodes and bodies, energies, the output file."""
 
-from collections.abc import Iterable
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 
@@ -11,16 +13,19 @@ from sebody import inputs
 from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
 from sebody.files import check_target, replacing
 from sebody.model.tables import table
-from sebody.results import hdf5, tables
+from sebody.results import hdf5, naming, quantities, tables
 from sebody.results.advice import kernels_that_pay
-from sebody.results.energy_balance import energy_balance
+from sebody.results.cautions import cautions
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
-from sebody.results.quantities import look_up, saved
+from sebody.results.hot_spots import HotSpots, hot_spots
+from sebody.results.least_norm import arm
+from sebody.results.quantities import saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
 from sebody.results.units import unit
 from sebody.results.vtk_series import save_vtk
+from sebody.units import Units, parsed_units
 
 OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
 LABELS = 21             # columns of the labels of a summary
@@ -28,6 +33,12 @@ LABELS = 21             # columns of the labels of a summary
 
 class Result(Recording):
     """Histories on the output grid; ``result["tip.position"]`` by the rule ``<node>.<quantity>``.
+
+    `names` lists what there is, ``"tip.position" in result`` says whether there is something.
+    Components of a quantity have its name and theirs, ``result["tip.position.y"]``, (n,): x, y, z
+    and norm of vectors, also of rotations by their rotation vector, xx, xy, ... of rotation
+    matrices and stresses, 0, 1, ... of everything else. Plots, ensembles, sweeps, advice and
+    frequency responses have the same names.
 
     Quantities of a node: position, velocity, acceleration (n, 3), rotation (n, 3, 3),
     angular_velocity and angular_acceleration (n, 3), all in global axes; in a plane (n, 2) and
@@ -96,8 +107,26 @@ class Result(Recording):
         return 1e6 * self.seconds / max(self.steps, 1)
 
     def __getitem__(self, name: str) -> NDArray:
-        """History of a quantity by name; see the class, and `quantities.look_up` for errors."""
-        return look_up(self, name)
+        """History of a quantity, a component or a group by name; see the class.
+
+        Raises
+        ------
+        InputError
+            A name that nothing has; the message has names that are like it.
+        """
+        return naming.look_up(self, name)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is a quantity, a component or a group of this name."""
+        return naming.is_known(self, name)
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of `names`."""
+        return iter(self.names())
+
+    def names(self) -> list[str]:
+        """Names of all quantities, those of FE nodes inside bodies left out: these are many."""
+        return quantities.names(self)
 
     def field(self, name: str) -> Field:
         """Displacements, velocities and accelerations of the FE nodes of a superelement.
@@ -110,13 +139,34 @@ class Result(Recording):
         inputs.name(name, "name of a superelement")
         return field_of(self, name)
 
-    def energy_balance(self) -> float:
-        """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
+    def hot_spots(self, name: str, count: int = 10, apart: float = 0.0) -> HotSpots:
+        """The most stressed FE nodes of a superelement over the whole run, as a table.
 
-        See `sebody.results.energy_balance`.
+        Parameters
+        ----------
+        name : str
+            Of the superelement.
+        count : int
+            How many nodes.
+        apart : float
+            Least distance between two of them, so that neighbours count as one spot [length].
+
+        Raises
+        ------
+        InputError
+            No such superelement, or one without stresses; the message says why.
         """
-        return energy_balance(*(self[f"energy.{name}"] for name in
-                                ("kinetic", "strain", "potential", "external_work")))
+        return hot_spots(self.field(name), count, apart, self.units)
+
+    @property
+    def units(self) -> Units | None:
+        """Units of the model, if it has some."""
+        return parsed_units(self.model.units)
+
+    @property
+    def cautions(self) -> list[str]:
+        """What bodies do not know and why: stresses, stiffening, exact inertia; odd materials."""
+        return cautions(self.model)
 
     @cached_property
     def advice(self) -> dict[str, list[str]]:
@@ -143,7 +193,7 @@ class Result(Recording):
         members = self.arrays() | packed(self)
         with replacing(path, OUTPUT[0]) as file:
             if path.suffix == hdf5.SUFFIX:
-                hdf5.write(file, members, {name: unit(name) for name in self.arrays()},
+                hdf5.write(file, members, {name: unit(name, self.units) for name in self.arrays()},
                            {"title": "results of a run", "superelements": ", ".join(
                                self.model.bodies), "nodes": ", ".join(self.model.nodes)})
             else:
@@ -172,7 +222,7 @@ class Result(Recording):
         """
         return save_vtk(self, path, every)
 
-    def to_pandas(self, names: Iterable[str] | None = None) -> "tables.DataFrame":
+    def to_pandas(self, names: Iterable[str] | None = None) -> tables.DataFrame:
         """Histories as columns, ``tip.position.x``, indexed by time (extra ``tables``).
 
         Parameters
@@ -187,12 +237,12 @@ class Result(Recording):
         """
         return tables.to_pandas(self, names)
 
-    def to_xarray(self, names: Iterable[str] | None = None) -> "tables.Dataset":
+    def to_xarray(self, names: Iterable[str] | None = None) -> tables.Dataset:
         """Histories as variables with their units in words (extra ``tables``); see `to_pandas`."""
         return tables.to_xarray(self, names)
 
     @classmethod
-    def load(cls, path: str | Path) -> "Result":
+    def load(cls, path: str | Path) -> Result:
         """A result that `save` has written: it can be asked for all that the saved one could be.
 
         Its `model` is a description: compiled functions are left out, so it cannot be run.
@@ -237,10 +287,12 @@ class Result(Recording):
                                      for name, change in self.start.changed.items()))
         if self.start and self.start.redundant:
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
-                         + ": multipliers are those of least norm")
+                         + f"; multipliers of {', '.join(self.start.shared)} are not unique, given "
+                         f"are those of least norm (moments divided by {arm(self.model):.4g})")
         lines += [f"general kernel       of {', '.join(bodies)}: one of the layout's own is "
                   f"faster, made by {command}"
                   for command, bodies in self.advice.items()]
+        lines += [f"caution              {text}" for text in self.cautions]
         lines += [f"WARNING              {message}" for message in self.warnings]
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
 

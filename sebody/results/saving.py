@@ -5,25 +5,39 @@ below `OWN`, from which a `Result` is made that knows all that the saved one kne
 """
 
 import json
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.assembly.numbering import Numbering
+from sebody.engine.state import CONTROLS
 from sebody.errors import InputError
-from sebody.results import hdf5
+from sebody.files.arrays import json_of, opened
+from sebody.files.checksums import changed, checksums
+from sebody.files.members import Member, Table
+from sebody.files.reading import existing
+from sebody.kernels.layout import RECORD_T
+from sebody.model.mechanism import Mechanism
 from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces
 from sebody.results.recording import EVALUATED, Recording, Start
+from sebody.results.saved_checks import check_notes, member_lengths
 
-VERSION = 2
+VERSION = 3
 OWN = "sebody/"         # beginning of the names of members that are no named histories
 NOTES = "seconds", "failure", "warnings", "error", "all_seconds"        # members of a Recording
+WHAT, REPEAT = "results file", "run the model again"
+REMEDY = "give one written by Result.save; 'sebody inspect' reads body files"
+NUMBERS = Member((None,), finite=False)     # of the model's arrays
+# lengths by the names of `member_lengths`
+MEMBERS = {"rows": Member(("states", "width")), "elements": Member(("states", "forces")),
+           "supports": Member(("states", "supports")),
+           "counters": Member((CONTROLS,), "i", least=0),
+           "energies": Member(("states", "energies")), "powers": Member(("states", "ports")),
+           "constraint_residuals": Member(("states", 2))}
 
 
 def packed(recording: Recording) -> dict[str, NDArray]:
@@ -32,10 +46,11 @@ def packed(recording: Recording) -> dict[str, NDArray]:
     notes = {name: getattr(recording, name) for name in NOTES}
     notes |= {"version": VERSION, "start": recording.start, "advice": recording.advice}
     forces = recording.forces
-    arrays = {"rows": recording.rows, "numbers": numbers, "model": np.array(text),
-              "notes": np.array(json.dumps(notes)), "elements": forces.elements,
-              "supports": forces.sums[:, recording.numbering.free:]}
+    arrays = {"rows": recording.unique_rows, "numbers": numbers, "model": np.array(text),
+              "elements": forces.elements, "supports": forces.sums[:, recording.numbering.free:]}
     arrays |= {name: getattr(recording, name) for name in EVALUATED}
+    notes["checksums"] = checksums(arrays)
+    arrays["notes"] = np.array(json.dumps(notes))
     return {OWN + name: array for name, array in arrays.items()}
 
 
@@ -45,43 +60,47 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
     Raises
     ------
     InputError
-        No such file, or one of another kind or version.
+        No such file, one of another kind or version, or parts that do not fit together.
     """
-    path = inputs.path(path, "results file")
-    try:
-        found = _members(path)
-        notes = json.loads(str(found["notes"]))
+    found, file = existing(path, WHAT, "give one that was saved"), f"{WHAT} {path}"
+    with opened(found, WHAT, REMEDY, group=OWN.strip("/")) as reader:
+        notes = json_of(reader, "notes")
         if notes["version"] != VERSION:
-            raise InputError(f"results file {path} is of version {notes['version']}, this program "
-                             f"reads {VERSION}: numpy.load or h5py reads its named histories")
-        return _made(make, notes, found)
-    except FileNotFoundError as error:
-        raise InputError(f"results file {path} does not exist: give one that was saved") from error
-    except InputError:
-        raise
-    except (BadZipFile, zlib.error, ValueError, KeyError, IndexError, TypeError, EOFError
-            ) as error:
-        raise InputError(f"{path} is damaged or no results file: give one written by Result.save; "
-                         "'sebody inspect' reads body files") from error
-    except OSError as error:
-        raise InputError(f"results file {path} cannot be read ({error.strerror}): give another "
-                         "one") from error
+            raise InputError(f"{file} is of version {notes['version']}, this program reads "
+                             f"{VERSION}: numpy.load or h5py reads its named histories")
+        check_notes({"checksums": {}, **notes})     # older files have none
+        text = json_of(reader, "model")
+        numbers = Table(file, REPEAT, {"numbers": NUMBERS}).read(
+            reader, others=set(reader.headers) - {"numbers"})
+        model, numbering = restored(text, numbers["numbers"])
+        members = dict(MEMBERS)
+        if notes["failure"]:            # what was computed last may have overflowed
+            members |= {name: one._replace(finite=False) for name, one in MEMBERS.items()
+                        if name != "rows"}
+        table = Table(file, REPEAT, members, member_lengths(model, numbering))
+        arrays = table.read(reader, others=["notes", "model", "numbers"])
+        _check_times(table, arrays["rows"])
+        made = _made(make, notes, arrays, model, numbering)
+        noted = {"model": np.array(json.dumps(text)), **numbers, **arrays}
+        if odd := changed(noted, notes.get("checksums")):
+            raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+        return made
 
 
-def _members(path: Path) -> dict[str, NDArray]:
-    """The own members of a file of either kind, whatever its name is."""
-    with path.open("rb") as file:
-        if file.read(len(hdf5.SIGNATURE)) == hdf5.SIGNATURE:
-            hdf5.check_installed()
-            return hdf5.read(path, OWN.strip("/"))
-    with np.load(path, allow_pickle=False) as file:
-        return {name.removeprefix(OWN): file[name] for name in file.files
-                if name.startswith(OWN)}
+def _check_times(table: Table, rows: NDArray) -> None:
+    """Refuse states that are not in the order of their times."""
+    t = rows[:, RECORD_T]
+    if not len(t):
+        raise table.fault("holds no state")
+    if not (np.diff(t) > 0).all():
+        k = int(np.argmin(np.diff(t) > 0))
+        raise table.fault(f"holds times that do not increase: {t[k]:g} is followed by "
+                          f"{t[k + 1]:g}")
 
 
-def _made(make: Callable[..., Any], notes: dict, found: dict[str, NDArray]) -> Any:
-    model, numbering = restored(str(found["model"]), found["numbers"])
-    start = notes["start"] and Start(notes["start"][0], tuple(notes["start"][1]))
+def _made(make: Callable[..., Any], notes: dict, found: dict[str, NDArray], model: Mechanism,
+          numbering: Numbering) -> Any:
+    start = notes["start"] and Start(notes["start"][0], *map(tuple, notes["start"][1:]))
     made = make(model, numbering, None, None, found["rows"], start=start,
                 **{name: notes[name] for name in NOTES})
     made.warnings = tuple(made.warnings)

@@ -1,36 +1,24 @@
-"""What a picture of a moving model shows: bodies, nodes, links and signs of joints, with poses."""
+"""What a picture of a moving model shows: bodies, nodes, links, signs of joints, and loads."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
-from sebody.fem.stress import von_mises
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Node, Superelement
-from sebody.results.motion import body_motion
+from sebody.model.parts import Node
+from sebody.results.arrows import Arrow, arrows
+from sebody.results.drawn_bodies import DrawnBody, flexible, quaternions, rigid, with_stress
+from sebody.results.palette import BODIES
+from sebody.results.references import Welded
 from sebody.results.result import Result
 from sebody.results.signs import Link, Sign, links, signs
-from sebody.results.surface import Surface, box, surface_of
+from sebody.results.surface import spatial
+from sebody.units import Units
 
-NEGLIGIBLE = 1e-7       # of the model's extent: smaller displacements by an amplitude are left out
-THINNEST = 0.004        # of the model's extent: half of a section, smaller ones are drawn larger
-STRESSES = 1_000_000    # stresses of nodes in frames that are computed
+LOOKED_AT = 25, 200     # frames and stations of a body that what is seen is measured by
 FLAT = 0.03             # share of the largest extent below which a motion is in a plane
-SLENDER = 0.1           # width of a planar rigid body over its length
-
-
-class DrawnBody(NamedTuple):
-    """A body with a surface; rigid ones have no amplitudes."""
-
-    name: str
-    surface: Surface
-    origin: NDArray         # (frames, 3)
-    rotation: NDArray       # (frames, 4) quaternions, the real part last
-    amplitudes: NDArray     # (frames, N)
-    stress: NDArray | None = None   # (some frames at even distances, stations), von Mises
 
 
 class DrawnNode(NamedTuple):
@@ -41,18 +29,33 @@ class DrawnNode(NamedTuple):
     rotation: NDArray | None        # (frames, 4)
 
 
+class Entry(NamedTuple):
+    """What is listed as one body: a body, or all parts of a beam."""
+
+    name: str
+    rigid: bool
+    colour: str
+    bodies: list[int]       # of `Scenery.bodies`
+    links: list[int]        # of `Scenery.links`
+
+
 class Scenery(NamedTuple):
     """All that is drawn of a model, in F frames."""
 
     t: NDArray              # (F,)
     states: NDArray         # (F,) numbers of the recorded states
     bodies: list[DrawnBody]
+    entries: list[Entry]
     nodes: dict[str, DrawnNode]
     links: list[Link]
     signs: list[Sign]
+    arrows: list[Arrow]
+    gravity: NDArray        # (3,)
+    planar: bool
     up: NDArray             # (3,) up on the screen
     towards: NDArray        # (3,) from the middle to the eye
     floor: NDArray          # (3,) normal of the grid
+    units: Units | None     # of the model
 
     @property
     def farthest(self) -> str:
@@ -61,13 +64,20 @@ class Scenery(NamedTuple):
             np.ptp(self.nodes[name].position, axis=0)))
 
 
-def scenery(result: Result, most: int, stressed: bool = False) -> Scenery:
+def scenery(result: Result, most: int, stressed: bool = False, reference: str | None = None
+            ) -> Scenery:
     """The scenery of a result in at most so many of its recorded states, stresses if wanted.
+
+    Parameters
+    ----------
+    reference : str, optional
+        Node that displacements of its body, and of those welded to it, are measured from, or
+        ``"frame"``, all from their floating frames; see `Welded.reference`.
 
     Raises
     ------
     InputError
-        Fewer than two recorded states, or no node that has a position.
+        Fewer than two recorded states, no node that has a position, or a reference of no body.
     """
     if len(result.rows) < 2:
         raise InputError(f"the result holds {len(result.rows)} recorded state"
@@ -79,25 +89,17 @@ def scenery(result: Result, most: int, stressed: bool = False) -> Scenery:
              if (drawn := _node(result, node, states)) is not None}
     if not nodes:
         raise InputError("no node of the model has a position: there is nothing to animate")
-    size = extent(nodes)
-    bodies = [body for part in model.bodies.values()
-              if (body := _flexible(result, part, states, size)) is not None]
+    bodies = _bodies(result, states, extent(nodes), reference)
     if stressed:
-        bodies = [body._replace(stress=_stress(result, body, states)) for body in bodies]
-    bodies += [_rigid(model, part, nodes) for part in model.rigid_bodies.values()
-               if part.kind.endswith("rigid_body")]
-    return Scenery(result.t[states], states, bodies, nodes,
-                   links(model, set(nodes), {body.name for body in bodies}),
-                   signs(model, set(nodes)), *_view(model, nodes))
-
-
-def vertices(body: DrawnBody, frame: int, scale: float = 1.0) -> NDArray:
-    """Vertices of a body in a frame, (vertices, 3), deformed `scale` times as much as it is."""
-    surface, amplitudes = body.surface, scale * body.amplitudes[frame]
-    points = surface.points + np.tensordot(amplitudes, surface.moves, 1)
-    turns = np.tensordot(amplitudes, surface.turns, 1)[surface.stations]
-    local = points[surface.stations] + Rotation.from_rotvec(turns).apply(surface.offsets)
-    return body.origin[frame] + Rotation.from_quat(body.rotation[frame]).apply(local)
+        bodies = [with_stress(result, body, states) for body in bodies]
+    bodies += [rigid(model, part, *nodes[part.places[0].node.name][1:])
+               for part in model.rigid_bodies.values() if part.kind.endswith("rigid_body")]
+    drawn = {body.name for body in bodies}
+    lines = links(model, set(nodes), drawn)
+    return Scenery(result.t[states], states, bodies, _entries(model, bodies, lines), nodes, lines,
+                   signs(model, set(nodes)), arrows(result, states, set(nodes), drawn),
+                   spatial(np.asarray(model.gravity_field)), model.planar,
+                   *_view(model, nodes), result.units)
 
 
 def thinned(count: int, most: int) -> NDArray:
@@ -114,103 +116,70 @@ def extent(nodes: dict[str, DrawnNode]) -> float:
     return float(size if size > 0 else path if path > 0 else 1.0)
 
 
+def seen_places(drawn: Scenery) -> NDArray:
+    """Places (n, 3) of what moves: nodes, and bodies in some frames."""
+    found = [node.position for node in drawn.nodes.values()]
+    frames = np.unique(np.linspace(0, len(drawn.t) - 1, LOOKED_AT[0]).astype(int))
+    return np.concatenate(found + [_stations(body, frames) for body in drawn.bodies])
+
+
+def _stations(body: DrawnBody, frames: NDArray) -> NDArray:
+    """Places of some points of a body without its deformation."""
+    from scipy.spatial.transform import Rotation
+
+    points = body.surface.points[::-(-len(body.surface.points) // LOOKED_AT[1])]
+    turned = Rotation.from_quat(body.rotation[frames]).as_matrix() @ points.T
+    return (body.origin[frames][:, None] + turned.transpose(0, 2, 1)).reshape(-1, 3)
+
+
+def _bodies(result: Result, states: NDArray, size: float, reference: str | None
+            ) -> list[DrawnBody]:
+    """Flexible bodies with a surface, measured from the reference where they have it."""
+    model, welded = result.model, Welded(result.model)
+    measured = {body.name for body in model.bodies.values()
+                if reference is not None and welded.has(body, reference)}
+    if reference is not None and not measured:
+        known = {node.name for body in model.bodies.values() for node in welded.candidates(body)}
+        raise InputError(f"displacements cannot be measured from {reference!r}: give a node of a "
+                         f"flexible body, {', '.join(sorted(known)) or 'which are none'}, or "
+                         "'frame', the floating frame of each body")
+    found = (flexible(result, body, states, size, welded,
+                      reference if body.name in measured else None)
+             for body in model.bodies.values())
+    return [body for body in found if body is not None]
+
+
+def _entries(model: Mechanism, bodies: list[DrawnBody], lines: list[Link]) -> list[Entry]:
+    owner = {part.name: beam.name for beam in model.beams for part in beam.parts}
+    found: dict[str, Entry] = {}
+    for kind, names in (("bodies", [body.name for body in bodies]),
+                        ("links", [link.body for link in lines])):
+        for k, part in enumerate(names):
+            if part:
+                name = owner.get(part, part)
+                colour = BODIES[len(found) % len(BODIES)]
+                entry = found.setdefault(name, Entry(name, name in model.rigid_bodies, colour,
+                                                     [], []))
+                getattr(entry, kind).append(k)
+    return list(found.values())
+
+
 def _node(result: Result, node: Node, states: NDArray) -> DrawnNode | None:
     if node.position is None:
         return None
     if node.name not in result.model.nodes:         # of the ground
-        return DrawnNode(node.name, np.tile(_spatial(node.point), (len(states), 1)), None)
+        return DrawnNode(node.name, np.tile(spatial(node.point), (len(states), 1)), None)
     known = result.numbering.triplets
     if id(node.position) not in known:
         return None
     rotated = node.rotation is not None and id(node.rotation) in known
-    return DrawnNode(node.name, _spatial(result[f"{node.name}.position"][states]),
+    return DrawnNode(node.name, spatial(result[f"{node.name}.position"][states]),
                      quaternions(result[f"{node.name}.rotation"][states]) if rotated else None)
-
-
-def quaternions(rotations: NDArray) -> NDArray:
-    """Quaternions (n, 4), the real part last, of matrices (n, 3, 3) or (n, 2, 2), or of angles."""
-    if rotations.ndim == 3 and rotations.shape[1] == 2:
-        rotations = np.arctan2(rotations[:, 1, 0], rotations[:, 0, 0])
-    if rotations.ndim == 1:
-        return np.stack([np.zeros_like(rotations), np.zeros_like(rotations),
-                         np.sin(rotations / 2), np.cos(rotations / 2)], axis=1)
-    return Rotation.from_matrix(rotations).as_quat()
-
-
-def _flexible(result: Result, body: Superelement, states: NDArray, size: float
-              ) -> DrawnBody | None:
-    """A superelement with cells; None for others, of which links are drawn."""
-    recovery = body.body.recovery
-    if recovery is None or not recovery.cells:
-        return None
-    motion = body_motion(result, body, states)
-    amplitudes = body.body.with_followers(motion.y)
-    surface = surface_of(recovery, amplitudes.shape[1])
-    if surface is None:
-        return None
-    held = body.alpha @ body.body.coordinates[list(body.body.position_nodes)]
-    half = np.linalg.norm(surface.offsets, axis=1).max()
-    larger = max(1.0, THINNEST * size / half) if half > 0 else 1.0
-    surface = surface._replace(points=surface.points - _spatial(held),
-                               offsets=larger * surface.offsets)
-    reach = np.abs(surface.moves).max(axis=(1, 2)) * np.abs(amplitudes).max(axis=0)
-    kept = reach > NEGLIGIBLE * size
-    surface = surface._replace(moves=surface.moves[kept], turns=surface.turns[kept])
-    return DrawnBody(body.name, surface, _spatial(motion.origin), quaternions(motion.rotation),
-                     amplitudes[:, kept])
-
-
-def _stress(result: Result, body: DrawnBody, states: NDArray) -> NDArray | None:
-    """Von Mises's stress at the stations, of fewer frames where there are many nodes."""
-    if not result.model.bodies[body.name].body.recovery.stress:
-        return None
-    field = result.field(body.name)
-    stresses = field.stresses(True)
-    stride = max(1, -(-len(states) * field.count // STRESSES))
-    chosen, surface = states[::stride], body.surface
-    found = np.zeros((len(chosen), len(surface.points)))
-    for first in range(0, len(chosen), stresses.states_at_once):
-        some = slice(first, first + stresses.states_at_once)
-        nodes = np.nan_to_num(von_mises(stresses.at_nodes(chosen[some])))
-        one, other = nodes[:, surface.nodes[:, 0]], nodes[:, surface.nodes[:, 1]]
-        found[some] = one + surface.shares * (other - one)
-    return found
-
-
-def _rigid(model: Mechanism, body: Element, nodes: dict[str, DrawnNode]) -> DrawnBody:
-    """A box with the mass and inertia of a rigid body, about its centre of mass; in a plane a bar.
-    """
-    constants = body.constants
-    node = nodes[body.places[0].node.name]
-    mass, centre = constants["mass"], _spatial(np.asarray(constants["mc"]) / constants["mass"])
-    if model.planar:
-        length = np.sqrt(12 * max(constants["J_zz"] / mass - centre @ centre, 0.0))
-        sides = length * np.array([1.0, SLENDER, SLENDER])
-        axes = _along(model, body.places[0].node, centre)
-    else:
-        J = np.array([[constants[f"J_{min(a, b)}{max(a, b)}"] for b in "xyz"] for a in "xyz"])
-        J = J / mass - (centre @ centre * np.eye(3) - np.outer(centre, centre))
-        moments, axes = np.linalg.eigh(J)
-        sides = np.sqrt(np.maximum(6 * (moments.sum() - 2 * moments), 0.0))
-    frames = len(node.position)
-    rotation = node.rotation if node.rotation is not None else np.tile([0, 0, 0, 1.0], (frames, 1))
-    return DrawnBody(body.name, box(sides, centre, axes), node.position, rotation,
-                     np.zeros((frames, 0)))
-
-
-def _along(model: Mechanism, node: Node, centre: NDArray) -> NDArray:
-    """Axes of a bar: from its centre to the farthest of the nodes it is linked to."""
-    places = [_spatial(c.node.point - node.point) - centre for c in model.connections
-              if c.to is node and c.kind == "position"] + [-centre]
-    way = max(places, key=np.linalg.norm)
-    size = np.linalg.norm(way)
-    c, s = way[:2] / size if size > 0 else (1.0, 0.0)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _view(model: Mechanism, nodes: dict[str, DrawnNode]) -> tuple[NDArray, NDArray, NDArray]:
     """Up on the screen, where to look from, and the grid's normal: that of motions in a plane."""
-    gravity = _spatial(np.asarray(model.gravity_field))
+    gravity = spatial(np.asarray(model.gravity_field))
     weight = np.linalg.norm(gravity)
     if model.planar:
         return np.eye(3)[1], np.eye(3)[2], np.eye(3)[2]
@@ -227,10 +196,3 @@ def _view(model: Mechanism, nodes: dict[str, DrawnNode]) -> tuple[NDArray, NDArr
     across = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
     across /= np.linalg.norm(across)
     return up, across + 0.6 * np.cross(up, across) + 0.55 * up, up
-
-
-def _spatial(vectors: NDArray) -> NDArray:
-    """Vectors with z = 0 where they are of a plane."""
-    if vectors.shape[-1] == 3:
-        return vectors
-    return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 1))], axis=-1)

@@ -19,6 +19,7 @@ class Link(NamedTuple):
 
     kind: str               # body, rod, distance or spring
     ends: tuple[str, str]
+    body: str = ""          # that it is drawn for
 
 
 class Sign(NamedTuple):
@@ -37,7 +38,7 @@ def links(model: Mechanism, nodes: set[str], drawn: set[str]) -> list[Link]:
     for body in model.bodies.values():
         if body.name not in drawn:
             held = [body.nodes[i] for i in body.body.position_nodes]
-            found += [Link("body", (held[i].name, held[j].name))
+            found += [Link("body", (held[i].name, held[j].name), body.name)
                       for i, j in neighbours(np.array([node.point for node in held]))]
     found += [Link("rod", (c.to.name, c.node.name)) for c in model.connections
               if c.kind == "position" and c.to and not np.array_equal(c.to.point, c.node.point)]

@@ -51,9 +51,8 @@ class Stresses:
         self._body, self._motion, self._gravity = body, motion, gravity
         self._recovery: Recovery = body.body.recovery
         if not self._recovery.stress:
-            raise InputError(f"body {body.name!r} knows no stresses: reduce an FE model that has "
-                             "stress=, such as solid_stress(coordinates, cells, youngs_modulus, "
-                             "poisson_ratio), or give its Recovery stress=, StressModes")
+            raise InputError(f"body {body.name!r} knows no stresses: "
+                             f"{body.body.lacks['stresses']}")
         own = self._recovery.stress
         self._solids = [one for one in own if isinstance(one, SolidStress)]
         self._beams = [one for one in own if isinstance(one, BeamStress)]
@@ -133,7 +132,7 @@ class Stresses:
         fibres = self.fibres_of_node(node)
         if not fibres.shape[1]:
             raise InputError(f"body {self._body.name!r} knows no stress at node "
-                             f"{self._recovery.number(node)}: no element with a known stress has "
+                             f"{self._recovery.called(node)}: no element with a known stress has "
                              "this node")
         worst = von_mises(fibres).argmax(axis=1)
         return fibres[np.arange(len(fibres)), worst]
@@ -151,7 +150,7 @@ class Stresses:
         rows = [row for values in self._at_ends(node, "section_forces") for row in values]
         if not rows:
             raise InputError(f"body {self._body.name!r} has no beam element at node "
-                             f"{self._recovery.number(node)}, so there are no section forces")
+                             f"{self._recovery.called(node)}, so there are no section forces")
         return np.stack([self._history(row) for row in rows], axis=1)
 
     def section_forces(self, states: NDArray) -> NDArray:

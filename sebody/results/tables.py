@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,15 +9,15 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.results.quantities import look_up, saved
+from sebody.results.naming import STRESS, component_names, look_up
+from sebody.results.quantities import saved
 from sebody.results.recording import Recording
 from sebody.results.units import unit
+from sebody.units import parsed_units
 
 if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
-
-STRESS = "xx", "yy", "zz", "yz", "zx", "xy"
 
 
 def to_pandas(recording: Recording, names: Iterable[str] | None) -> "DataFrame":
@@ -29,12 +28,12 @@ def to_pandas(recording: Recording, names: Iterable[str] | None) -> "DataFrame":
     InputError
         pandas is missing, or a name that nothing has.
     """
-    _check_installed("pandas")
+    check_installed("pandas")
     from pandas import DataFrame, Index
 
     columns = {}
     for name, values in _histories(recording, names):
-        labels = component_names(values, recording.model.dimension)
+        labels = component_names(values, name)
         for label, column in zip(labels, values.reshape(len(values), -1).T, strict=True):
             columns[f"{name}.{label}" if label else name] = column
     return DataFrame(columns, index=Index(recording.recorded("t")[:, 0], name="t"))
@@ -48,50 +47,53 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
     InputError
         xarray is missing, or a name that nothing has.
     """
-    _check_installed("xarray")
+    check_installed("xarray")
     from xarray import Dataset
 
+    units = parsed_units(recording.model.units)
     variables, coordinates = {}, {"t": recording.recorded("t")[:, 0]}
     for name, values in _histories(recording, names):
         sizes = values.shape[1:]
-        dimensions = _dimensions(sizes, recording.model.dimension)
+        dimensions = _dimensions(values, name, recording.model.dimension)
         for dimension, size in zip(dimensions, sizes, strict=True):
             if labels := {"axis": "xyz", "row": "xyz", "column": "xyz",
                           "component": STRESS}.get(dimension):
                 coordinates[dimension] = list(labels[:size])
-        variables[name] = (("t", *dimensions), values, {"units": unit(name)})
+        variables[name] = (("t", *dimensions), values, {"units": unit(name, units)})
     return Dataset(variables, coordinates)
 
 
-def component_names(values: NDArray, dimension: int) -> list[str]:
-    """Names of the components of a history (n, ...): x, y, z of vectors, else numbers."""
+def _dimensions(values: NDArray, name: str, dimension: int) -> list[str]:
     sizes = values.shape[1:]
-    if not sizes:
-        return [""]
-    kinds = _dimensions(sizes, dimension)
-    letters = [STRESS if kind == "component" else "xyz" if kind in ("axis", "row", "column")
-               else [str(k) for k in range(size)] for kind, size in zip(kinds, sizes, strict=True)]
-    return ["".join(parts) for parts in product(*(names[:size] for names, size in zip(
-        letters, sizes, strict=True)))]
-
-
-def _dimensions(sizes: tuple[int, ...], dimension: int) -> list[str]:
     if sizes == (3, 3):
         return ["row", "column"]
-    if sizes == (6,):
+    labels = tuple(component_names(values, name))
+    if labels == STRESS:
         return ["component"]
-    return ["axis" if size == dimension else f"number_{size}" for size in sizes]
+    if labels == tuple("xyz"[:dimension]):
+        return ["axis"]
+    return [f"number_{size}" for size in sizes]
 
 
 def _histories(recording: Recording, names: Iterable[str] | None
                ) -> Iterator[tuple[str, NDArray]]:
     wanted = saved(recording) if names is None else inputs.items(
         names, "names", "give a list of names of quantities")
+    if not wanted:
+        raise inputs.refusal("names", names, "name a quantity, or leave it out")
     for name in wanted:
+        inputs.name(name, "name of a quantity")
         if name != "t":
             yield name, np.asarray(look_up(recording, name))
 
 
-def _check_installed(package: str) -> None:
+def check_installed(package: str) -> None:
+    """Refuse tables without their package.
+
+    Raises
+    ------
+    InputError
+        It is missing.
+    """
     if find_spec(package) is None:
         raise InputError(f'tables need {package}: pip install "sebody[tables]"')

@@ -8,9 +8,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from sebody.errors import InputError
 from sebody.kernels.loader import user_directory
 from sebody.kernels.names import PREFIXES
+from sebody.spelling import unknown
 
 
 class Kernel(NamedTuple):
@@ -44,7 +44,7 @@ def builder(scene: str) -> Callable:
     """
     known = scenes()
     if scene not in known:
-        raise InputError(f"scene {scene!r} is unknown: there are {', '.join(known)}")
+        raise unknown("scene", scene, known)
     return import_module(f"sebody.scenes.{scene.replace('-', '_')}").build
 
 

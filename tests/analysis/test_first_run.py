@@ -94,14 +94,16 @@ def test_kernels_alone(run):
     assert run(KERNEL) == ("True False", "")
 
 
-def test_without_a_folder_to_write_to_nothing_is_compiled_twice(run):
+def test_without_a_folder_to_write_to_nothing_is_compiled_twice(run, tmp_path):
     """No process compiles what could not be handed on; the run does, and says that it will."""
     text = KERNEL.replace("first_run.WORTH_IT = 0.0",
-                          "first_run.WORTH_IT = 0.0\nfirst_run.store.folders = lambda source: []\n"
-                          "workers.call_all = None")
-    out, said = run(text)
+                          "first_run.WORTH_IT = 0.0\nworkers.call_all = None")
+    named = tmp_path / "file" / "below"
+    named.parent.write_text("")
+    out, said = run(text, cache=str(named))
     assert out == "True True"
-    assert said.count("at every start: there is no folder to keep the machine code in") == 1
+    assert said.count(" at every start: ") == 1
+    assert f"cannot be written; set NUMBA_CACHE_DIR, now {named}, to a folder that" in said
 
 
 def test_small_tasks_are_not_worth_processes(run):

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, Result, Simulation
 from sebody.analysis import campbell, equilibrium, frequency_response
 from sebody.fem import rectangle
+from sebody.results import frequency_pictures
 
 TURN = Rotation.from_rotvec((0.7, -1.1, 0.4)).as_matrix()
 NONE = [(0.0, 0.0), (1.0, 0.0)]        # a load that does not act at rest
@@ -135,6 +136,54 @@ def test_unequal_springs_that_rotate(planar):
         expected.insert(1, np.full(4, np.sqrt(250.0 / MASS)))
     assert_allclose(found.omega, np.stack(expected, axis=1), rtol=1e-9)
     assert_allclose(found.growth, 0.0, atol=1e-9)
+
+
+def drawn(monkeypatch, draw):
+    """The figure of a picture."""
+    found = []
+    monkeypatch.setattr(frequency_pictures, "write_picture",
+                        lambda figure, *_: found.append(figure))
+    draw()
+    return found[0]
+
+
+def test_a_campbell_diagram_has_a_legend(monkeypatch):
+    """A line of its own kind for each mode, the same in both parts, and multiples of the speed."""
+    pytest.importorskip("matplotlib")
+    speeds, count = np.linspace(0.0, 50.0, 6), 11
+    omega = 10.0 * np.arange(1, count + 1) + 0.5 * speeds[:, None]
+    figure = drawn(monkeypatch, lambda: frequency_pictures.save_campbell(
+        "a.png", speeds, omega, 0 * omega))
+    upper, lower = figure.axes
+    names = [text.get_text() for text in upper.get_legend().get_texts()]
+    assert names == [f"mode {k}" for k in range(1, count + 1)]
+
+    def look(line):
+        return line.get_color(), line.get_linestyle(), str(line._dash_pattern)
+    modes = upper.lines[:count]
+    assert len({look(line) for line in modes}) == count
+    assert [look(line) for line in lower.lines[:count]] == [look(line) for line in modes]
+    orders = upper.lines[count:]
+    assert [line.get_ydata()[-1] for line in orders] == [50.0, 100.0, 150.0]
+    assert {text.get_text() for text in upper.texts} == {"1 x speed", "2 x speed", "3 x speed"}
+    assert upper.get_ylabel() == "angular frequency [rad/time]"
+    assert lower.get_ylabel() == "real part [1/time]"
+
+
+def test_a_response_names_its_curves(monkeypatch):
+    """Amplitudes of components that are not zero; a quantity that does not respond says so."""
+    pytest.importorskip("matplotlib")
+    omega = np.linspace(1, 5, 30)
+    answers = {"tip.position": np.column_stack([1 / omega, 0 * omega, 2j / omega]),
+               "energy.strain": 0 * omega}
+    figure = drawn(monkeypatch, lambda: frequency_pictures.save_response(
+        "a.png", "push", omega, answers))
+    one, other, phase = figure.axes
+    assert [text.get_text() for text in one.get_legend().get_texts()] == ["tip.position.x",
+                                                                          "tip.position.z"]
+    assert one.get_title(loc="left") == "tip.position under 'push' of amplitude 1"
+    assert other.texts[0].get_text() == "does not respond" and other.get_legend() is None
+    assert [line.get_ydata()[0] for line in phase.lines] == [0.0, 90.0]
 
 
 def test_pictures_and_what_a_diagram_refuses(tmp_path):

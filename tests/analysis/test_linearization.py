@@ -328,7 +328,7 @@ def test_a_pendulum_on_a_turning_disc(axis):
     model.rigid_body("rod", hub, 0.3, J if planar else (J, J, J))
     model.attach("end", (a + L) * x, hub)
     model.point_mass("ball", "end", m)
-    model.revolute(hub, {"z": z, "y": y, "planar": 0.0}[axis])
+    model.revolute(hub, {"z": z, "y": y, "planar": 1.0}[axis])
     spin = W if planar else W * z
     result = equilibrium(model, 1, spin=spin)
     found = modes(result, spin)

@@ -5,12 +5,21 @@ import warnings
 import numpy as np
 import pytest
 
-from sebody import LimitWarning, Model, Simulation, generalized_alpha, simulate
+from sebody import (
+    LimitWarning,
+    Model,
+    Result,
+    Simulation,
+    Tolerance,
+    generalized_alpha,
+    simulate,
+)
 from sebody.analysis import equilibrium, linearize, quality
 from sebody.cli.entry import main
 from sebody.fem import Section, planar_beam
 from sebody.reduction import craig_bampton
-from sebody.results.energy_balance import energy_balance
+from sebody.results.audit import audit
+from sebody.results.energy_balance import LIMIT, energy_balance
 from sebody.scenes import four_bar, hinged_beam
 
 SLENDER = Section(area=1.0, inertia_y=1e-4, inertia_z=1e-4, torsion=1e-4, youngs_modulus=3e4,
@@ -78,7 +87,9 @@ def test_a_step_that_is_too_long_is_told_on_standard_error(capsys):
 def test_a_warning_is_given_once_and_kept():
     run = Simulation(hinged_beam.build().model, 0.3)
     found = said(lambda: (run.run_to(15.0).result(), run.run_to(30.0).result()))
-    assert len(found) == len(set(found)) and tuple(found) == run.result().warnings
+    kept = run.result().warnings
+    assert len(kept) == len(found) == len(set(found))
+    assert f"energy balance {run.result().energy_balance():.2g} of" in kept[0]  # of the whole run
 
 
 def test_constraints_that_do_not_hold():
@@ -108,6 +119,66 @@ def test_the_balance_is_relative_to_what_is_exchanged():
     # the strain that is always there is not exchanged
     assert energy_balance(none, 7.0 + t, none, 0.9 * t) == pytest.approx(0.1, rel=1e-9)
     assert energy_balance(t, none, 5.0 - 10.0 * t, -9.5 * t) == pytest.approx(0.05, rel=1e-9)
+
+
+def stopped(h, t_end, **options):
+    """A ball that falls on a stiff stop, which it leaves a few steps later."""
+    def stop(t, x, v, force, stiffness=4e5):
+        if x[1] < 0.0:
+            force[1] = -stiffness * x[1]
+
+    model = Model(planar=True)
+    model.point_mass("ball", model.node("ball", (0.0, 1.0), keeps="translation"), 1.0)
+    model.initial_velocity("ball", (0.0, -1.0))
+    model.user_force("stop", ["ball"], stop)
+    return simulate(model, h, t_end, **options)
+
+
+def balance_of(result):
+    """What the summary, the report and the warnings say of the energy."""
+    line, = (line for line in result.summary().splitlines() if line.startswith("energy balance"))
+    finding, = (one for one in audit(result) if one.what == "energy")
+    return float(line.split()[2]), finding.verdict, [
+        m for m in result.warnings if m.startswith("energy balance")]
+
+
+def test_there_is_one_judgement_of_the_energy_from_all_states(tmp_path):
+    """A few states of two thousand are bad; the ball has its energy again after them."""
+    found = []
+    messages = said(lambda: found.append(stopped(1e-3, 2.0)))
+    result, = found
+    lost = np.abs(sum(result[f"energy.{name}"] for name in ("kinetic", "strain", "potential"))
+                  - result["energy.external_work"] - 0.5) / 0.5
+    few = lost > LIMIT
+    assert 0 < few.sum() < 10 and lost[-1] < LIMIT      # LOOKED_AT states may miss them all
+    value, verdict, warned = balance_of(result)
+    assert value == pytest.approx(lost.max(), rel=0.1)      # of a ball that is a bit faster then
+    assert verdict == "bad" and len(warned) == 1 and warned == messages
+    assert balance_of(Result.load(result.save(tmp_path / "ball.npz"))) == (value, verdict, warned)
+    value, verdict, warned = balance_of(stopped(1e-5, 2.0, output_every=10))
+    assert value < LIMIT and verdict != "bad" and not warned
+
+
+def test_runs_within_a_tolerance_are_judged_too():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LimitWarning)
+        for allowed in (Tolerance(1e-1), Tolerance(1e-5)):
+            value, verdict, warned = balance_of(stopped(1e-2, 2.0, tolerance=allowed))
+            assert (value > LIMIT) == (verdict == "bad") == bool(warned)
+
+
+def test_a_balance_that_is_bad_at_first_may_be_good_at_the_end():
+    """Two steps of a load that has only begun; the next results do not repeat it."""
+    model = Model(planar=True)
+    model.point_mass("ball", model.node("ball", (0.0, 0.0), keeps="translation"), 2.0)
+    model.force("ball", (1.0, 0.0), lambda t: 2.0 * t)
+    run = Simulation(model, 0.1)
+    messages = said(lambda: (run.run_to(0.2).result(), run.result()))
+    assert len(messages) == 1 and messages[0].startswith("energy balance 0.2 of")
+    assert balance_of(run.result())[1:] == ("bad", messages)
+    found = []
+    assert said(lambda: found.append(run.run_to(4.0).result())) == []
+    assert balance_of(found[0])[1:] == ("good", [])
 
 
 def bent(force, **options):

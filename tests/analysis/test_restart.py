@@ -44,7 +44,7 @@ def test_wrong_files(tmp_path):
         resume(hinged_beam.build().model, tmp_path / "none.npz")
     for content in (b"not zip", b""):
         (tmp_path / "broken.npz").write_bytes(content)
-        with pytest.raises(InputError, match="is no restart file"):
+        with pytest.raises(InputError, match="is damaged or no restart file"):
             resume(hinged_beam.build().model, tmp_path / "broken.npz")
     with np.load(path) as file:
         arrays = {name: file[name] for name in file if name != "aux_old"}
@@ -53,7 +53,7 @@ def test_wrong_files(tmp_path):
                                          r"\(it differs in aux_old\): run the model again"):
         resume(hinged_beam.build().model, tmp_path / "older.npz")
     np.savez(tmp_path / "other.npz", t=np.zeros(3))
-    with pytest.raises(InputError, match="is no restart file"):
+    with pytest.raises(InputError, match="is damaged or no restart file"):
         resume(hinged_beam.build().model, tmp_path / "other.npz")
 
 

@@ -58,7 +58,7 @@ def beam(modes, inertia, planar):
 def without_stiffening(reduced):
     """The body without what follows from geometric stiffness."""
     i, n = reduced.invariants, len(reduced.mass)
-    return replace(reduced, invariants=replace(
+    return replace(reduced, recovery=None, invariants=replace(
         i, S1=i.S1[:, :n], g=i.g[:, :n], h=i.h[..., :n], K=i.K[:, :n, :n],
         J2=i.J2[:, :, :n, :n], Mbar=i.Mbar[:n, :n], Q=i.Q[:0], lam=i.lam[:0], E=i.E[:, :0],
         Ghat=i.Ghat[:0]))

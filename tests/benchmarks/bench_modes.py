@@ -1,6 +1,6 @@
 """How many modes `Accuracy` takes, and how true its estimate is, of twenty bodies.
 
-    python tests/benchmarks/bench_modes.py [--json] [--beam]
+    python tests/benchmarks/bench_modes.py [--json] [--beam | --frequencies]
 
 Beams, frames, plates and solids of random size, section, place and interfaces, and a beam with an
 element of 1e-4 of the stiffness, nearly two bodies (the clamped stiffness has a condition of 1e10;
@@ -205,6 +205,27 @@ def measure(kind: str, body: Body, up_to: float) -> dict:
             **{method: least_free(body, truth, method) for method in ("rubin", "macneal")}}
 
 
+def by_frequencies(kind: str, body: Body, up_to: float) -> dict:
+    """Modes by either criterion, what the free frequencies are off by, and Rubin's shapes."""
+    model, boundary = body
+    edge = boundary_of(model, boundary)
+    matrices, interior, static = clamped(model, edge)
+    truth, found = Truth(model, boundary, up_to), {}
+    for of in ("stiffness", "frequencies"):
+        found[of] = enough_modes(static, interior, matrices, Accuracy(TOLERANCE, up_to, of))
+    count, estimate = found["frequencies"]
+
+    def true(modes: int) -> float:
+        return truth.free_error(*static.with_vibrations(interior, modes).project(*matrices))
+    least = next((n for n in range(count - 1, -1, -1) if true(n) > TOLERANCE), -1) + 1
+    bare = replace(model, geometric_stiffness=None, mass_field=None)
+    rubin = reduce(bare, boundary, Accuracy(TOLERANCE, up_to), "rubin")
+    return {"body": kind, "dofs": matrices[0].shape[0], "up_to": up_to,
+            "stiffness": found["stiffness"][0], "modes": count, "least": least,
+            "estimate": estimate, "true": true(count), "rubin": rubin.modes,
+            "rubin_true": truth.free_error(rubin.stiffness, rubin.mass)}
+
+
 def beam_table(counts: Sequence[int] = (0, 1, 2, 3, 4, 8)) -> list[dict]:
     """Frequencies of a uniform planar beam, times sqrt(rho A L^4 / E I), by method and modes.
 
@@ -236,9 +257,14 @@ def main(arguments: Sequence[str] | None = None, bodies: int = BODIES) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--beam", action="store_true", help="frequencies of a beam by method")
+    parser.add_argument("--frequencies", action="store_true",
+                        help="modes by the criterion of free frequencies alone")
     chosen = parser.parse_args(arguments)
     if chosen.beam:
         _print_beam(beam_table(), chosen.json)
+        return
+    if chosen.frequencies:
+        _print_frequencies([by_frequencies(*case) for case in family(bodies)], chosen.json)
         return
     rows = [measure(*case) for case in family(bodies)]
     if chosen.json:
@@ -250,6 +276,18 @@ def main(arguments: Sequence[str] | None = None, bodies: int = BODIES) -> None:
     for row in rows:
         print("| {body} | {dofs} | {up_to:.4g} | {modes} | {least} | {estimate:.2e} | {true:.2e} | "
               "{effectivity:.3f} | {free:.1e} | {rubin} | {macneal} |".format(**row))
+
+
+def _print_frequencies(rows: list[dict], as_json: bool) -> None:
+    if as_json:
+        print(json.dumps(rows, indent=1))
+        return
+    print("| body | DOFs | band (Hz) | stiffness | frequencies | least | estimate | true | Rubin | "
+          "true |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    for row in rows:
+        print("| {body} | {dofs} | {up_to:.4g} | {stiffness} | {modes} | {least} | {estimate:.1e} "
+              "| {true:.1e} | {rubin} | {rubin_true:.1e} |".format(**row))
 
 
 def _print_beam(rows: list[dict], as_json: bool) -> None:

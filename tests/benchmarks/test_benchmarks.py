@@ -45,6 +45,15 @@ def test_steps_are_timed_beside_their_errors():
     assert 0.0 < error < 1e-3 and 0.0 < same < 1e-3
 
 
+def test_starts_are_timed_beside_that_of_libraries(monkeypatch, capsys):
+    bench = imported("bench_start")
+    monkeypatch.setattr(bench, "ROWS", {name: bench.ROWS[name] for name in
+                                        ("import numba, scipy", "sebody --help")})
+    bench.main(["--json", "--times", "1"])
+    found = json.loads(capsys.readouterr().out)
+    assert 0.0 < found["sebody --help"] < 4 * found["import numba, scipy"]
+
+
 def test_resultants_that_are_left_out_are_weighed(monkeypatch, capsys):
     bench = imported("bench_resultants")
     cases = bench.cases
@@ -114,6 +123,15 @@ def test_numbers_of_modes_are_compared_with_the_least(monkeypatch, capsys):
     for row in (beam, weak):
         assert row["true"] <= bench.TOLERANCE and row["free"] <= bench.TOLERANCE
         assert row["modes"] <= row["least"] + 2 and 0.5 < row["effectivity"] < 5
+
+
+def test_modes_by_frequencies_are_the_least(capsys):
+    bench = imported("bench_modes")
+    bench.main(["--json", "--frequencies"], bodies=3)
+    for row in json.loads(capsys.readouterr().out):
+        assert row["modes"] == row["least"] < row["stiffness"]
+        assert row["true"] <= bench.TOLERANCE and row["rubin_true"] < 1e-7
+        assert abs(row["estimate"] / row["true"] - 1) < 0.03
 
 
 def test_beams_are_compared_by_method():

@@ -1,9 +1,12 @@
 """From files of an FE program to a run, and what is said of bodies that cannot be used."""
 
 import json
+import re
 
+import numpy as np
 import pytest
 from malformed.file_cases import calculix, replaced, substructure
+from scipy.linalg import eigh
 
 from sebody.cli.entry import main
 from sebody.io import load_body
@@ -20,7 +23,7 @@ def test_import_inspect_run(tmp_path, capsys):
     assert said.endswith(f"body: {body}, see 'sebody inspect {body}'\n")
     assert main(["inspect", str(body), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["layout"]["names"] == ["left", "right"] and found["units"] == "m, kg, s"
+    assert found["layout"]["names"] == ["left", "right"] and found["units"] == "m kg N s"
     assert found["mass"] == pytest.approx(6.0)
     assert main(["run", "imported-link", "--set", f"body={body}", "--t-end", "0.05"]) == 0
     assert "four-bar with a coupler of 2 interfaces and 3 modes" in capsys.readouterr().out
@@ -51,3 +54,57 @@ def test_a_body_with_a_defect(tmp_path, capsys):
     assert main(["inspect", str(body), "--repair", "rigid-modes", "--save",
                  str(tmp_path / "good.npz")]) == 2
     assert "this is no loss of digits" in capsys.readouterr().err
+
+
+def test_modes_by_frequencies_and_damping_of_each(tmp_path, capsys):
+    path, body = calculix(tmp_path), tmp_path / "body.npz"
+    assert main(["import", str(path), *FACES, "--accuracy", "1e-2", "--up-to", "8", "--criterion",
+                 "frequencies", "--damping", "0.01,0.02,0.05", "--output", str(body)]) == 0
+    said = capsys.readouterr().out
+    assert "free frequencies within" in said and "damping: 0.01, 0.02, 0.05 of critical" in said
+    found = load_body(body)
+    squares, shapes = eigh(found.stiffness, found.mass)
+    omega, modes = np.sqrt(squares[6:]), shapes[:, 6:]
+    ratios = np.diag(modes.T @ found.damping @ modes) / (2 * omega)
+    np.testing.assert_allclose(ratios, [0.01, 0.02] + [0.05] * (len(omega) - 2), rtol=1e-6)
+    assert main(["inspect", str(body)]) == 0
+    said = capsys.readouterr().out
+    assert re.search(r"\naccuracy +free frequencies within 0.001 up to .*; dynamic stiffness of "
+                     r"the interfaces within 0.001 up to ", said)
+    assert main(["import", str(path), *FACES, "--accuracy", "1e-2", "--up-to", "8", "--method",
+                 "rubin", "--output", str(body)]) == 0
+    assert "free frequencies up to" in capsys.readouterr().out
+    for options, said in ((["--criterion", "stiffness"], "--criterion is that of --accuracy"),
+                          (["--damping", "0.1,x"], "--damping is '0.1,x': give a ratio"),
+                          (["--damping=-0.1"], "damping: ratio is -0.1"),
+                          (["--damping", ",".join(["0.1"] * 99)], "99 ratios, but the body has"),
+                          (["--units", "mm kg N"], "--units 'mm kg N' do not belong together"),
+                          (["--accuracy", "1e-2", "--up-to", "8", "--criterion", "mass"],
+                           "criterion of Accuracy 'mass' is unknown: use 'stiffness' or")):
+        assert main(["import", str(path), *FACES, *options, "--output", str(body)]) == 2
+        assert said in capsys.readouterr().err
+
+
+def test_what_is_missing_is_said_by_every_command(tmp_path, capsys):
+    """The block's deck has no section: import, inspect, run, page and report say so."""
+    body, result = tmp_path / "body.npz", tmp_path / "run.npz"
+    why = "elements (C3D8) are in no *SOLID SECTION"
+    assert main(["import", str(calculix(tmp_path)), *FACES, "--output", str(body)]) == 0
+    said = capsys.readouterr().out
+    assert "caution: no stresses or stiffening: 3 of 3 " + why in said
+    assert main(["inspect", str(body)]) == 0
+    said = capsys.readouterr().out
+    assert why in said and "remedy: correct the deck and import again" in said
+    assert said.endswith("verdict: the body can be used; mind what is said above\n")
+    assert main(["run", "imported-link", "--set", f"body={body}", "--t-end", "0.05", "--output",
+                 str(result)]) == 0
+    assert re.search(r"caution +body '\w+' has no .*: 3 of 3 " + re.escape(why),
+                     capsys.readouterr().out)
+    for command, name in (("animate", "page.html"), ("report", "report.html")):
+        assert main([command, str(result), "--output", str(tmp_path / name)]) == 0
+        assert why in (tmp_path / name).read_text()
+    assert main(["import", str(calculix(tmp_path)), *FACES, "--method", "macneal", "--modes", "1",
+                 "--output", str(body)]) == 0
+    assert "use Rubin's, method 'rubin'" in capsys.readouterr().out
+    assert main(["import", str(calculix(tmp_path)), *FACES, "--lean", "--output", str(body)]) == 0
+    assert "shapes and mesh of the FE model were left out" in capsys.readouterr().out

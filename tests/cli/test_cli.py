@@ -10,10 +10,10 @@ import pytest
 
 from sebody import errors, simulate
 from sebody.analysis import first_run, progress
-from sebody.cli import inputs, run, warm
+from sebody.cli import inputs, run
 from sebody.cli.entry import main
 from sebody.scenes import hinged_beam, planar_hinged_beam
-from sebody.studies import check
+from sebody.studies import catalogue, check
 from sebody.studies.catalogue import scenes
 from sebody.studies.check.states import CheckRow
 from sebody.studies.references import reference, tip_error
@@ -91,7 +91,9 @@ def test_run_stops_and_goes_on(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("arguments, message", [
-    (["triple-beam"], "scene 'triple-beam' is unknown: there are "),
+    (["triple-beam"], "scene 'triple-beam' is unknown: did you mean 'spherical-beam' or "),
+    (["pendulum"], "scene 'pendulum' is unknown: there are box, chain, "),
+    (["Four_Bar"], "scene 'Four_Bar' is unknown: did you mean 'four-bar'?"),
     (["hinged-beam", "--set", "length=3"], "scene 'hinged-beam' has no parameter 'length': there "
      "are frame=converged_mean, inertia=None, modes=4, elements=20"),
     (["hinged-beam", "--set", "modes"], "cannot read --set modes: write --set NAME=VALUE"),
@@ -192,7 +194,7 @@ def test_warm_compiles_kernels_and_loop(capsys, monkeypatch):
     def compile_missing(kernels, parts, report):
         asked.extend([*kernels, *parts])
         report("element_force", 0.4)
-    monkeypatch.setattr(warm, "kernel_files", lambda: ["element_force", "element_torque"])
+    monkeypatch.setattr(catalogue, "kernel_files", lambda: ["element_force", "element_torque"])
     monkeypatch.setattr(first_run, "compile_missing", compile_missing)
     assert main(["warm"]) == 0
     out = capsys.readouterr().out

@@ -110,7 +110,7 @@ def test_errors_in_a_file_are_named_with_their_line(folder, capsys, text, messag
 
 
 @pytest.mark.parametrize("arguments, message", [
-    (["none.py"], "scene file none.py cannot be read (No such file or directory): give the name "),
+    (["none.py"], "scene file none.py does not exist: give the name "),
     (["mine.py"], "scene 'mine.py' needs mass: give --set mass=VALUE"),
     (["mine.py", "--set", "size=1"], "scene 'mine.py' has no parameter 'size': there are mass, "
      "centre=(1.5, 0.0), gravity=9.81"),

@@ -128,7 +128,7 @@ print(*globals()[sys.argv[1]]() if sys.argv[1] != "column" else [padded(3)])
 def python(tree: Path, code: str, *arguments: str, **variables: str):
     """Run code on a copy, in a process that knows no other one."""
     environment = {**os.environ, "PYTHONPATH": str(tree), "SEBODY_KERNELS": "",
-                   "NUMBA_CACHE_DIR": "", **variables}
+                   "NUMBA_CACHE_DIR": "", "HOME": str(tree), **variables}
     return subprocess.run([sys.executable, "-c", ISOLATED + code, *arguments], cwd=tree,
                           env=environment, text=True, capture_output=True, timeout=200)
 

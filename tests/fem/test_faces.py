@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from sebody.fem import FEModel, hexahedral_block
-from sebody.fem.faces import face_rule, faces_within, normals, surface_mass
+from sebody.fem.face_functions import face_rule
+from sebody.fem.faces import faces_within, normals, surface_mass
 
 TURN = Rotation.from_rotvec([0.3, -0.8, 0.5]).as_matrix()
 SIZES = np.array([3.0, 2.0, 1.0])

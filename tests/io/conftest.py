@@ -34,3 +34,12 @@ def beam_import(beam_deck):
 def beam_body(beam_import):
     """The body alone."""
     return beam_import[0]
+
+
+@pytest.fixture(scope="session")
+def decks(tmp_path_factory):
+    """The folder of the decks that `tests/data/calculix/decks.py` makes; not to be changed."""
+    folder = tmp_path_factory.mktemp("decks")
+    with tarfile.open(DATA / "calculix/decks.tar.xz") as archive:
+        archive.extractall(folder, filter="data")
+    return folder / "decks"

@@ -76,3 +76,26 @@ def test_without_nodes(tmp_path):
     path.write_bytes((DATA / "beam.op4").read_bytes())
     with pytest.raises(InputError, match="alone.op4 has no nodes: put the bulk data with GRID"):
         import_body(path)
+
+
+def test_modes_without_their_scalar_points(tmp_path):
+    """Bulk data with GRID cards alone: the rows left over are modes, not those of another run."""
+    path = tmp_path / "beam.op4"
+    path.write_bytes((DATA / "beam.op4").read_bytes())
+    cards = (DATA / "beam.asm").read_text()
+    path.with_suffix(".bdf").write_text(cards[cards.index("GRID*"):cards.index("$ SPOINT")])
+    with pytest.raises(InputError, match="has 20 rows, 8 more than the nodes of .*beam.bdf, which "
+                                         "has no SPOINT cards: modes are scalar points"):
+        import_body(path)
+
+
+@pytest.mark.parametrize(("name", "kind", "said"), [
+    ("se.inp", "nastran-op4", r"se\.inp is a file of calculix, by its ending, and the format is "
+                              r"nastran-op4, which reads \.op4: leave the format out"),
+    ("beam.op4", "calculix", r"beam\.op4 is a file of nastran-op4, .* reads \.inp, \.sti"),
+    ("se.mtx", "sid", "is a file of matrix-market or abaqus-substructure or abaqus-matrices"),
+])
+def test_the_format_of_another_file(tmp_path, name, kind, said):
+    (tmp_path / name).write_text("*NODE\n1, 0, 0, 0\n")
+    with pytest.raises(InputError, match=said):
+        import_body(tmp_path / name, kind=kind)

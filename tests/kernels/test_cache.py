@@ -41,6 +41,13 @@ def program(tmp_path) -> Path:
     return path
 
 
+@pytest.fixture
+def without_named(tmp_path, monkeypatch):
+    """No folder is named, and the user's cache is a folder of the test."""
+    monkeypatch.setattr(config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "users"))
+
+
 def start(program: Path, number: str = "int", home: Path | None = None, cache: str = ""):
     """A process with a home of its own, and a folder for Numba if given."""
     environment = {**os.environ, "NUMBA_CACHE_DIR": cache, "PYTHONDONTWRITEBYTECODE": "1",
@@ -59,10 +66,10 @@ def run(*arguments, **options) -> tuple[str, str]:
 
 
 def kept(folder: Path) -> list[str]:
-    """Names in a folder of the cache, without the version of Python and the processor."""
+    """Files about the program in a folder, without the version of Python and the processor."""
     tag = re.escape(sys.implementation.cache_tag)
     return sorted(re.sub(rf"\.{tag}\.[0-9a-f]{{8}}\.", ".", path.name)
-                  for path in folder.rglob("*") if path.is_file())
+                  for path in folder.rglob("program.*") if path.is_file())
 
 
 def not_writable(path: Path) -> Path:
@@ -83,11 +90,39 @@ def test_beside_the_source(program):
     assert run(program) == ("7 1", "")
 
 
-def test_folder_of_the_environment_comes_first(program, tmp_path):
-    assert run(program, cache=str(tmp_path / "mine")) == ("7 0", "")
+def test_a_folder_that_is_named_is_the_only_one(program, tmp_path):
+    """Neither what is beside the source nor what the user's cache holds is read or written."""
+    home, beside = tmp_path / "home", program.parent / "__pycache__"
+    run(program)
+    beside.rename(tmp_path / "moved")
+    not_writable(beside)
+    assert run(program, home=home) == ("7 0", "")        # kept in the user's cache
+    beside.unlink()
+    (tmp_path / "moved").rename(beside)
+    before = {path: path.stat().st_mtime_ns for folder in (beside, home)
+              for path in folder.rglob("*")}
+    assert run(program, home=home, cache=str(tmp_path / "mine")) == ("7 0", "")
     assert kept(tmp_path / "mine") == FILES
-    assert not (program.parent / "__pycache__").exists()
-    assert run(program, cache=str(tmp_path / "mine")) == ("7 1", "")
+    assert run(program, home=home, cache=str(tmp_path / "mine")) == ("7 1", "")
+    assert run(program, "float", home=home, cache=str(tmp_path / "mine")) == ("7.0 0", "")
+    assert {path: path.stat().st_mtime_ns for folder in (beside, home)
+            for path in folder.rglob("*")} == before
+
+
+def test_a_named_folder_may_be_relative(program, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(program, cache="mine") == ("7 0", "")
+    assert kept(tmp_path / "mine") == FILES
+    assert run(program, cache="mine") == ("7 1", "")
+
+
+def test_a_named_folder_that_cannot_be_written_is_said(program, tmp_path):
+    run(program)
+    named = not_writable(tmp_path / "file") / "cache"
+    out, errors = run(program, cache=str(named))
+    assert out == "7 0"
+    assert errors.count("compiled code cannot be kept, every start compiles it again") == 1
+    assert f"cannot be written; set NUMBA_CACHE_DIR, now {named}, to a folder that can" in errors
 
 
 def test_the_users_cache_where_the_source_is_not_writable(program, tmp_path):
@@ -100,12 +135,21 @@ def test_the_users_cache_where_the_source_is_not_writable(program, tmp_path):
 def test_an_image_serves_users_who_can_write_nowhere(program, tmp_path):
     """Compiled once beside the source; then used without a place of one's own."""
     run(program)
-    nobody = {"home": not_writable(tmp_path / "nobody"), "cache": str(tmp_path / "nobody/cache")}
+    nobody = {"home": not_writable(tmp_path / "nobody")}
     before = {path: path.stat().st_mtime_ns for path in program.parent.rglob("*")}
     assert run(program, **nobody) == ("7 1", "")
     assert {path: path.stat().st_mtime_ns for path in program.parent.rglob("*")} == before
-    # and what the image lacks goes to the user's cache
-    assert run(program, "float", home=tmp_path / "other", cache=nobody["cache"])[0] == "7.0 0"
+
+
+def test_what_an_image_lacks_goes_to_the_users_cache(without_named, tmp_path, monkeypatch):
+    source = tmp_path / "code" / "module.py"
+    assert store.write(source, "name", "hash", b"of the image")
+    written = store._written
+    monkeypatch.setattr(store, "_written", lambda folder, *rest: folder.name != "__pycache__"
+                        and written(folder, *rest))
+    assert store.write(source, "name", "hash", b"of the user")
+    assert list(store.read(source, "name", "hash")) == [b"of the image", b"of the user"]
+    assert store.holds(source, "name", "hash")
 
 
 def test_without_any_folder_it_runs_and_says_so_once(program, tmp_path):
@@ -113,8 +157,8 @@ def test_without_any_folder_it_runs_and_says_so_once(program, tmp_path):
     out, errors = run(program, home=not_writable(tmp_path / "home"))
     assert out == "7 0"
     assert errors.count("compiled code cannot be kept") == 1
-    assert f"no folder of {beside}, {tmp_path / 'home'}" in errors
-    assert "can be written; set NUMBA_CACHE_DIR to one that can" in errors
+    assert f"again: {beside} and {tmp_path / 'home'}" in errors
+    assert "cannot be written; set NUMBA_CACHE_DIR to a folder that can be written" in errors
 
 
 DAMAGES = {"empty": lambda data: b"", "truncated": lambda data: data[:len(data) // 2],
@@ -174,14 +218,12 @@ def test_an_edited_function_is_compiled_again_a_comment_is_not(program):
     assert run(program) == ("13 0", "")
 
 
-def test_files_made_from_something_else_are_passed_over(tmp_path, monkeypatch):
-    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path / "first"))
+def test_files_made_from_something_else_are_passed_over(without_named, tmp_path):
     source = tmp_path / "code" / "module.py"
-    first, second, _ = store.folders(source)
-    assert second == source.parent / "__pycache__"
+    beside, users = store.folders(source)
     store.write(source, "name", "old", b"1")
-    (second).mkdir(parents=True)
-    (first / "name").rename(second / "name")
+    users.mkdir(parents=True)
+    (beside / "name").rename(users / "name")
     store.write(source, "name", "new", b"2")
     assert list(store.read(source, "name", "old")) == [b"1"]
     assert list(store.read(source, "name", "new")) == [b"2"]

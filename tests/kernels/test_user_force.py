@@ -87,7 +87,7 @@ def needs_a_file(t, x, v, force):
     (lambda m: m.user_force("u", [], spring_and_damper), "user force 'u' has no nodes"),
     (lambda m: m.user_force("u", ["m0"], needs_a_file), "user force 'u' cannot be compiled: write "
                                                         "function.t, x, v, force. with"),
-    (lambda m: m.user_force("u", ["m0"], lambda t: t), "user force 'u' cannot be compiled"),
+    (lambda m: m.user_force("u", ["m0"], lambda t: t), "user force 'u' has the arguments .t."),
     (lambda m: m.mode_force("beam", 0, 1.0), "superelement 'beam' is unknown: the model has none"),
 ])
 def test_wrong_forces(action, message):

@@ -201,7 +201,12 @@ FE_MODELS = {
             "keeps": have("keeps", None, 3, "full", ("full", "all"), ("full",), ("full", None)),
             "modes": are("modes", *NO_COUNT, -1)}),
     "damped": Right(BODY.damped, {"ratio": 0.1}, {
-        name: not_negative(f"damping: {name}") for name in ("ratio", "mass", "stiffness")}),
+        **{name: not_negative(f"damping: {name}") for name in ("mass", "stiffness")},
+        "ratio": [*(case for case in not_negative("damping: ratio") if np.ndim(case[0]) == 0),
+                  ([0.1, -0.1], "damping: a ratio is -0.1"),
+                  ([], "damping: 0 ratios, but the body"),
+                  (["0.1"], "damping: a ratio is '0.1'"), ([NAN], "damping: a ratio is nan"),
+                  ([0.1] * 99, "damping: 99 ratios, but the body has ")]}),
     "rotated": Right(BODY.rotated, {"rotation": np.eye(3)}, {
         "rotation": have("rotation", None, "abc", np.eye(2), 2 * np.eye(3), -np.eye(3),
                          NAN * np.eye(3), 1j * np.eye(3), 1.0)}),

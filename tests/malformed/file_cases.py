@@ -226,9 +226,9 @@ CALCULIX = {
     "a place that is none": Case("se.inp, line 2: 'x' is no number",
                                  replaced("se.inp", "10, 0.0", "10, x")),
     "an element cut": Case("is no label", replaced("se.inp", "E\n1, ", "E\n1, E, ")),
-    "a rigid body of nothing": Case("*RIGID BODY of node set FACE, which there is not", lines_of(
+    "a rigid body of nothing": Case("'FACE' is no label and no set of nodes", lines_of(
         "se.inp", lambda ls: [*ls, "*RIGID BODY, NSET=FACE, REF NODE=10"])),
-    "a rigid body without node": Case("*RIGID BODY has no REFNODE", lines_of(
+    "a rigid body without node": Case("*RIGID BODY has no REF NODE", lines_of(
         "se.inp", lambda ls: [*ls, "*RIGID BODY, NSET=LEFT"])),
     "a missing include": Case("mesh.inp does not exist", lines_of(
         "se.inp", lambda ls: [*ls, "*INCLUDE, INPUT=mesh.inp"])),
@@ -254,7 +254,7 @@ CALCULIX = {
         "interfaces": {"a": "rbe4:LEFT"}}),
     "a point that is none": Case("interface 'a' is 'rbe2:LEFT@0,zero,0'", options={
         "interfaces": {"a": "rbe2:LEFT@0,zero,0"}}),
-    "a point of a plane": Case("point of a rigid face is", options={
+    "a point of a plane": Case("point of the rigid face 'a' is", options={
         "interfaces": {"a": "rbe2:LEFT@0,0"}}),
     "rotations of a solid": Case("keeps 'full', but the model's nodes have no rotations", options={
         "interfaces": {"a": "10:full", "b": 20, "c": 30}}),

@@ -70,7 +70,8 @@ def names(default: str) -> list:
 
 def histories() -> list:
     """Wrong histories of a load."""
-    return [*have("load history has shape", [1.0, 2.0], [(0.0, 1.0, 2.0)], 3.0),
+    return [*have("load history has shape", [1.0, 2.0], [(0.0, 1.0, 2.0)]),
+            *are("load history", NAN, INF, True, 1j, also=": give "),
             *have("load history", "abc", [("0", "1")], [(0, 1), (1,)], [(0.0, 1j)], {}, []),
             *have("load history contains NaN or infinite", [(0.0, NAN)], [(0.0, INF)]),
             *have("times of a load history must increase", [(1.0, 0.0), (0.0, 1.0)])]
@@ -212,7 +213,8 @@ LOADS = {
             "name": are("name of a user force", *NO_NAME),
             "nodes": [*are("nodes of user force 'new'", None, 3, "a"), ([], "has no nodes"),
                       *have("node", [None], ["far"], ["turn"])],
-            "function": have("user force 'new' cannot be compiled", None, 3, "sin", lambda t: t)}),
+            "function": [*are("user force 'new'", None, 3, "sin", also=": give a function of (t,"),
+                         *have("user force 'new' has the arguments (t): give", lambda t: t)]}),
     "gravity": Right(Model.gravity, {"field": Z}, {"field": vectors("gravity", 3)}),
     "spring": Right(Model.spring, {"node": "a", "to": "b", "stiffness": 1.0}, {
         "node": nodes(lacks_place),

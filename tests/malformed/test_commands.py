@@ -1,18 +1,29 @@
 """Commands refuse what they cannot use: one line on standard error, exit code 2, no file."""
 
+import os
+
 import pytest
 
 from sebody.cli.entry import main
 
 BEAM, BODY = ("run", "hinged-beam"), ("run", "torque-free-body")
 LONG = "x" * 300
+FAILS = """from sebody.scenes.planar_hinged_beam import build as right
+
+
+def build(n=1):
+    if n > 1:
+        raise ValueError("too many")
+    return right(modes=0, elements=1)
+"""
 
 REFUSED = [
     ((), "COMMAND"), (("fly",), "invalid choice: 'fly'"), (("--fast",), "COMMAND"),
     (("run",), "required: SCENE"), (("run", ""), "scene '' is unknown"),
     (("run", "beam"), "scene 'beam' is unknown: there are"),
-    (("run", "../hinged_beam"), "is unknown: there are"), (("run", "1"), "scene '1' is unknown"),
-    (("run", "none.py"), "none.py cannot be read"), (("run", "folder.py"), "folder.py"),
+    (("run", "../hinged_beam"), "is unknown: did you mean 'hinged-beam'"),
+    (("run", "1"), "scene '1' is unknown"),
+    (("run", "none.py"), "none.py does not exist"), (("run", "folder.py"), "folder.py"),
     (("run", "broken.py"), "broken.py"), (("run", "empty.py"), "empty.py"),
     (("run", "four-bar", "chain"), "unrecognized arguments: chain"),
     ((*BODY, "--fast"), "unrecognized arguments: --fast"),
@@ -47,7 +58,7 @@ REFUSED = [
     ((*BODY, "--resume", "a.npz", "--step", "0.1"), "leave out --step"),
     ((*BODY, "--resume", "none.npz"), "restart file none.npz does not exist"),
     ((*BODY, "--resume", "folder.npz"), "folder.npz is a folder"),
-    ((*BODY, "--resume", "broken.npz"), "is no restart file"),
+    ((*BODY, "--resume", "broken.npz"), "is damaged or no restart file"),
     ((*BODY, "--resume", "broken.txt"), "must end in .npz"),
     ((*BODY, "--output", "a.npz", "--save", "a.npz"), "are the same file, a.npz"),
     *(((*BODY, option, path), said) for option, end in (
@@ -79,7 +90,7 @@ REFUSED = [
     (("run", "torque-free-body", "--set", "spin=(1, 'a', 0)"), "initial rate of centre.rotation"),
     (("run", "spherical-beam-strong", "--set", "F0=nan"), "parameter F0 is 'nan'"),
     (("run", "spherical-beam-strong", "--set", "F0=1e999"), "force on tip.position is"),
-    (("list", "beam"), "scene 'beam' is unknown"), (("list", "none.py"), "none.py cannot be read"),
+    (("list", "beam"), "scene 'beam' is unknown"), (("list", "none.py"), "none.py does not exist"),
     (("list", "box", "chain"), "unrecognized arguments: chain"),
     (("list", "--all"), "unrecognized arguments: --all"),
     (("list", "broken.npz"), "broken.npz is damaged or no results file"),
@@ -102,6 +113,71 @@ REFUSED = [
         (("tip.position", "--tolerance", "0"), "tolerance is 0.0"),
         (("tip.position", "--budget", "-1"), "budget is -1.0"),
         (("tip.position", "--step", "0.03"), "t_end is 0.1, 3.33333 steps of 0.03"))),
+    *((("sweep", "hinged-beam", "--t-end", "0.1", *given), said) for given, said in (
+        (("--vary", "modes=0:1e18"), "modes=0:1e18 are 1e+18 values: give at most 100000"),
+        (("--vary", "modes=0:1e300:1e-300"), "are inf values: give at most"),
+        (("--sample", "beam.mass=normal(1,0.1)", "--runs", "1000000000000"),
+         "that are 1e+12 runs: a sweep has at most 10000000"),
+        (("--vary", "modes=0:99999", "--vary", "elements=1:99999"), "that are 1e+10 runs"),
+        (("--sobol", "1099511627776", "--sample", "beam.mass=uniform(1,2)", "--sample",
+          "beam.stiffness=uniform(1,2)"), "that are 4.4e+12 runs"),
+        (("--vary", "step=0.01,0.01"), "step has the value 0.01 twice: give it once"),
+        (("--vary", "step=0.01", "--vary", "step=0.02"), "--vary step is given twice"),
+        (("--sample", "beam.mass=uniform(1,2)", "--sample", "beam.mass=uniform(1,3)", "--runs",
+          "2"), "--sample beam.mass is given twice"),
+        (("--vary", "modes=0,999"), "build(modes=999): modes is 999, but the clamped body has"),
+        (("--vary", "modes=0,two"), "build(modes='two'): modes is 'two'"),
+        (("--vary", "modes=[]"), "a value of modes is []: give a number or a text"),
+        (("--vary", "modes={[]:1}"), "a range is LOW:HIGH"),
+        (("--vary", "modes=0,1", "--workers", "0"), "workers is 0: give a whole number >= 1"),
+        (("--vary", "modes=0,1", "--workers", "-2"), "workers is -2: give a whole number >= 1"),
+        (("--vary", "modes=0,1", "--workers", "99999"), "workers is 99999: give a whole number"),
+        (("--vary", "modes=0,1", "--threads", "0"), "threads is 0: give a whole number >= 1"),
+        (("--vary", "modes=0,1", "--cluster", "a:1", "--workers", "2"), "leave out --workers"),
+        (("--vary", "modes=1:0"), "with HIGH above LOW"),
+        (("--vary", "modes=0:nan"), "with HIGH above LOW"),
+        (("--vary", "colour=1,2"), "parameter 'colour' is unknown"),
+        (("--vary", "rho=0.5,7"), "rho is 7.0: use a spectral radius"),
+        (("--vary", "modes=0,1", "--seed", "-1"), "seed is -1"),
+        (("--vary", "modes=0,1", "--keep", "final(t"), "cannot read --keep final(t"),
+        (("--vary", "modes=0,1", "--keep", "at_time(tip.position,9)"), "and the runs end at 0.1"),
+        (("--sample", "gravity=cauchy(1,1)", "--runs", "2"), "distribution 'cauchy' is unknown"),
+        (("--sample", "beam.mass=uniform(1,[])", "--runs", "2"), "high is []"),
+        (("--vary", "modes=0,1", "--output", "pipe"), "pipe.npz is a device"))),
+    (("sweep", "hinged-beam", "--t-end", "1e300", "--vary", "modes=0,1"),
+     "t_end is 1e+300: that is 1e+302 steps of 0.01"),
+    (("sweep", "hinged-beam", "--t-end", "1e308", "--step", "1e-9", "--vary", "modes=0,1"),
+     "that is inf steps of 1e-09"),
+    *((("sweep", file, "--vary", "n=1,2"), said) for file, said in (
+        ("fails.py", "build(n=2) raised ValueError: too many; correct the scene"),
+        ("nothing.py", "return Scene(name"), ("loops.py", "RecursionError: maximum recursion"),
+        ("exits.py", "SystemExit: 3"), ("pipe.py", "is a pipe or a device"))),
+    *((("run", file), said) for file, said in (
+        ("nothing.py", "return Scene(name"), ("loops.py", "RecursionError: maximum recursion"),
+        ("exits.py", "SystemExit: 3"), ("pipe.py", "is a pipe or a device"))),
+    *(((*BEAM, *given), said) for given, said in (
+        (("--step", "1e6"), "cannot run to t_end = 30 from t = 0: the step is 1e+06"),
+        (("--step", "1e9"), "cannot run to t_end = 30 from t = 0: the step is 1e+09"),
+        (("--every", "1000000000000000000000"), "output_every is 1000000000000000000000"),
+        (("--t-end", "1e9"), "a record of 100000000000 states does not fit into memory: keep"),
+        (("--resume", "pipe.npz"), "pipe.npz is a pipe or a device: give the path of a file"),
+        (("--set", "modes={[]:1}"), "parameter modes is '{[]:1}': give a value of type int"),
+        (("--set", "modes=" + "[" * 5000), "give a value of type int"),
+        (("--set", "modes=1000000000000000000"), "modes is 1000000000000000000, but the clamped"),
+        (("--set", "elements=1000000000000"), "does not fit into memory: give fewer elements"),
+        (("--set", "elements=100000000000", "--set", "bodies=100000000000"),
+         "of 100000000000 bodies does not fit into memory: give fewer bodies"))),
+    (("run", "chain", "--set", "links=1000000000"), "links is 1000000000: give a whole number"),
+    (("run", "four-bar", "--set", "loops=1000000000"), "loops is 1000000000: give a whole"),
+    *(((command, "pipe.npz", *given), "pipe.npz is a pipe or a device: give the path of a file")
+      for command, given in (("inspect", ()), ("list", ()), ("plot", ("--output", "a.png")),
+                             ("report", ("--output", "a.html")), ("animate", ("--output", "a.gif")),
+                             ("import", ("--interface", "a=1", "--output", "b.npz")))),
+    *((("import", "fails.py", "--interface", "a=1", "--output", "b.npz", "--format", kind), "fails")
+      for kind in ("calculix", "sid", "matrix-market", "abaqus-matrices", "abaqus-substructure")),
+    (("advise", "hinged-beam", "--t-end", "0.1", "--quantity", "t"), "quantity 't' is the time"),
+    (("advise", "hinged-beam", "--t-end", "1e300", "--quantity", "tip.position"),
+     "steps of 0.0025, give an earlier time or a longer step"),
     (("check", "nothing"), "kernel 'nothing' is unknown: there are"),
     (("check", ""), "kernel '' is unknown"), (("check", "--all"), "unrecognized arguments"),
     (("bench", "beam"), "there is no benchmark of scene 'beam': use"),
@@ -131,6 +207,12 @@ def folder(tmp_path_factory):
         (found / name).write_text("not zip")
     (found / "broken.py").write_text("def build(:\n")
     (found / "empty.py").write_text("build = 3\n")
+    (found / "nothing.py").write_text("def build(n=1):\n    return None\n")
+    (found / "loops.py").write_text("def build(n=1):\n    return build(n)\n")
+    (found / "exits.py").write_text("import sys\ndef build(n=1):\n    sys.exit(3)\n")
+    (found / "fails.py").write_text(FAILS)
+    for name in ("pipe.npz", "pipe.py"):
+        os.mkfifo(found / name)
     return found
 
 

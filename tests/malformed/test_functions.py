@@ -161,7 +161,8 @@ def opens(t, x, v, force):
 @pytest.mark.parametrize("function", [writes_to_places, writes_to_rates, opens, lambda t: 1.0])
 def test_what_is_no_force_is_refused_at_once(function):
     model = ball()
-    with pytest.raises(InputError, match="user force 'own' cannot be compiled: write function"):
+    with pytest.raises(InputError, match="user force 'own' (cannot be compiled: write function|"
+                                         r"has the arguments \(t\): give a function of )"):
         user(function)(model)
     assert not model.loads and not model.own_names - {"body"}
 
@@ -197,6 +198,7 @@ def test_a_pulse_between_steps_is_said():
             warnings.simplefilter("error", LimitWarning)
             simulate(ball(force), 0.005, 0.5)               # steps that resolve it
             simulate(ball(force), 0.1, 0.2)                 # it comes later
+            warnings.filterwarnings("ignore", "energy balance", LimitWarning)
             simulate(ball(force), 0.1, 0.5, tolerance=Tolerance(1e-3))
 
 

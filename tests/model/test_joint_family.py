@@ -285,6 +285,6 @@ def test_constraints_that_contradict_each_other():
     model.revolute(base)
     model.drive_angle(base, DRIVE)
     model.drive_angle(base, (lambda t: t, lambda t: 1.0, lambda t: 0.0))
-    with pytest.raises(InputError, match=r"violates multiplier 0 of angle at base( \(2\))? by "
+    with pytest.raises(InputError, match=r"violates 'angle at base( \(2\))?' by "
                                          ".*no velocities fit this joint|contradict"):
         Simulation(model, 1e-3)

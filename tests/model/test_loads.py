@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 from sebody import InputError, Model, Simulation, simulate
 from sebody.engine import evaluate
 from sebody.model.histories import History, history, with_corners
+from sebody.model.motions import motion
 from sebody.scenes.hinged_beam import build
 
 TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]
@@ -29,12 +30,15 @@ def two_nodes():
 
 
 @pytest.mark.parametrize("table, message", [
-    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must increase: sort the rows "
-                                           "and merge equal times"),
-    ([(0.0, 1.0), (0.0, 2.0)], "times of a load history must increase"),
+    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must not decrease, after t = 2 "
+                                           "they do: sort the rows"),
+    ([(0.0, 1.0), (3.0, 2.0), (3.0, 1.0), (3.0, 0.0)],
+     "load history has more than two rows at t = 3: give the value before a jump and the value "
+     "after it"),
     ([1.0, 2.0], r"load history has shape \(2,\): give rows \(t, value\)"),
     ([(0.0, 1.0, 2.0)], r"load history has shape \(1, 3\): give rows"),
-    ([], "load history has shape .*: give rows"), (3.0, r"load history has shape \(\): give rows"),
+    ([], "load history has shape .*: give rows"),
+    (np.nan, "load history is nan: give a finite number"),
     ([(0.0, np.nan)], "load history contains NaN or infinite entries: give finite numbers"),
     ([(np.inf, 1.0)], "NaN or infinite entries"),
 ])
@@ -51,7 +55,7 @@ def returns_nothing(t):
     return None
 
 
-@pytest.mark.parametrize("function", [opens_a_file, returns_nothing, lambda t: 1j * t, np.sin])
+@pytest.mark.parametrize("function", [opens_a_file, returns_nothing, lambda t: 1j * t])
 def test_function_that_cannot_be_compiled(function):
     with pytest.raises(InputError, match=f"load history '{function.__name__}' cannot be compiled: "
                                          "use only arithmetic, math and numpy in it"):
@@ -73,7 +77,8 @@ def test_histories_to_be_refused(source):
     (lambda m: m.torque("base", (0, 0)), "torque on base.rotation is .*give 3 finite"),
     (lambda m: m.torque("base", (0, np.nan, 0)), "torque on base.rotation is .*give 3 finite"),
     (lambda m: m.force("far", (0, 0, 1)), "node 'far' is unknown: the model has base, tip"),
-    (lambda m: m.force("tip", (0, 0, 1), [(0.0, 1.0), (0.0, 2.0)]), "must increase: sort the rows"),
+    (lambda m: m.force("tip", (0, 0, 1), [(0.5, 1.0), (0.0, 2.0)]),
+     "must not decrease, after t = 0.5"),
 ])
 def test_wrong_loads(action, message):
     model = two_nodes()
@@ -119,6 +124,36 @@ def test_amplitudes_in_the_loop():
         assert of_table[0] == pytest.approx(expected, abs=1e-9)
         assert of_function == pytest.approx([ramps(t), 0.0, 0.0])
         assert (constant[0], single[0]) == (1.0, 7.0)
+
+
+def test_a_constant_load_is_a_number():
+    """Of every kind of load, of every kind of number, in any phase: as by a table of one row."""
+    model = build().model
+    for value in (5.0, -3, np.float32(0.25), np.int64(2), 0):
+        model.force("tip", (0, 0, 1), value)
+        model.torque("base", (0, 0, 1), value, follower=True)
+        model.mode_force("beam", 0, 2.0, value)
+    run = Simulation(model, 0.01)
+    for t in (-1.0, 0.0, 7.0):
+        values = amplitudes(run, t)[1:]
+        assert values[:, 0].tolist() == list(np.repeat([5.0, -3.0, 0.25, 2.0, 0.0], 3))
+        assert not values[:, 1:].any()
+
+    def swung(amplitude):
+        model = Model(planar=True)
+        model.rigid_body("arm", model.node("end", (1.0, 0.0)), 2.0, 0.1)
+        model.torque("end", 1.0, amplitude)
+        return simulate(model, 0.01, 1.0)["end.rotation"]
+    assert np.array_equal(swung(0.5), swung([(0.0, 0.5)]))
+    assert swung(0.5)[-1] == pytest.approx(0.5 * 0.5 / 0.1, rel=1e-9)     # M t^2 / 2 J
+
+
+def test_a_drive_that_does_not_move_is_refused():
+    model = Model(planar=True)
+    model.rigid_body("arm", model.node("end", (1.0, 0.0)), 2.0, 0.1)
+    with pytest.raises(InputError, match="motion of a drive is 0.5, always the same: give a table, "
+                                         "a function of time or a ready profile, or fix the node"):
+        model.move("end", 1.0, 0.5, what="rotation")
 
 
 def wave(t):
@@ -218,3 +253,46 @@ def test_a_function_keeps_the_corners_it_is_given():
     assert Simulation(model, 0.01).system.corners.tolist() == [0.05, 0.15]
     with pytest.raises(InputError, match="corners are .*: give a list of times"):
         with_corners(ramps, [[0.05]])
+
+
+def test_further_arguments_keep_their_defaults():
+    """As users bind the variable of a loop: ``lambda t, F=F: ...``; arrays and helpers, too."""
+    powers = np.array([1.0, 3.0])
+
+    def helped(t, scale=2.0, powers=powers):
+        return scale * raised(t, powers[1])
+
+    def raised(x, k):
+        return x**k
+    made = [history(lambda t, F=F, w=0.5: F * np.cos(w * t)) for F in (1.0, -2.5, 4.0)]
+    times = np.array([0.0, 0.7, 2.0])
+    for F, one in zip((1.0, -2.5, 4.0), made, strict=True):
+        assert one.values(times) == pytest.approx(F * np.cos(0.5 * times), rel=1e-15)
+    assert history(helped).values(times) == pytest.approx(2.0 * times**3, rel=1e-15)
+    driven = motion(lambda t, A=0.3: A * np.sin(2.0 * t))
+    assert driven.at(0.4) == pytest.approx(0.3 * np.array(
+        [np.sin(0.8), 2.0 * np.cos(0.8), -4.0 * np.sin(0.8)]), rel=1e-14)
+    cornered = motion(with_corners(lambda t, A=0.3: A * t**3, [1.0]))
+    assert cornered.at(0.5) == pytest.approx([0.0375, 0.225, 0.9], rel=1e-14)
+
+
+def test_a_force_keeps_the_defaults_of_further_arguments():
+    rest = np.array([0.1, -0.2, 0.3])
+
+    def pulls(t, x, v, force, k=7.0, rest=rest):
+        for i in range(3):
+            force[i] = k * (rest[i] - x[i])
+    model = Model()
+    model.point_mass("body", model.node("body", (1.0, 2.0, 3.0), "translation"), 2.0)
+    model.user_force("pull", ["body"], pulls)
+    start = Simulation(model, 0.01).result()["body.acceleration"][0]
+    assert start == pytest.approx(3.5 * np.array([-0.9, -2.2, -2.7]), rel=1e-14)
+
+
+@pytest.mark.parametrize("function, arguments", [
+    (lambda t, u: t, "t, u"), (lambda t, u, F=1.0: t, "t, u, F")])
+def test_further_arguments_without_a_value_are_named(function, arguments):
+    with pytest.raises(InputError, match=f"load history '<lambda>' has the arguments "
+                                         rf"\({arguments}\): give a function of \(t\); further "
+                                         "arguments need defaults"):
+        history(function)

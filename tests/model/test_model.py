@@ -60,7 +60,7 @@ def place(nodes=("base", "tip"), body=None, **options):
 
 @pytest.mark.parametrize("action, message", [
     (place(["base"]), "superelement 'b' has 2 boundary nodes and 1 were given: give one node for"),
-    (place(["base", "top"]), "node 'top' is unknown: the model has base, tip"),
+    (place(["base", "top"]), "node 'top' is unknown: did you mean 'tip'?"),
     (place(["tip", "base"]), "superelement 'b': the nodes do not lie where the body's boundary "
                              "nodes are .off by .*: pass rotation=, the matrix that turns FE"),
     (place(["base", "base"]), "the nodes do not lie where the body's boundary nodes are"),

@@ -123,7 +123,7 @@ def test_a_loop_of_links_keeps_its_equations():
 
 def test_what_cannot_be_shared_is_said():
     model = chain("revolute", False)
-    with pytest.raises(InputError, match="joint 'hinge' is unknown: the model has weld at end, j"):
+    with pytest.raises(InputError, match="joint 'hinge' is unknown: the model has 'weld at end'"):
         shared(model, "hinge")
     with pytest.raises(InputError, match="joint 'joint' has no equations that shared"):
         shared(model, "joint")

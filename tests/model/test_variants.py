@@ -257,7 +257,7 @@ def slender(bodies: int, elements: int = 8, planar: bool = False) -> Model:
     model.beam("arm", (tip, other), SECTION, 4, 2, **up)
     model.point_mass("weight", other, 0.7)
     model.rigid_velocity(np.zeros(d), 2.0 if planar else TURN @ (0, 0, 2.0), about=base.point)
-    model.revolute(base, TURN @ (0, 0, 1))
+    model.revolute(base, (0, 0, 1) if planar else TURN @ (0, 0, 1))
     model.gravity((TURN @ (0.0, -9.0, 3.0))[:d])
     return model
 
@@ -350,3 +350,16 @@ def test_what_a_beam_that_is_divided_must_not_lose_is_said():
         divide(model, "rod", 4)
     with pytest.raises(InputError, match="8 elements cannot be divided among 3 bodies"):
         divide(slender(2), "rod", 3)
+
+
+def test_modes_that_stay_keep_their_initial_velocities(original):
+    """The energy of the start is that of the modes that are kept, and of the rest."""
+    made = copied(original)
+    name = next(n for n, body in made.bodies.items() if body.body.modes > 1)
+    body = made.bodies[name]
+    rates = np.linspace(1.0, 2.0, body.body.modes)
+    body.mode_rates = rates.copy()
+    found = keep_modes(made, name, 1).model.bodies[name]
+    assert np.array_equal(found.mode_rates, rates[:1])
+    other = with_options(made, name, stiffening=False).model.bodies[name]
+    assert np.array_equal(other.mode_rates, rates)

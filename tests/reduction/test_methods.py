@@ -230,10 +230,10 @@ def test_summaries_say_what_was_done():
         assert words in text, (words, text)
     labelled = replace(BEAM, labels=[1 + n for n in range(61)], geometric_stiffness=None)
     text = reduce(labelled, ENDS, Accuracy(1e-2, 3.0)).summary()
-    assert "boundary node 1 is FE node 61" in text and "no stiffening by stresses" in text
+    assert "boundary node 1 is FE node 61" in text and "no stiffening: the FE model has no" in text
     assert "dynamic stiffness of the interface within 0.00" in text and "frequency 3\n" in text
     bare = FEModel(BEAM.stiffness, BEAM.mass, BEAM.coordinates, BEAM.node_dofs)
-    assert "no exact inertia: the mass is not that of points" in reduce(bare, ENDS).summary()
+    assert "exact inertia: the mass is not that of points" in reduce(bare, ENDS).summary()
     assert "residual modes carry no mass" in reduce(BEAM, ENDS, 1, "macneal").summary()
     massless = np.kron(np.diag(np.r_[1, np.full(59, 2.0), 1]), np.diag([1.0, 1.0, 0.0]))
     shell = FEModel(BEAM.stiffness, massless, BEAM.coordinates, BEAM.node_dofs)
@@ -247,7 +247,9 @@ def test_summaries_say_what_was_done():
     ({"method": "rubin", "modes": 181}, "modes is 181, but the body has 180 elastic modes"),
     ({"method": "rubin", "modes": -1}, "modes is -1"),
     ({"method": "rubin", "modes": 2, "select": [0]}, "select is for method 'craig-bampton'"),
-    ({"method": "rubin", "modes": Accuracy(0.1, 1)}, "counts the modes of method 'craig-bampton'"),
+    ({"method": "macneal", "modes": Accuracy(0.1, 1)},
+     "counts the modes of methods 'craig-bampton' and 'rubin'"),
+    ({"method": "rubin", "modes": Accuracy(0.1, 1, "stiffness")}, "method 'rubin' has no estimate"),
     ({"modes": Accuracy(0.1, 1), "select": [0]}, "without select; give a number"),
     ({"modes": "all"}, "modes is 'all'"),
     ({"fe_model": 3}, "fe_model is 3: give an FEModel"),

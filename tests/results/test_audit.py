@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from sebody import Model, Result, simulate
-from sebody.results.audit import BALANCE, audit, momentum_defect
+from sebody.results.audit import audit, momentum_defect
+from sebody.results.energy_balance import LIMIT
 from sebody.scenes import heavy_top, hinged_beam, squeezer
 
 
@@ -65,5 +66,5 @@ def test_energy_and_constraints(tmp_path):
     assert audit(again) == audit(result)
     lossy = simulate(hinged_beam.build(modes=2, elements=4).model, 0.5, 30.0)
     energy = next(one for one in audit(lossy) if one.what == "energy")
-    assert (energy.verdict == "bad") == (lossy.energy_balance() > BALANCE)
+    assert (energy.verdict == "bad") == (lossy.energy_balance() > LIMIT)
     assert energy.value == f"{lossy.energy_balance():.2e}"

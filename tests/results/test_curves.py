@@ -5,7 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, simulate
-from sebody.results.curves import panels, rotation_vectors, values
+from sebody.results.curves import panels
+from sebody.results.naming import rotation_vectors, values
 from sebody.results.quantities import OF_MODEL, names
 from sebody.scenes import heavy_top, hinged_beam, squeezer
 
@@ -97,7 +98,8 @@ def test_results_are_compared_component_by_component(beam):
 
 
 @pytest.mark.parametrize("word, said", [
-    ("tip.positon", "did you mean 'tip.position'"), ("tip.position.xx", "did you mean"),
+    ("tip.positon", "did you mean 'tip.position'"),
+    ("tip.position.xx", "tip.position has the components x, y, z, norm"),
     ("tip.position.3", "tip.position has the components x, y, z, norm"),
     ("beam.modes.2", "beam.modes has the components 0, 1, norm"),
     ("energy.strain.x", "energy.strain is one number"),

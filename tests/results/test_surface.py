@@ -1,7 +1,6 @@
 """Surfaces of bodies against their FE models, and numbers in blocks against those given."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -15,11 +14,16 @@ from sebody.fem import (
     planar_beam,
     rectangle,
     straight_beam,
+    tube,
 )
+from sebody.fem.cells import EDGES, FACES, faces_of
 from sebody.reduction import RigidFace, craig_bampton
-from sebody.results.blocks import Blocks
-from sebody.results.scenery import scenery, vertices
-from sebody.results.surface import FACES, _cap, box, outer_faces, surface_of
+from sebody.results.beam_surface import _cap
+from sebody.results.drawn_bodies import vertices
+from sebody.results.scenery import scenery
+from sebody.results.skin import lattice, outer_faces, skin
+from sebody.results.surface import box, surface_of
+from sebody.results.surface_parts import folded
 
 STEEL = 2.1e6, 0.3, 7.8e-3
 TURN = np.array([[2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [-1.0, 2.0, 2.0]]) / 3.0
@@ -78,8 +82,7 @@ def test_ends_of_sections_that_are_not_convex():
 
 def volume(surface):
     """By the divergence theorem: faces that face inwards would take from it."""
-    vertices = surface.points[surface.stations] + surface.offsets
-    a, b, c = vertices[surface.triangles].transpose(1, 0, 2)
+    a, b, c = surface.vertices[surface.triangles].transpose(1, 0, 2)
     return np.einsum("ni,ni->", a, np.cross(b, c)) / 6
 
 
@@ -106,10 +109,16 @@ def test_sections_turn_with_the_body():
     for name in ("points", "offsets"):
         np.testing.assert_allclose(getattr(there, name), getattr(here, name) @ TURN.T, atol=1e-12)
     assert np.array_equal(here.triangles, there.triangles)
-    lines = np.diff(here.points[here.stations].reshape(-1, 4, 3)[:, 0], axis=0)
-    across = here.offsets.reshape(-1, 4, 3)[1:]
-    inside = np.linalg.norm(lines, axis=1) > 1e-9       # not from one member to the next
-    assert np.abs(np.einsum("nci,ni->nc", across, lines)[inside]).max() < 1e-12
+    elements = here.points.reshape(4, -1, 3)        # places along each of the four elements
+    lines = np.repeat(elements[:, -1] - elements[:, 0], elements.shape[1], axis=0)
+    across = np.einsum("ni,ni->n", here.offsets, lines[here.weights.indices])
+    assert np.abs(across).max() < 1e-12
+
+
+def middles(body, places):
+    """Means of the corners of the outline at each station."""
+    of = body.surface.weights
+    return (of.T @ places) / np.asarray(of.sum(axis=0))[:, None]
 
 
 @pytest.mark.parametrize("planar", [False, True])
@@ -128,7 +137,7 @@ def test_vertices_are_where_the_field_is(planar):
     drawn = scenery(result, 40)
     body, = drawn.bodies
     for k in (0, 7, len(drawn.t) - 1):
-        found = vertices(body, k).reshape(-1, 4, 3).mean(axis=1)        # of the outline's corners
+        found = middles(body, vertices(body, k))
         exact = result.field("beam").position(int(drawn.states[k]))
         used = [found[2 * e] for e in range(12)] + [found[-1]]
         # displacements that are left out, of two amplitudes and all the rest
@@ -158,36 +167,111 @@ def test_stresses_are_those_of_the_field():
     np.testing.assert_allclose(bar.stress[17][ends], exact[1][of_ends[ends]])
 
 
-def read(blocks, block):
-    """Numbers of a block, written from its description in blocks.py."""
-    kind = {2: "<u2", 4: "<u4"}[block["bytes"]]
-    if "count" in block:
-        return np.frombuffer(blocks.bytes(), kind, block["count"], block["at"])
-    rows, _ = block["shape"]
-    found = np.tile(block["low"], (rows, 1))
-    varying = block["varying"]
-    stored = np.frombuffer(blocks.bytes(), kind, rows * len(varying), block["at"])
-    found[:, varying] += np.array(block["step"]) * stored.reshape(rows, -1)
-    return found
+def curved_block(kind):
+    """A quarter of a ring of two elements of second order, with middle nodes on the circles."""
+    corners, edges = 8, EDGES["hexahedron"]
+    nodes, cells, number = [], [], {}
+
+    def add(r, angle, z):
+        key = tuple(np.round((r, angle, z), 9))
+        if key not in number:
+            number[key] = len(nodes)
+            nodes.append((r * np.cos(angle), r * np.sin(angle), z))
+        return number[key]
+
+    for begin in (0.0, np.pi / 4):
+        box_of = [(r, begin + a, z) for z in (0.0, 1.0) for r, a in (
+            (2.0, 0.0), (3.0, 0.0), (3.0, np.pi / 4), (2.0, np.pi / 4))]
+        middles = [np.mean([box_of[i], box_of[j]], axis=0) for i, j in edges]
+        cells.append([add(*p) for p in (*box_of, *middles)])
+    assert len(cells[0]) == corners + len(edges)
+    return np.array(nodes), ((kind, np.array(cells)),)
 
 
-def test_blocks_hold_what_was_given():
-    rng = np.random.default_rng(4)
-    values = rng.normal(size=(50, 5)) * [1.0, 1e-9, 1e6, 0.0, 3.0] + [0.0, 7.0, -1e6, 2.5, 1e3]
-    blocks = Blocks()
-    first = blocks.values(values)
-    fine = blocks.values(values, seen=1e-4)
-    places = blocks.indices(np.array([3, 1, 70000]))
-    small = blocks.indices(np.array([3, 1, 7]))
-    again = blocks.values(values)
-    assert (first["bytes"], fine["bytes"], places["bytes"], small["bytes"]) == (2, 4, 4, 2)
-    assert again["at"] == first["at"]           # stored once
-    assert 3 not in first["varying"]            # a constant is not stored
-    half = np.ptp(values, axis=0) / 0xFFFF / 2
-    rounding = 4e-16 * np.abs(values).max(axis=0)
-    assert (np.abs(read(blocks, first) - values).max(axis=0) <= half + rounding).all()
-    assert np.abs(read(blocks, fine) - values).max() < 1e-3
-    assert read(blocks, places).tolist() == [3, 1, 70000]
-    assert read(blocks, small).tolist() == [3, 1, 7]
-    ends = sorted(block["at"] for block in (first, fine, places, small))
-    assert all(b - a >= 4 and b % 4 == 0 for a, b in pairwise(ends))
+def test_faces_of_second_order_are_curved():
+    """The skin of a ring is nearly as far from its axis as the ring: a parabola is no circle."""
+    points, cells = curved_block("hexahedron20")
+    faces = outer_faces(cells)
+    assert [face.shape for face in faces] == [(10, 8)]
+    found = folded(skin(points, np.zeros((0, *points.shape)), faces))
+    radii = np.linalg.norm(found.vertices[:, :2], axis=1)
+    # the largest distance of a parabola from an arc of 45 degrees, of the radius
+    s, half = np.linspace(-1, 1, 201), np.pi / 8
+    far = np.abs(np.hypot(1 - s**2 * (1 - np.cos(half)), s * np.sin(half)) - 1).max()
+    inside, outside = radii[radii < 2.1], radii[radii > 2.9]
+    assert np.abs(inside - 2.0).max() < 2.001 * far
+    assert np.abs(outside - 3.0).max() < 3.001 * far < 3e-3
+    # chords of at most 8 degrees leave out a part of phi^2 / 6 of a sector
+    assert volume(found) == pytest.approx(np.pi / 4 * (9 - 4), rel=np.radians(8)**2 / 6 + far)
+    flat = folded(skin(points, np.zeros((0, *points.shape)), [face[:, :4] for face in faces]))
+    assert volume(flat) < 0.93 * np.pi / 4 * (9 - 4)
+    # the rim of the ends and both circles at both heights; two faces of 45 degrees are one
+    places = found.vertices[found.features]
+    lengths = np.linalg.norm(np.diff(places, axis=1), axis=2).sum()
+    assert lengths == pytest.approx(np.pi / 2 * (2 + 3) * 2 + 4 * (1 + 1), rel=np.radians(8)**2 / 6)
+
+
+@pytest.mark.parametrize("kind, corners", [("tetra", 4), ("hexahedron", 8), ("wedge", 6),
+                                           ("pyramid", 5)])
+def test_middles_of_edges_are_between_their_corners(kind, corners):
+    """Nodes of second-order cells by their places, straight and in any affine position."""
+    rng = np.random.default_rng(3)
+    points = rng.normal(size=(corners, 3))
+    points = np.concatenate([points, [points[list(edge)].mean(axis=0) for edge in EDGES[kind]]])
+    for face in faces_of(kind + "20", len(points)):
+        n = len(face) // 2
+        own = points[list(face)]
+        np.testing.assert_allclose(own[n:], (own[:n] + np.roll(own[:n], -1, axis=0)) / 2)
+    assert [face[:len(face) // 2] for face in faces_of(kind, len(points))] == list(FACES[kind])
+    assert faces_of(kind, corners) == list(FACES[kind])
+
+
+@pytest.mark.parametrize("nodes", [3, 4, 6, 8])
+def test_lattices(nodes):
+    """Shape functions are 1 at their node and reproduce what their polynomials contain."""
+    one = lattice(nodes, 6)
+    np.testing.assert_allclose(one.values.sum(axis=1), 1.0)
+    area = {3: 0.5, 6: 0.5, 4: 4.0, 8: 4.0}[nodes]
+    corners = (np.array([(0, 0), (1, 0), (0, 1)]) if nodes in (3, 6) else
+               np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]))
+    own = corners if nodes < 5 else np.concatenate(
+        [corners, (corners + np.roll(corners, -1, axis=0)) / 2])
+    at = one.values @ own
+    if nodes > 4:
+        for f in (lambda x, y: x * y, lambda x, y: x**2 - 3 * y, lambda x, y: y**2 + x):
+            np.testing.assert_allclose(one.values @ f(*own.T), f(*at.T), atol=1e-12)
+    a, b, c = at[one.triangles].transpose(1, 0, 2)
+    areas = ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
+    assert areas.min() > 0 and areas.sum() == pytest.approx(area)
+    rim = at[one.rim]
+    assert len(np.unique(one.rim)) == len(one.rim) == (6 if nodes > 4 else 1) * len(corners)
+    around = np.roll(rim, -1, axis=0)
+    assert np.sum(rim[:, 0] * around[:, 1] - rim[:, 1] * around[:, 0]) / 2 == pytest.approx(area)
+
+
+def test_features_of_shells_and_beams():
+    """A plate has its rim, a plate with a fold this too; a round tube the rims of its ends."""
+    points = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 1), (0, 1, 0), (1, 1, 0), (2, 1, 1.0)])
+    quads = np.array([(0, 1, 4, 3), (2, 1, 4, 5)])          # the second one faces the other way
+    plate = folded(skin(points, np.zeros((0, 6, 3)), [quads]))
+    assert len(plate.features) == 7
+    flat = folded(skin(points * [1, 1, 0], np.zeros((0, 6, 3)), [quads]))
+    assert len(flat.features) == 6
+    found, _ = surface(straight_beam((1, 2, 3), (5, 7, -3), tube(0.3, 0.02, *STEEL), 3), (0, 3))
+    assert len(found.features) == 2 * 16
+
+
+def test_vertices_of_a_smooth_part_are_shared():
+    """Means of normals are those of a tube's side, not of its side and its end."""
+    found, _ = surface(straight_beam((0, 0, 0), (4, 0, 0), tube(0.3, 0.02, *STEEL), 2), (0, 2))
+    p = found.vertices
+    a, b, c = p[found.triangles].transpose(1, 0, 2)
+    normals = np.zeros_like(p)
+    for k in range(3):
+        np.add.at(normals, found.triangles[:, k], np.cross(b - a, c - a))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    radial = p * [0, 1, 1] / 0.3
+    of_side = np.abs(normals[:, 0]) < 0.5
+    # triangles of unequal size lean it by less than half of a corner of 22.5 degrees
+    assert np.einsum("ni,ni->n", normals, radial)[of_side].min() > np.cos(np.radians(11.25))
+    np.testing.assert_allclose(np.abs(normals[~of_side][:, 0]), 1.0)

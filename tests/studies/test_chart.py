@@ -186,8 +186,9 @@ def test_chart_writes_table_and_picture(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path / "kernels"))
     monkeypatch.setattr(peer, "available", lambda: False)
     few = [v for v in cases.variants("planar-hinged-beam")
-           if v.label in ("1 body, 2 modes", "1 body, 2 modes, B", "2 nonlinear beams, h",
-                          "mean frame, A", "1 nonlinear beam, 4 h")]
+           if v.label in ("1 body, 2 modes", "1 body, 2 modes, option b",
+                          "2 nonlinear beams, step x 1", "mean frame, option a",
+                          "1 nonlinear beam, step x 4")]
     monkeypatch.setattr(chart, "variants", lambda scene: few)
     table, picture = tmp_path / "chart.csv", tmp_path / "chart.png"
     assert main(["chart", "planar-hinged-beam", "--csv", str(table), "--output",
@@ -197,10 +198,10 @@ def test_chart_writes_table_and_picture(tmp_path, monkeypatch, capsys):
         rows = list(csv.DictReader(file))
     assert [row["label"] for row in rows] == [v.label for v in few]
     errors = {row["label"]: float(row["error"]) for row in rows}
-    assert errors["1 body, 2 modes, B"] == pytest.approx(9.0e-4, rel=0.1)
+    assert errors["1 body, 2 modes, option b"] == pytest.approx(9.0e-4, rel=0.1)
     assert errors["1 body, 2 modes"] < 3e-4
     assert all(float(row["cost"]) > 0 for row in rows)
-    assert errors["2 nonlinear beams, h"] < errors["1 nonlinear beam, 4 h"]
+    assert errors["2 nonlinear beams, step x 1"] < errors["1 nonlinear beam, step x 4"]
 
 
 def test_any_scene_has_a_chart(tmp_path, capsys):
@@ -219,7 +220,7 @@ def test_any_scene_has_a_chart(tmp_path, capsys):
     errors = {label: float(point["error"]) for label, point in points.items()}
     limit = float(out.split("good to ")[1].split(",")[0])
     assert 0.0 < limit < 1e-4 and min(errors.values()) >= 0.99 * limit     # printed with 2 digits
-    assert errors["all rigid"] > 10 * errors["richest, h/4"]
+    assert errors["all rigid"] > 10 * errors["richest, step / 4"]
     # the other link alone: the stiff one may be rigid
     assert errors["stout rigid"] < 0.1 * errors["slender rigid"]
     assert all(float(point["slowest"]) >= float(point["cost"]) > 0 for point in points.values())
@@ -231,9 +232,9 @@ def test_a_mechanism_has_a_chart_of_steps_and_schemes():
     errors = {point.label: point.error for point in study.points}
     assert study.quantity == "B1.velocity" and set(p.family for p in study.points) == {
         "steps", "schemes"}
-    assert errors["4 h"] / errors["2 h"] == pytest.approx(4.0, rel=0.1)
-    assert errors["h/2"] / errors["h/4"] == pytest.approx(4.0, rel=0.1)
-    assert study.error < 0.01 * errors["h/4"]
+    assert errors["step x 4"] / errors["step x 2"] == pytest.approx(4.0, rel=0.1)
+    assert errors["step / 2"] / errors["step / 4"] == pytest.approx(4.0, rel=0.1)
+    assert study.error < 0.01 * errors["step / 4"]
 
 
 def test_what_has_no_chart_is_refused():

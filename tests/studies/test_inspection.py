@@ -11,7 +11,7 @@ from sebody.cli.entry import main
 from sebody.fem import hexahedral_block
 from sebody.io import read_body_file, save_body
 from sebody.reduction import RigidFace, craig_bampton
-from sebody.studies.inspection import free_rigid_motion, inspect, report
+from sebody.studies.inspection import free_rigid_motion, inspect, measures, report
 
 SIZE, DENSITY = np.array([3.0, 1.0, 0.5]), 2.0
 MASS = DENSITY * SIZE.prod()
@@ -22,7 +22,7 @@ TURN = np.array([[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [-2.0, -1.0, 2.0]]).T / 3
 @pytest.fixture(scope="module")
 def body():
     """A block, turned, off the origin, on its end faces."""
-    model = hexahedral_block((1, 2, 3), SIZE, (4, 2, 1), 1e4, 0.25, DENSITY)
+    model = hexahedral_block((1, 2, 3), SIZE, (4, 2, 1), 4e4, 0.25, DENSITY)
     x = model.coordinates[:, 0]
     faces = [RigidFace((place, 2.5, 3.25), np.flatnonzero(np.isclose(x, place)))
              for place in (1, 4)]
@@ -31,7 +31,7 @@ def body():
 
 @pytest.fixture
 def path(body, tmp_path):
-    return save_body(body, tmp_path / "body.npz", ("left", "right"), units="m, kg, s")
+    return save_body(body, tmp_path / "body.npz", ("left", "right"), units="m, t, kN")
 
 
 def spoilt(path, **matrices):
@@ -137,7 +137,7 @@ def test_massless_coordinates_have_frequencies(path, body):
     file = read_body_file(save_body(corners, path))
     file.parts["mass"] = mass
     inspection = inspect(file)
-    assert any("the mass matrix is singular, mostly in position x of node 0" in one.text
+    assert any("the mass matrix is singular, mostly in position x of " in one.text
                for one in inspection.findings)
     found = inspection.numbers["frequencies"]
     assert found["count"] == len(mass) - 1 - 6
@@ -168,3 +168,55 @@ def test_the_command_repairs(path, tmp_path, capsys, body):
     assert main(["inspect", str(good)]) == 0
     assert main(["inspect", str(path), "--save", str(good)]) == 2
     assert "--repair and --save belong together" in capsys.readouterr().err
+
+
+def picture_of(body, folder, recovery=True):
+    """The picture that the command draws, (height, width, 3), from 0 to 1."""
+    from matplotlib.image import imread
+
+    path = folder / "drawn.npz"
+    save_body(body, path, units="mm t N s", recovery=recovery)
+    assert main(["inspect", str(path), "--output", str(folder / "drawn.png")]) == 0
+    return imread(folder / "drawn.png")[..., :3]
+
+
+def at(place):
+    """A bar of bricks on its end faces, somewhere."""
+    model = hexahedral_block(place, (60, 8, 12), (10, 1, 2), 2.1e5, 0.3, 7.85e-9)
+    x = model.coordinates[:, 0] - place[0]
+    middle = np.add(place, [0, 4, 6])
+    faces = [RigidFace(middle + [there, 0, 0], np.flatnonzero(np.isclose(x, there)))
+             for there in (0, 60)]
+    return craig_bampton(model, [(face, "full") for face in faces], 4)
+
+
+def test_the_picture_shows_the_whole_body_wherever_it_is(tmp_path, capsys):
+    """Limits are those of the mesh: the picture of a body far off is that of the same body."""
+    near, far = (picture_of(at(place), tmp_path) for place in ((0, 0, 0), (1e4, -3e3, 2e4)))
+    assert near.shape == far.shape
+    assert np.mean(np.abs(near - far).max(axis=2) > 0.1) < 2e-3     # edges by a pixel
+    coloured = near.min(axis=2) < 0.9
+    top = coloured[:int(0.44 * len(near))]
+    assert 0.08 < top.mean() < 0.6
+    columns = np.flatnonzero(top.any(axis=0))
+    assert columns[0] > 5 and columns[-1] < len(top[0]) - 5     # nothing is cut
+    # small multiples: six free vibrations in two rows, each with its colours and its frequency
+    below = near[int(0.45 * len(near)):]
+    for part in np.array_split(below[:int(0.86 * len(below))], 2):
+        for one in np.array_split(part, 3, axis=1):
+            spread = one.max(axis=2) - one.min(axis=2)
+            assert np.mean(spread > 0.2) > 0.02
+
+
+def test_a_body_without_a_mesh_is_lines(tmp_path, capsys):
+    drawn = picture_of(at((5, 5, 5)), tmp_path, recovery=False)
+    assert 1e-3 < np.mean(drawn.min(axis=2) < 0.9) < 0.2
+
+
+def test_modes_of_the_picture_are_the_frequencies(path, body):
+    found = inspect(read_body_file(path))
+    hertz, shapes = measures.free_modes(found.body, 5)
+    np.testing.assert_allclose(hertz, found.numbers["frequencies"]["flexible"][:5], rtol=1e-6)
+    forces = body.stiffness @ shapes
+    np.testing.assert_allclose(body.mass @ shapes * (2 * np.pi * hertz)**2, forces,
+                               atol=1e-6 * np.abs(forces).max())

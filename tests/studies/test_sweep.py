@@ -239,6 +239,6 @@ def test_workers_with_another_version_are_refused(monkeypatch):
     versions = iter(["0.0.9", "0.0.8"])
     monkeypatch.setattr(places, "_version", lambda: next(versions))
     with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False,
-                                  dashboard_address=None) as here:
+                                  dashboard_address=None, protocol="tcp") as here:
         with pytest.raises(InputError, match="has sebody 0.0.8, this is 0.0.9: install one"):
             sweep(build, OUTPUTS, {"length": [1.0]}, cluster=here.scheduler_address)

@@ -113,7 +113,7 @@ class Laboratory:
                                     self.bases[h].seconds))
             self.tried.append(Tried(choice._replace(step=Step(h)), errors[h], errors[h],
                                     self.bases[h].seconds))
-        recorded = Recorded(self.model, first.result, self.quantities.histories,
+        recorded = Recorded(self.model, first.result, self.quantities.wholes(first.result),
                             self.reference.sizes, first.values.frequencies)
         self.estimates = Estimates(recorded, self.parts,
                                    {Step(h): error for h, error in errors.items()})

@@ -128,6 +128,9 @@ class Advice:
     remarks: tuple[str, ...] = ()
     interrupted: bool = False
 
+    def __repr__(self) -> str:
+        return self.summary()
+
     def rows(self) -> list[dict]:
         """The table as plain dictionaries, which ``pandas.DataFrame`` takes."""
         return [asdict(one) for one in self.table]

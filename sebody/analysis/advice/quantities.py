@@ -12,6 +12,7 @@ from sebody.analysis.linearization import modes
 from sebody.analysis.simulation import Simulation
 from sebody.errors import InputError, LimitWarning
 from sebody.model.model import Model
+from sebody.results.naming import component_of, split
 from sebody.results.result import Result
 
 FREQUENCY = re.compile(r"frequency ([1-9]\d*)")
@@ -46,7 +47,9 @@ class Quantities:
         if not given:
             raise InputError("quantities: none is given; give names of quantities")
         for name in given:
-            inputs.name(name, "name of a quantity")
+            if inputs.name(name, "name of a quantity") == "t":
+                raise InputError("quantity 't' is the time, which all models keep: name a "
+                                 "position, a force or the like")
         self.names = list(given)
         numbers = [FREQUENCY.fullmatch(name) for name in given]
         self.histories = [n for n, number in zip(given, numbers, strict=True) if number is None]
@@ -57,8 +60,8 @@ class Quantities:
         """Names of nodes and bodies that the quantities name, and parts of these names."""
         found = set()
         for name in self.histories:
-            owner = name.rpartition(".")[0]
-            found |= {owner, *owner.split(".")}
+            parts = name.split(".")
+            found |= {*parts[:-1], *(".".join(parts[:k]) for k in range(1, len(parts)))}
         return found
 
     def check(self, model: Model, h: float) -> None:
@@ -81,10 +84,12 @@ class Quantities:
         InputError
             A quantity does not exist.
         """
-        plane = result.model.plane
-        histories = [np.asarray(result[name]) if plane is None else
-                     plane.to_space(name, result[name]) for name in self.histories]
-        return Values(histories, self._frequencies(result, h) if self.numbers else [])
+        return Values([_history(result, name) for name in self.histories],
+                      self._frequencies(result, h) if self.numbers else [])
+
+    def wholes(self, result: Result) -> list[str]:
+        """The quantities that the histories are components of, or they themselves."""
+        return [split(result, name)[0] for name in self.histories]
 
     def _frequencies(self, result: Result, h: float) -> list[float]:
         run = Simulation(result.model, h)
@@ -97,6 +102,19 @@ class Quantities:
             raise InputError(f"quantity 'frequency {max(self.numbers)}' does not exist: the model "
                              f"has {len(flexible)} frequencies above zero")
         return [float(flexible[k - 1]) for k in self.numbers]
+
+
+def _history(result: Result, name: str) -> NDArray:
+    """A history as the spatial model has it."""
+    plane = result.model.plane
+    if plane is None:
+        return np.asarray(result[name])
+    whole, components = split(result, name)
+    found = plane.to_space(whole, result[whole])
+    for component in components:
+        found = component_of(whole, found, component)
+        whole = f"{whole}.{component}"
+    return found
 
 
 def difference(one: Values, other: Values, sizes: list[float], stride: tuple[int, int]) -> float:

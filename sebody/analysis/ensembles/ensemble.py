@@ -1,5 +1,7 @@
 """Many runs of one model with other numbers, in threads."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Mapping, Sequence
 from threading import Lock
@@ -7,7 +9,7 @@ from threading import Lock
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sebody import inputs
+from sebody import inputs, memory
 from sebody.analysis.ensembles.changes import Handle
 from sebody.analysis.ensembles.handles import given, handles
 from sebody.analysis.ensembles.images import Image
@@ -15,12 +17,17 @@ from sebody.analysis.ensembles.member import kinematic_quantities
 from sebody.analysis.ensembles.outcome import Outcome
 from sebody.analysis.ensembles.outputs import Output, outputs_of
 from sebody.analysis.ensembles.work import Work, processors
-from sebody.analysis.simulation import Simulation
+from sebody.analysis.progress import showing
+from sebody.analysis.simulation import MOST_STEPS, Simulation
+from sebody.analysis.user_faults import refuse_changed
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.model.model import Model
+from sebody.model.tables import summary
 from sebody.reduction import ReducedBody
+from sebody.results.result import Result
 
+PLACING = ".position", ".rotation"      # parameters that move where runs begin
 Values = ArrayLike | Sequence[ReducedBody]
 
 
@@ -37,6 +44,9 @@ class Ensemble:
         `generalized_alpha` with rho 0.9 by default.
     output_every : int
         Every so many steps a state is recorded, from which outputs are made.
+    start : Result, optional
+        State at which all runs start, see `Simulation`: initial positions and rotations cannot be
+        varied then.
 
     Raises
     ------
@@ -53,12 +63,15 @@ class Ensemble:
     """
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
-                 output_every: int = 1):
+                 output_every: int = 1, start: Result | None = None):
         self.model, self.scheme = model, scheme
-        self._template = Simulation(model, h, scheme, output_every)
+        self._template = Simulation(model, h, scheme, output_every, start=start)
         self.h, self.every = self._template.h, self._template.every
         self._lock = Lock()         # the model is changed for moments
         self._images: dict[tuple[str, ...], Image] = {}
+
+    def __repr__(self) -> str:
+        return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}>"
 
     @property
     def parameters(self) -> list[str]:
@@ -67,7 +80,7 @@ class Ensemble:
 
     def run(self, parameters: Mapping[str, Values], t_end: float,
             outputs: Mapping[str, Output | str], threads: int | None = None,
-            progress: Callable[[float], None] | None = None) -> Outcome:
+            progress: Callable[[float], None] | bool | None = None) -> Outcome:
         """Run the model once for each set of values.
 
         Results do not depend on the number of threads, bit for bit, nor on which runs are asked for
@@ -85,8 +98,8 @@ class Ensemble:
             `maximum`, `minimum`, `rms`, `integral`, `final` or `at_time` return.
         threads : int, optional
             By default one for each processor.
-        progress : callable, optional
-            Called with the part of the runs that is done.
+        progress : callable or bool, optional
+            Called with the part of the runs that is done; True shows a bar, as of `simulate`.
 
         Raises
         ------
@@ -94,6 +107,7 @@ class Ensemble:
             Before the first run: unknown names, arrays of different lengths, values that a body
             cannot have, an unknown quantity, a time that is no multiple of the step.
         """
+        refuse_changed(self.model)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
         found, runs, last, kept = self._checked(parameters, t_end, outputs)
         kinematic, shapes = kinematic_quantities(self._template, kept)
@@ -102,7 +116,8 @@ class Ensemble:
         began = time.perf_counter()
         work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
                     self._lock)
-        work.go(min(threads, max(runs, 1)), progress)
+        with showing(progress) as show:
+            work.go(min(threads, max(runs, 1)), show)
         outcome.seconds = time.perf_counter() - began
         return outcome
 
@@ -122,12 +137,20 @@ class Ensemble:
                  outputs: Mapping[str, Output | str]
                  ) -> tuple[dict[str, Handle], int, int, dict[str, Output]]:
         """Handles, number of runs, last step, outputs."""
-        found, runs = given(self.model, parameters) if parameters != {} else ({}, 1)
+        parameters = inputs.mapping(parameters, "parameters",
+                                    "give a dict of names and arrays of values")
+        found, runs = given(self.model, parameters) if parameters else ({}, 1)
+        if placing := [name for name in found if self._template.begun and name.endswith(PLACING)]:
+            raise InputError(f"{placing[0]} cannot be varied: all runs begin at the start that was "
+                             "given; leave it out, or build an ensemble without a start")
         last = self._last_step(t_end)
         return found, runs, last, outputs_of(outputs, last * self.h)
 
     def _last_step(self, t_end: float) -> int:
         t_end = inputs.number(t_end, "t_end", above=0)
+        if t_end / self.h > MOST_STEPS:
+            raise InputError(f"t_end is {t_end:g}: that is {t_end / self.h:.3g} steps of "
+                             f"{self.h:g}, give an earlier time or a longer step")
         last = round(t_end / self.h)
         if last < 1 or abs(t_end / self.h - last) > 1e-6:
             raise InputError(f"t_end is {t_end:g}, which is no multiple of the step {self.h:g}: "
@@ -142,9 +165,22 @@ class Ensemble:
                 self._images[key] = Image(self._template, found)
             return self._images[key]
 
+    def _check_memory(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
+                      runs: int, count: int) -> None:
+        """Refuse outputs that do not fit, before they are asked for."""
+        sizes = {name: 8.0 * runs * (count if one.kind == "history" else 1)
+                 * (1 if one.norm else np.prod(shapes[one.quantity], initial=1.0))
+                 for name, one in outputs.items()}
+        largest = max(sizes, key=sizes.get)
+        memory.check(sum(sizes.values()) + 8.0 * count, f"output {largest!r} of {runs} runs of "
+                     f"{count} recorded states, with the others,",
+                     "keep a maximum or the like in place of a history, fewer states with "
+                     "output_every, or make fewer runs at a time")
+
     def _empty(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
                runs: int, last: int) -> Outcome:
         count = last // self.every + 1
+        self._check_memory(outputs, shapes, runs, count)
         values = {}
         for name, one in outputs.items():
             shape = () if one.norm else shapes[one.quantity]

@@ -20,7 +20,6 @@
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 from sebody import inputs
@@ -28,6 +27,7 @@ from sebody.analysis.ensembles import changes
 from sebody.analysis.ensembles.changes import Handle
 from sebody.errors import InputError
 from sebody.model.model import Model
+from sebody.spelling import unknown
 
 GRAVITY = "gravity"
 
@@ -56,11 +56,7 @@ def handle(model: Model, name: str) -> Handle:
         parts = kind.parts(model)
         if owner in parts and quantity in kind.quantities:
             return kind.quantities[quantity](model, parts[owner], name)
-    known = list(handles(model))
-    near = get_close_matches(name, known, n=3)
-    raise InputError(f"parameter {name!r} is unknown: " + (
-        f"did you mean {' or '.join(map(repr, near))}?" if near else
-        f"the model has {', '.join(known)}"))
+    raise unknown("parameter", name, handles(model), "the model has")
 
 
 def handles(model: Model) -> Iterable[str]:

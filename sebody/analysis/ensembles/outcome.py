@@ -1,14 +1,17 @@
 """What many runs gave."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody import tabular
+from sebody.spelling import unknown
 
 
-@dataclass
+@dataclass(repr=False)
 class Outcome:
     """What runs gave.
 
@@ -35,6 +38,25 @@ class Outcome:
     interrupted: bool = False
     seconds: float = 0.0
 
+    def __repr__(self) -> str:
+        return tabular.text(*self._table())
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return tabular.titled(*self._table())
+
+    def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
+        """Every output with the smallest, mean and largest value of the runs that have one."""
+        failed = f", {len(self.failures)} of them did not reach the end" * bool(self.failures)
+        title = f"{tabular.counted(self.runs, 'run')}{failed}, {self.seconds:.3g} s"
+        rows = []
+        for name, value in self.values.items():
+            known = value[np.isfinite(value)]
+            numbers = [f"{known.min():.6g}", f"{known.mean():.6g}", f"{known.max():.6g}"] if (
+                known.size) else ["-"] * 3
+            rows.append((name, f"({', '.join(map(str, value.shape))})", *numbers))
+        return title, ("output", "shape", "smallest", "mean", "largest"), rows
+
     def __getitem__(self, name: str) -> NDArray:
         """An output by name.
 
@@ -43,8 +65,8 @@ class Outcome:
         InputError
             No output has this name.
         """
-        if name not in self.values:
-            raise InputError(f"output {name!r} is unknown: there are {', '.join(self.values)}")
+        if not isinstance(name, str) or name not in self.values:
+            raise unknown("output", name, self.values)
         return self.values[name]
 
     @property

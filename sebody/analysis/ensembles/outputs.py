@@ -1,5 +1,7 @@
 """What is kept of a run: histories of quantities, or numbers that are made of them on the way."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -8,6 +10,8 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+
+KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "history")
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,16 @@ class Output:
     kind: str
     time: float | None = None
     norm: bool = False
+
+    def __post_init__(self) -> None:
+        inputs.name(self.quantity, "quantity of an output")
+        inputs.choice(self.kind, "kind of an output", KINDS)
+        inputs.flag(self.norm, f"output of {self.quantity}: norm")
+        if (self.time is None) == (self.kind == "at"):
+            raise inputs.refusal(f"output of {self.quantity}: time", self.time,
+                                 "give one of kind 'at', and of no other")
+        if self.time is not None:
+            inputs.number(self.time, f"output of {self.quantity}: time", least=0)
 
 
 def maximum(quantity: str, norm: bool = False) -> Output:

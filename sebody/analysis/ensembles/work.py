@@ -75,6 +75,8 @@ class Work:
                 worker.join()
         if self._error is not None:
             raise self._error
+        if progress and not self.outcome.interrupted:
+            progress(1.0)
         for run in np.flatnonzero(np.isnan(self.outcome.reached)):
             self.outcome.failures.setdefault(int(run), INTERRUPTED)
 
@@ -120,7 +122,7 @@ class Work:
             try:
                 for name, handle in self.image.handles.items():
                     handle.set(self.values[name][run])
-                made = Simulation(one.model, one.h, one.scheme, one.every)
+                made = Simulation(one.model, one.h, one.scheme, one.every, start=one.begun)
                 made.model = copy(one.model)
             finally:
                 for handle in reversed(self.image.handles.values()):

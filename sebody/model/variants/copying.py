@@ -6,13 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody.errors import InputError
+from sebody import inputs
 from sebody.kernels.names import body_load_kind
 from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
+from sebody.model.tables import unknowns
 from sebody.reduction import ReducedBody
+from sebody.spelling import unknown
 
 
 class Variant(NamedTuple):
@@ -27,7 +29,13 @@ def copied(model: Mechanism) -> Mechanism:
 
     Reduced bodies, sections, histories and compiled functions of users never change: both models
     have them.
+
+    Raises
+    ------
+    InputError
+        No model.
     """
+    checked(model)
     elements = (*model.constraints, *model.loads)
     constant = [body.body for body in model.bodies.values()]
     constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
@@ -37,16 +45,20 @@ def copied(model: Mechanism) -> Mechanism:
     return deepcopy(model, {id(one): one for one in constant})
 
 
-def unknowns(model: Mechanism) -> int:
-    """How many unknowns a model has, multipliers included."""
-    return (sum(t.start.size for t in model.triplets() if t.solved)
-            + sum(body.body.modes for body in model.bodies.values())
-            + sum(joint.multipliers for joint in model.joints))
+def checked(model: Mechanism) -> Mechanism:
+    """A model.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    return inputs.instance(model, "model", Mechanism, "give a sebody.Model")
 
 
 def fewer(model: Mechanism, made: Mechanism) -> str:
     """How many unknowns a changed model saves, in words."""
-    saved = unknowns(model) - unknowns(made)
+    saved = sum(unknowns(model)) - sum(unknowns(made))
     return f"{saved} unknown{'s' * (saved != 1)} fewer"
 
 
@@ -58,9 +70,8 @@ def placed(model: Mechanism, name: str) -> Superelement:
     InputError
         There is none of this name.
     """
-    if not isinstance(name, str) or name not in model.bodies:
-        raise InputError(f"superelement {name!r} is unknown: the model has "
-                         f"{', '.join(model.bodies) or 'none'}")
+    if not isinstance(name, str) or name not in checked(model).bodies:
+        raise unknown("superelement", name, model.bodies, "the model has", "the model has none")
     return model.bodies[name]
 
 

@@ -21,8 +21,10 @@ def start_rate(triplet: Triplet) -> NDArray:
     if triplet.root is not None:
         return start_rate(triplet.root) + sum(
             _velocity(start_rate(rotation), arm) for rotation, arm in triplet.arms)
-    return triplet.rate + sum(motion.direction * motion.history.at(0.0)[1]
-                              for motion in triplet.motions)
+    if not triplet.fixed:
+        return triplet.rate
+    return sum((motion.direction * motion.history.at(0.0)[1] for motion in triplet.motions),
+               np.zeros_like(triplet.rate))
 
 
 def make_dependent(model: Mechanism, node: Node, carrier: Node, keep: str, body: str) -> bool:

@@ -1,13 +1,16 @@
 """Another number of superelements in a beam."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.beams import beam
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Beam, Node, Triplet
-from sebody.model.variants.copying import Variant, copied, loads_on
+from sebody.model.variants.copying import Variant, checked, copied, loads_on
 
 
 def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None,
@@ -73,7 +76,8 @@ def _counted(one: Beam) -> str:
 
 def _described(model: Mechanism, name: str) -> Beam:
     """How a beam was built; refused if it cannot be built anew."""
-    found = [one for one in model.beams if one.name == name]
+    inputs.name(name, "name of a beam")
+    found = [one for one in checked(model).beams if one.name == name]
     if len(found) != 1:
         names = ", ".join(dict.fromkeys(one.name for one in model.beams)) or "no beam"
         raise InputError(f"model.beam has built {len(found)} beams {name!r}, where one is wanted "

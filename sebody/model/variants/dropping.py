@@ -1,5 +1,7 @@
 """Triplets that no joint or load needs, left to follow the others of their body."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
@@ -9,7 +11,15 @@ from sebody.errors import InputError
 from sebody.model.inputs import known, triplet
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node, Superelement, Triplet
-from sebody.model.variants.copying import Variant, copied, exchange, fewer, loads_on, placed
+from sebody.model.variants.copying import (
+    Variant,
+    checked,
+    copied,
+    exchange,
+    fewer,
+    loads_on,
+    placed,
+)
 from sebody.reduction import ReducedBody
 from sebody.reduction.condensation import Released, coordinates_of, released
 
@@ -76,6 +86,7 @@ def can_be_dropped(model: Mechanism) -> list[tuple[str, str, str]]:
     rotations come first. Positions whose stresses stiffen their body stay.
     """
     found = []
+    checked(model)
     for what in reversed(_KINDS):
         for body, node in [(one.name, node.name) for one in model.bodies.values()
                            for node in one.nodes]:

@@ -1,5 +1,7 @@
 """A planar model in the place of a spatial one that is symmetric about a plane."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -13,7 +15,7 @@ from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
-from sebody.model.variants.copying import Variant, load_name, unknowns
+from sebody.model.variants.copying import Variant, checked, load_name, unknowns
 from sebody.model.variants.flat_beams import flat_beams
 from sebody.model.variants.flat_elements import flat_element, flat_joint
 from sebody.model.variants.flattening import Flattening
@@ -52,7 +54,7 @@ def planar(model: Mechanism) -> Variant:
         A planar model, what is not symmetric about the plane (the first thing that was found), or
         no planar kernel for a body.
     """
-    if model.planar:
+    if checked(model).planar:
         raise InputError("the model is planar already")
     if not model.nodes:
         raise InputError("the model has no nodes, so it is in no plane")
@@ -67,7 +69,7 @@ def planar(model: Mechanism) -> Variant:
                 f"to {place(plane.normal)}, so its motion leaves it: {error}")
         else:
             made = _built(model, flat_model)
-            before, after = unknowns(model), unknowns(made)
+            before, after = sum(unknowns(model)), sum(unknowns(made))
             return Variant(made, f"the model is planar, normal to {place(plane.normal)}: {after} "
                                  f"instead of {before} unknowns{_of_bushings(model)}")
     raise refused
@@ -121,7 +123,7 @@ class _Flat(NamedTuple):
     loads: dict[int, list[Element]]     # of each load but those on bodies, by its id
 
     @classmethod
-    def of(cls, model: Mechanism, flat: Flattening) -> "_Flat":
+    def of(cls, model: Mechanism, flat: Flattening) -> _Flat:
         """All of a model.
 
         Raises
@@ -129,7 +131,7 @@ class _Flat(NamedTuple):
         InputError
             What is not symmetric.
         """
-        made = type(model)(planar=True)
+        made = type(model)(planar=True, units=model.units)
         made.plane = flat.plane
         made.nodes = {name: flat.node(node) for name, node in model.nodes.items()}
         made.grounds = [flat.node(node) for node in model.grounds]

@@ -1,5 +1,7 @@
 """A rigid body in the place of a superelement."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

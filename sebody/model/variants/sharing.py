@@ -7,7 +7,8 @@ from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Joint, Node, Triplet
 from sebody.model.sharing import can_share, share
-from sebody.model.variants.copying import Variant, copied, fewer
+from sebody.model.variants.copying import Variant, checked, copied, fewer
+from sebody.spelling import unknown
 
 _TOGETHER = ("weld", "prismatic")       # joints whose nodes turn together
 _NAMES = {"position": "positions", "rotation": "rotations"}
@@ -34,11 +35,12 @@ def shared(model: Mechanism, name: str | None = None) -> Variant:
     InputError
         No such joint, or one without equations that sharing replaces.
     """
+    checked(model)
     if name is not None:
         inputs.name(name, "name of a joint")
         if name not in (joint.name for joint in model.joints):
-            raise InputError(f"joint {name!r} is unknown: the model has "
-                             f"{', '.join(joint.name for joint in model.joints) or 'none'}")
+            raise unknown("joint", name, (joint.name for joint in model.joints), "the model has",
+                          "the model has none")
     possible = can_be_shared(model)
     if not (possible if name is None else any(
             _kinds(model, joint) for joint in model.joints if joint.name == name)):

@@ -34,9 +34,29 @@ class Camera {
     return unit(add(add(back, times(0.9, cross(back, right))), times(-0.5, right)));
   }
 
+  // Angle of view from bottom to top: what fits into a wide picture fits into a narrow one.
+  angle(aspect) {
+    return aspect < 1 ? 2 * Math.atan(Math.tan(VIEW_ANGLE / 2) / aspect) : VIEW_ANGLE;
+  }
+
+  // Pixels of a unit of length at the target.
+  pixels({ clientWidth, clientHeight }) {
+    const angle = this.angle(clientWidth / clientHeight);
+    return clientHeight / (2 * this.distance * Math.tan(angle / 2));
+  }
+
+  // What is seen at a pixel lies on a line from the eye.
+  ray([x, y], width, height) {
+    const back = this.direction(), right = unit(cross(this.up, back)), above = cross(back, right);
+    const size = Math.tan(this.angle(width / height) / 2);
+    const aside = add(times((2 * x - width) / height * size, right),
+                      times((1 - 2 * y / height) * size, above));
+    return { from: this.eye(), way: unit(subtract(aside, back)) };
+  }
+
   matrix(aspect) {
-    const angle = aspect < 1 ? 2 * Math.atan(Math.tan(VIEW_ANGLE / 2) / aspect) : VIEW_ANGLE;
-    return product(perspective(angle, aspect, this.distance / 50, this.distance * 50),
+    const near = this.distance / 50, far = this.distance * 50;
+    return product(perspective(this.angle(aspect), aspect, near, far),
                    looking(this.eye(), this.target, this.up));
   }
 

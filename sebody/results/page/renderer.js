@@ -14,16 +14,15 @@ void main() {
 const LIT_FRAGMENT = `#version 300 es
 precision highp float;
 in vec3 place; in vec3 facing; in float shade;
-uniform vec3 eye, colour, light; uniform vec3 map[9]; uniform float alpha;
+uniform vec3 eye, colour, light; uniform vec3 map[9]; uniform float alpha; uniform vec2 range;
 out vec4 seen;
 void main() {
-  vec3 n = dot(facing, facing) > 1e-12 ? facing : cross(dFdx(place), dFdy(place));
-  n = normalize(n);
+  vec3 n = normalize(facing);
   vec3 v = normalize(eye - place);
   if (dot(n, v) < 0.0) n = -n;
   vec3 base = colour;
-  if (shade >= 0.0) {
-    float s = clamp(shade, 0.0, 1.0) * 8.0;
+  if (shade > -1e29) {
+    float s = clamp((shade - range.x) / (range.y - range.x), 0.0, 1.0) * 8.0;
     int k = int(min(floor(s), 7.0));
     base = mix(map[k], map[k + 1], s - float(k));
   }
@@ -33,9 +32,9 @@ void main() {
 }`;
 const LINE_VERTEX = `#version 300 es
 in vec3 from, to; in vec2 corner;
-uniform mat4 camera; uniform vec2 screen; uniform float width, lift;
+uniform mat4 camera, model; uniform vec2 screen; uniform float width, lift;
 void main() {
-  vec4 a = camera * vec4(from, 1.0), b = camera * vec4(to, 1.0);
+  vec4 a = camera * (model * vec4(from, 1.0)), b = camera * (model * vec4(to, 1.0));
   vec2 way = (b.xy / b.w - a.xy / a.w) * screen;
   vec2 along = length(way) > 1e-6 ? normalize(way) : vec2(1.0, 0.0);
   vec4 at = corner.x < 0.5 ? a : b;
@@ -48,6 +47,8 @@ const LINE_FRAGMENT = `#version 300 es
 precision highp float;
 uniform vec4 tint; out vec4 seen;
 void main() { seen = vec4(tint.rgb, 1.0) * tint.a; }`;
+
+const UNMOVED = placed(IDENTITY, [0, 0, 0]);
 
 class Renderer {
   constructor(canvas) {
@@ -94,16 +95,14 @@ class Renderer {
     return buffer;
   }
 
-  // A mesh: fixed with normals, or deforming without, whose normals are those of its triangles.
+  // A mesh of vertices with normals; of a deforming one they, and values, are updated.
   mesh(shape) {
     const gl = this.gl, array = gl.createVertexArray();
     gl.bindVertexArray(array);
     const vertices = this.filled(new Float32Array(shape.vertices));
     this.attribute("position", 3);
-    if (shape.normals) {
-      this.filled(new Float32Array(shape.normals));
-      this.attribute("normal", 3);
-    }
+    const normals = this.filled(new Float32Array(shape.normals));
+    this.attribute("normal", 3);
     let values = null;
     if (shape.values) {
       values = this.filled(new Float32Array(shape.values));
@@ -111,7 +110,7 @@ class Renderer {
     }
     this.filled(new Uint32Array(shape.triangles), gl.ELEMENT_ARRAY_BUFFER);
     gl.bindVertexArray(null);
-    return { array, vertices, values, count: shape.triangles.length };
+    return { array, vertices, normals, values, count: shape.triangles.length };
   }
 
   attribute(name, size) {
@@ -121,15 +120,15 @@ class Renderer {
     this.gl.vertexAttribPointer(at, size, this.gl.FLOAT, false, 0, 0);
   }
 
-  update(mesh, vertices, values) {
+  update(mesh, body) {
     const gl = this.gl;
-    gl.bindBuffer(gl.ARRAY_BUFFER, mesh.vertices);
-    gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.DYNAMIC_DRAW);
-    gl.bindBuffer(gl.ARRAY_BUFFER, mesh.values);
-    gl.bufferData(gl.ARRAY_BUFFER, values, gl.DYNAMIC_DRAW);
+    for (const name of ["vertices", "normals", "values"]) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, mesh[name]);
+      gl.bufferData(gl.ARRAY_BUFFER, body[name], gl.DYNAMIC_DRAW);
+    }
   }
 
-  begin(camera, map) {
+  begin(camera, map, range) {
     const gl = this.gl, ratio = window.devicePixelRatio || 1;
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
@@ -147,8 +146,10 @@ class Renderer {
     gl.uniform3fv(u.eye, camera.eye());
     gl.uniform3fv(u.light, camera.light());
     gl.uniform3fv(u.map, map);
+    gl.uniform2fv(u.range, range);
   }
 
+  // A mesh; with an alpha below 1 what is behind it shines through, so draw these last.
   draw(mesh, matrix, colour, alpha = 1) {
     const gl = this.gl, u = this.lit.uniforms;
     gl.useProgram(this.lit.program);
@@ -156,13 +157,25 @@ class Renderer {
     gl.uniform3fv(u.colour, colour);
     gl.uniform1f(u.alpha, alpha);
     gl.bindVertexArray(mesh.array);
-    if (!mesh.values) gl.vertexAttrib1f(gl.getAttribLocation(this.lit.program, "value"), -1);
+    if (!mesh.values) gl.vertexAttrib1f(gl.getAttribLocation(this.lit.program, "value"), NOTHING);
+    if (alpha < 1) { gl.enable(gl.BLEND); gl.enable(gl.CULL_FACE); gl.depthMask(false); }
     gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
+    gl.disable(gl.BLEND);
+    gl.disable(gl.CULL_FACE);
+    gl.depthMask(true);
     gl.bindVertexArray(null);
   }
 
+  // What is drawn by `act` shows faintly where it is behind something.
+  behind(act) {
+    const gl = this.gl;
+    gl.depthFunc(gl.GREATER);
+    act();
+    gl.depthFunc(gl.LESS);
+  }
+
   // Separate lines between pairs of points, or one through all of them.
-  lines(points, { tint, width = 1.5, joined = false, lift = 0 }) {
+  lines(points, { tint, width = 1.5, joined = false, lift = 0, matrix = UNMOVED }) {
     const gl = this.gl, u = this.line.uniforms, count = points.length / 3;
     const segments = joined ? count - 1 : count / 2;
     if (segments < 1) return;
@@ -180,6 +193,7 @@ class Renderer {
       gl.vertexAttribDivisor(place(name), 1);
     }
     gl.uniformMatrix4fv(u.camera, false, this.camera);
+    gl.uniformMatrix4fv(u.model, false, matrix);
     gl.uniform2f(u.screen, this.canvas.width / 2, this.canvas.height / 2);
     gl.uniform1f(u.width, width * this.ratio);
     gl.uniform1f(u.lift, lift);

@@ -62,7 +62,32 @@ function cube() {
   return found;
 }
 
-const SHAPES = { cylinder, cone, sphere, ring, cube };
+// Three quarters of a ring about the first axis, with the head of an arrow.
+function turn() {
+  const steps = 36, around = 10, end = 1.5 * Math.PI, thick = 0.075;
+  const found = { vertices: [], normals: [], triangles: [] };
+  const row = (angle, radius, lean) => {
+    const c = Math.cos(angle), s = Math.sin(angle);
+    for (let k = 0; k <= around; k++) {
+      const p = Math.cos(2 * Math.PI * k / around), q = Math.sin(2 * Math.PI * k / around);
+      found.vertices.push(radius * q, c * (1 + radius * p), s * (1 + radius * p));
+      found.normals.push(q, c * p - lean * s, s * p + lean * c);
+    }
+  };
+  for (let k = 0; k <= steps; k++) row(end * k / steps, thick, 0);
+  row(end, 3.4 * thick, -1);
+  row(end, 3.4 * thick, 0.4);
+  row(end + 0.5, 0, 0.4);
+  for (let r = 0; r < steps + 3; r++) {
+    for (let k = 0; k < around; k++) {
+      const a = r * (around + 1) + k, b = a + around + 1;
+      found.triangles.push(a, a + 1, b, a + 1, b + 1, b);
+    }
+  }
+  return found;
+}
+
+const SHAPES = { cylinder, cone, sphere, ring, cube, turn };
 
 // What a sign is made of: rows [shape, [half length, half widths], direction of its first axis].
 const SIGNS = {

@@ -1,5 +1,5 @@
-// Vectors are arrays of three numbers, quaternions of four with the real part last; matrices are of
-// four columns, as WebGL takes them.
+// Vectors are arrays of three numbers, rotations three columns, quaternions have the real part
+// last; matrices of 16 numbers are of four columns, as WebGL takes them.
 
 const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -9,11 +9,12 @@ const cross = (a, b) => [
   a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const length = (a) => Math.hypot(a[0], a[1], a[2]);
 const unit = (a) => times(1 / (length(a) || 1), a);
+const IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
 // Some direction across another one.
 function across(a) {
   const least = a.map(Math.abs).indexOf(Math.min(...a.map(Math.abs)));
-  return unit(cross(a, [0, 1, 2].map((k) => (k === least ? 1 : 0))));
+  return unit(cross(a, IDENTITY[least]));
 }
 
 // Columns of the rotation matrix of a quaternion.
@@ -24,8 +25,24 @@ function columns([x, y, z, w]) {
     [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]];
 }
 
+// Columns of the matrix of a rotation vector.
+function rotation(vector) {
+  const angle = length(vector);
+  const s = angle > 1e-6 ? Math.sin(angle / 2) / angle : 0.5;
+  return columns([...times(s, vector), Math.cos(angle / 2)]);
+}
+
+// Rotation vector of a matrix, of an angle below pi.
+function vectorOf([a, b, c]) {
+  const twice = [b[2] - c[1], c[0] - a[2], a[1] - b[0]];
+  const sine = length(twice) / 2, angle = Math.atan2(sine, (a[0] + b[1] + c[2] - 1) / 2);
+  return times(sine > 1e-9 ? angle / (2 * sine) : 0.5, twice);
+}
+
 const combine = (axes, a) => add(add(times(a[0], axes[0]), times(a[1], axes[1])),
                                  times(a[2], axes[2]));
+const matrixTimes = (A, B) => B.map((column) => combine(A, column));
+const transposed = (A) => [0, 1, 2].map((k) => [A[0][k], A[1][k], A[2][k]]);
 
 // Matrix that takes the axes to `axes`, of any length, and the origin to `origin`.
 function placed(axes, origin) {

@@ -49,14 +49,14 @@ def _turn(frame: str, angle: float) -> float:
 def half_turn() -> Finding:
     """How far one end of a body can be rotated against the other, and what its frame does."""
     finding = Finding(
-        "node rotations towards pi",
-        "the frame follows half the rotation; past 180 degrees it would flip",
+        "relative rotations near 180 degrees",
+        "a mean frame follows half the rotation, up to 180 degrees",
         "The local rotation is a logarithm, which jumps at half a turn, and with it a frame in "
         f"the middle. It is refused before, from {LIMIT:.1f} degrees on, between the ends of a "
         "body of two nodes, whatever its frame.",
         "Stops with a message that names the reason; warns long before, at 0.3 rad.",
-        "rotation of one node against the other [deg]", "rotation of the frame [deg]",
-        dashed=("middle, by the logarithm",))
+        "rotation of one node relative to the other [deg]", "rotation of the frame [deg]",
+        dashed=("mean beyond the limit",))
     angles = np.arange(10.0, 180.0, 2.5)
     for frame, share in (("converged_mean", 0.5), ("mean", 0.5), ("node", 0.0)):
         turns = np.array([_turn(frame, angle) for angle in angles])
@@ -66,7 +66,7 @@ def half_turn() -> Finding:
             Row(f"{frame}: turn of the frame before [deg]", share * angles[last], turns[last],
                 1e-9)]
         finding.curves[frame] = angles[:last + 1], turns[:last + 1]
-    finding.curves["middle, by the logarithm"] = ((LIMIT, 180.0, 180.0, 270.0),
+    finding.curves["mean beyond the limit"] = ((LIMIT, 180.0, 180.0, 270.0),
                                                  (LIMIT / 2, 90.0, -90.0, -45.0))
     return finding
 
@@ -75,13 +75,13 @@ def collinear() -> Finding:
     """Frame by positions whose nodes nearly lie on a line."""
     finding = Finding(
         "nearly collinear nodes",
-        "the nearer the nodes to a line, the further a deflection turns the frame",
+        "nodes close to a line: deflections rotate the frame more",
         "A frame of best fit turns about the line of its nodes by the deflection of the one beside "
         "it, divided by its distance: with the distance going to zero any deflection becomes a "
         "rotation.",
         "Warns where nodes spread by less than 1e-3 of their length across the line, refuses "
         "1e-6.",
-        "distance from the line / length", "turn of the frame for a deflection of 1e-6 [rad]",
+        "distance from the line / length", "rotation of the frame for a deflection of 1e-6 [rad]",
         logarithmic="xy")
     offsets, turns = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4), []
     for offset in offsets:
@@ -135,12 +135,13 @@ def massless_rotations() -> Finding:
     """Inertia of the rotation about a beam's axis, down to none."""
     finding = Finding(
         "nearly massless rotations",
-        "the motion tends to that without this inertia, in proportion to it",
+        "the motion converges to that without this inertia",
         "A rotation with little inertia has a high frequency, which the scheme damps; the motion "
         "tends to that without it in proportion. Without any its acceleration is undetermined.",
         "Integrates down to 1e-10 of the beam's own inertia with option B, to 1e-8 with D, and "
         "refuses what has none by name.",
-        "share of the inertia about the axis", "change of the tip, relative", logarithmic="xy")
+        "part of the beam's inertia about its axis", "relative change of the tip's motion",
+        logarithmic="xy")
     shares = np.array([1e-1, 1e-2, 1e-3, 1e-4])
     least = _struck(1e-10)
     changes = [np.abs(_struck(share) - least).max() / 10.0 for share in shares]
@@ -177,13 +178,13 @@ def _struck(share: float) -> np.ndarray:
 def negative_weights() -> Finding:
     """A body whose centre of mass lies outside its nodes."""
     finding = Finding(
-        "negative weights",
-        "energy drifts with the square of the step, as with any weights",
+        "negative weights of the frame",
+        "the energy drift is of second order in the step",
         "Nodes at 1/4 and 1/2 of a beam give the weights 0 and 1, at 0 and 1/4 the weights -1 and "
         "2: the frame is extrapolated, and one end turns twice as far against it as the ends "
         "against each other. Energy is kept to second order as with any weights.",
         "Uses them; half a turn is refused at half the relative rotation.",
-        "step [s]", "drift of energy, relative", logarithmic="xy")
+        "step [s]", "relative drift of energy", logarithmic="xy")
     model = Model()
     _beam(model, 10.0, 0, 1)
     weights = model.bodies["beam"].alpha

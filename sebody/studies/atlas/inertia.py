@@ -24,13 +24,13 @@ def impulses() -> Finding:
     """Energy that a beam on a spherical joint takes from an impulse at its tip."""
     finding = Finding(
         "strong impulses, options A, B and C",
-        "energy that a blow at the tip gives, against that of nonlinear beams",
+        "energy given by a blow, compared with nonlinear beams",
         "A and B drop the velocity that the frame's rotation gives to the deformation. The energy "
         "an impulse gives is too low by a share that grows with it, with A several times that "
         "with B: the rest is spurious spin about the beam's axis. C drops nothing.",
         "Takes C, with stiffening; warns when the spin of a body that does not stiffen exceeds its "
         "limit.",
-        "peak force", "error of the energy", logarithmic="xy")
+        "peak force", "relative error of the energy", logarithmic="xy")
     exact = {F: _energy(F, modes=0, elements=8, bodies=8) for F in IMPULSES}
     for F in (700.0, 2800.0):
         finding.rows.append(Row(f"nonlinear beams, force {F:g}", _reference(F), exact[F], 5e-3,
@@ -39,7 +39,7 @@ def impulses() -> Finding:
     for option in "ab":
         errors[option] = [abs(_energy(F, inertia=option) / exact[F] - 1) for F in IMPULSES]
         finding.curves[f"option {option.upper()}"] = IMPULSES, errors[option]
-    for name, stiffening in (("option C", False), ("option C, stiffening", True)):
+    for name, stiffening in (("option C", False), ("option C with stiffening", True)):
         found = [abs(_energy(F, stiffening=stiffening) / exact[F] - 1) for F in IMPULSES]
         finding.curves[name] = IMPULSES, found
         # four modes; eight leave 7e-4
@@ -70,12 +70,12 @@ def _energy(force: float, **parameters) -> float:
 def small_increments() -> Finding:
     """Forces of (20), in which increments of the frame are small, against those of (19)."""
     finding = Finding(
-        "small increments of frames, (20) for (19)",
-        "forces of (20) are wrong by the square of the elastic rotation",
+        "linearized increments of the frame",
+        "error of the forces: second order in the elastic rotation",
         "Equation (20) of the paper leaves out of (19) what is of second order in the elastic "
         "rotation: forces are wrong by its square, 3e-3 at 0.3 rad, and no gradient of an energy.",
         "Ships (20) as frame 'mean_small' for comparison; the default frame is exact.",
-        "elastic rotation [rad]", "difference of the forces", logarithmic="xy")
+        "elastic rotation [rad]", "relative error of the forces", logarithmic="xy")
     angles = np.geomspace(0.01, 0.8, 9)
     found = [_force_difference(angle) for angle in angles]
     finding.curves["measured"] = angles, found

@@ -17,22 +17,22 @@ def damping_of_constraints() -> Finding:
     """A push that a constraint does not allow, for HHT's alpha from 0 to -1/3, and index 2."""
     finding = Finding(
         "disturbed constraints",
-        "a push across a constraint: with alpha 0 forces grow at every step",
+        "constraint forces grow if the scheme has no damping",
         "In constrained directions HHT multiplies the state by a matrix with the double eigenvalue "
         "-(1 + alpha)/(1 - alpha). With alpha 0 multipliers grow with the number of steps, 4 each; "
         "in the stabilised form of index 2 they stay at 1/gamma = 2.",
         "Warns when constraints of index 3 are integrated without numerical damping.",
-        "steps", "h^2 acceleration across the constraint / h v_0", logarithmic="y")
+        "steps", "acceleration across the constraint, h a / v_0", logarithmic="y")
     for alpha in (0.0, -0.05, -0.1, -0.2, -1 / 3):
         scheme = hht(alpha, tolerance=1e-13)
         found = _pushed(scheme)
         theory = _powers(scheme)
         finding.rows.append(Row(f"alpha {alpha:.3g}: after {STEPS} steps", abs(theory[-1]),
                                 abs(found[-1]), 1e-4))
-        finding.curves[f"alpha {alpha:.3g}"] = np.arange(1, STEPS + 1), np.abs(found) + 1e-16
+        finding.curves[f"HHT, alpha {alpha:.3g}"] = np.arange(1, STEPS + 1), np.abs(found) + 1e-16
     index_2 = _pushed(hht(0.0, tolerance=1e-13, index=2))
     finding.rows.append(Row(f"index 2, alpha 0: after {STEPS} steps", 2.0, abs(index_2[-1]), 1e-6))
-    finding.curves["index 2, alpha 0"] = np.arange(1, STEPS + 1), np.abs(index_2)
+    finding.curves["HHT of index 2, alpha 0"] = np.arange(1, STEPS + 1), np.abs(index_2)
     return finding
 
 
@@ -65,12 +65,12 @@ def newton() -> Finding:
     """Step size and Newton's iteration, in a strongly struck beam."""
     finding = Finding(
         "step size and Newton's iteration",
-        "after a strong blow long steps take more iterations, then are cut",
+        "after a strong blow long steps take more iterations",
         "Newton's iteration converges from the prediction only if a step changes the state little: "
         "long steps fail after a strong impulse.",
         "Cuts the step until it converges and goes on; stops with a message and what it has when "
         "1/4096 of the step does not help.",
-        "step [s]", "iterations a step, with cut steps", logarithmic="x")
+        "step [s]", "iterations per step; rejected steps", logarithmic="x")
     steps, iterations, cuts = (0.00125, 0.0025, 0.005, 0.01, 0.02, 0.04), [], []
     for h in steps:
         try:
@@ -82,8 +82,8 @@ def newton() -> Finding:
     finding.rows.append(Row("cut steps at h = 0.0025", 0.0, cuts[1], 0.0, PROGRAM))
     finding.rows.append(Row("cut steps at h = 0.04: some", 1.0, float(cuts[-1] > 0), 0.0,
                             PROGRAM))
-    finding.curves["iterations a step"] = steps, iterations
-    finding.curves["cut steps / 100"] = steps, np.array(cuts) / 100
+    finding.curves["iterations per step"] = steps, iterations
+    finding.curves["rejected steps / 100"] = steps, np.array(cuts) / 100
     return finding
 
 
@@ -91,11 +91,11 @@ def million_steps() -> Finding:
     """Energy and momentum of a beam that turns freely, over a million steps."""
     finding = Finding(
         "a million steps",
-        "a free beam keeps energy and momentum to some millionths",
+        "a free beam: energy and momentum change by some 1e-6",
         "Without loads the moment of momentum is kept but for what Newton's tolerance leaves, here "
         "1e-10 of a step's motion. Energy falls by what numerical damping takes of the vibration.",
         "Nothing has to be done; `Result.energy_balance` shows it for any run.",
-        "steps", "change, relative", logarithmic="xy")
+        "steps", "relative change", logarithmic="xy")
     scene = planar_hinged_beam.build()
     run = Simulation(scene.model, 0.01, generalized_alpha(tolerance=1e-10), output_every=1000)
     result = run.run_to(10000.0).result()
@@ -109,5 +109,5 @@ def million_steps() -> Finding:
         Row("gain of energy", 0.0, max((energy / energy[0] - 1).max(), 0.0), 1e-6),
         Row("loss of energy, that of vibration", 0.0, (1 - energy / energy[0]).max(), 1e-4)]
     finding.curves["energy"] = steps, np.abs(energy[1:] / energy[0] - 1) + 1e-16
-    finding.curves["moment of momentum"] = steps, np.abs(momentum[1:] / momentum[0] - 1) + 1e-16
+    finding.curves["angular momentum"] = steps, np.abs(momentum[1:] / momentum[0] - 1) + 1e-16
     return finding

@@ -33,13 +33,13 @@ WITHIN = (1e-3, 1e-3, 5e-3)                     # four modes in the plane; eight
 def spurious_divergence() -> Finding:
     """Spin at which a cantilever in its plane diverges; a beam never does."""
     finding = Finding(
-        "divergence at high spin, option B",
-        "spin at which a cantilever diverges: never, where stresses stiffen it",
+        "loss of stability at high spin, option B",
+        "critical spin; with geometric stiffening there is none",
         "A beam stiffens as it turns and never diverges in its plane. A linear body does not: it "
         "diverges where W^2 times its inertia exceeds its stiffness. The limit grows with the "
         "number of bodies; one body that stiffens has none.",
         "Stiffens by default; warns once when a body that does not spins beyond its own limit.",
-        "bodies", "spin of divergence, W sqrt(rho A L^4 / EI)", logarithmic="xy")
+        "number of bodies", "critical spin, W sqrt(rho A L^4 / EI)", logarithmic="xy")
     _by_bodies(finding, lambda n, frame: divergence(cantilever(n, frame), option_b=True),
                lambda n, frame, theory: onset(lambda eta: grows(
                    lambda: spinning(arm(n, frame), eta), eta), 0.7 * theory, 1.3 * theory, 7),
@@ -59,8 +59,8 @@ def spurious_divergence() -> Finding:
 def frequencies() -> Finding:
     """The first frequency in the plane of a cantilever that turns, of one body."""
     finding = Finding(
-        "one body that turns",
-        "first frequency in the plane of the spin of a cantilever, four modes",
+        "one rotating body",
+        "first in-plane frequency of a cantilever, four modes",
         "A beam's first frequency in the plane of the spin grows, from 3.516 to 5.427 at 12. One "
         "body that stiffens follows it; exact inertia without stiffening and option B have none "
         "from 6 on.",
@@ -69,8 +69,8 @@ def frequencies() -> Finding:
         finding.rows.append(Row(f"theory, spin {eta:g}", exact, lag(eta), 1e-4, REFERENCE))
     line = np.linspace(SPINS[0], SPINS[-1], 25)
     finding.curves["beam"] = line, [lag(eta) for eta in line]
-    kinds = {"one body that stiffens": {"inertia": None},
-             "exact inertia alone": {"inertia": None, "stiffening": False},
+    kinds = {"one body with stiffening": {"inertia": None},
+             "exact inertia, no stiffening": {"inertia": None, "stiffening": False},
              "option B": {"inertia": "b"}}
     for name, kind in kinds.items():
         found = [_lowest(arm(1, "mean", MODES, **kind), eta) for eta in SPINS]
@@ -96,7 +96,7 @@ def spin_up_outcomes() -> Finding:
     """The spin-up of two flexible arms: bounded or not, and how deep the tip bends."""
     finding = Finding(
         "spin-up of a flexible arm, option B",
-        "too few bodies of option B bend too far; one that stiffens is enough",
+        "too few bodies of option B bend too far",
         "One body with its frame at the root diverges when the speed passes its first frequency. "
         "Kane's arm at 4 rad/s survives with two, Simo's at 6 rad/s does not; with four and eight "
         "the deflection tends to that of the beam, -0.534 and -0.574. One body that stiffens and "
@@ -125,7 +125,7 @@ def spin_up_outcomes() -> Finding:
         finding.rows.append(Row(f"{case}, one body that stiffens: deepest", DEEPEST[case], v.min(),
                                 2e-3, REFERENCE))
         if case == "kane":
-            finding.curves["one body that stiffens"] = t, v
+            finding.curves["one body with stiffening"] = t, v
     return finding
 
 
@@ -153,13 +153,13 @@ def _deflection(case: str, bodies: int, frame: str, inertia: str | None = "b", m
 def buckling() -> Finding:
     """Dead load along a cantilever."""
     finding = Finding(
-        "Euler's load, option B",
-        "a cantilever buckles too late where stresses do not stiffen it",
+        "Euler buckling load, option B",
+        "without geometric stiffening the buckling load is too high",
         "Bodies that are linear in their frames buckle where the frames turn: not at all with one "
         "body and the frame at its root, at 3 EI/L^2 with a chord, and at pi^2/4 in the limit. One "
         "body that stiffens buckles at pi^2/4.",
         "Finds no stable equilibrium beyond the load and says so.",
-        "bodies", "load / (EI/L^2)", logarithmic="x")
+        "number of bodies", "load / (EI/L^2)", logarithmic="x")
     _by_bodies(finding, lambda n, frame: euler_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
                    lambda: pressed(arm(n, frame), p, False)), 1.5, 6.0, 19), 2e-3)
@@ -171,13 +171,13 @@ def buckling() -> Finding:
 def flutter() -> Finding:
     """A load that follows the tip of a cantilever."""
     finding = Finding(
-        "Beck's load, option B",
-        "a cantilever flutters too late where stresses do not stiffen it",
+        "flutter load of Beck's column, option B",
+        "without geometric stiffening the flutter load is too high",
         "A beam flutters at 20.05 EI/L^2. One linear body does not flutter below 80, two at 24 "
         "(chord) to 39 (node); the load converges from above with the square of their number. One "
         "body that stiffens flutters at 20.05.",
         "Eigenvalues of the linearisation show it; a simulation flutters, without a warning.",
-        "bodies", "load / (EI/L^2)", logarithmic="x")
+        "number of bodies", "load / (EI/L^2)", logarithmic="x")
     _by_bodies(finding, lambda n, frame: beck_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
                    lambda: pressed(arm(n, frame, 6 // n + 1), p, True)), 15.0, 80.0, 27), 0.01)
@@ -192,7 +192,7 @@ def _of_one_body(finding: Finding, exact: float, follower: bool, within: float) 
         found = onset(lambda p, own=frame: grows(lambda: pressed(
             arm(1, own, MODES, None), p, follower)), 0.9 * exact, 1.1 * exact, 3)
         finding.rows.append(Row(f"{frame} frame, one body that stiffens", exact, found, within))
-    finding.curves["one body that stiffens"] = (1,), [found]
+    finding.curves["one body with stiffening"] = (1,), [found]
 
 
 def _by_bodies(finding: Finding, theory: Callable[[int, str], float],

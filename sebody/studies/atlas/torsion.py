@@ -33,13 +33,13 @@ def blade(torsion: float, frame: str, option: dict) -> Model:
 def soft_torsion() -> Finding:
     """Spin at which a blade of one body diverges in torsion; none does."""
     finding = Finding(
-        "torsion of a turning blade, option B",
-        "a straight blade of option B diverges by twisting; a real one never does",
+        "torsion of a rotating blade, option B",
+        "a straight blade of option B becomes unstable in torsion",
         "Option B takes angular velocities in the axes of the nodes, which turn as the blade "
         "twists, and momenta of bending work on that: a straight blade diverges in torsion, at W "
         "= 8.94 sqrt(G J / m L^4) with the mean frame, 4.10 with a node's. A real one does not.",
         "Stiffens by default; computes the limit of the body at hand and warns at a quarter of it.",
-        "G J / E I", "spin of divergence, W sqrt(m L^4 / E I)", logarithmic="xy")
+        "G J / E I", "critical spin, W sqrt(m L^4 / E I)", logarithmic="xy")
     for frame, square in SQUARES.items():
         limits = []
         for torsion in SOFTNESS:

@@ -206,8 +206,8 @@ class _Chart:
                     yield self._plan("steps", f"{name}, {told}".removeprefix(", "), forms,
                                      Step(self.h / finer))
             for local in LOCAL:
-                yield self._plan("steps", f"{name}, variable, {local:g}".removeprefix(", "), forms,
-                                 Step(self.grid * self.h, local))
+                told = f"{name}, variable step, tolerance {local:g}".removeprefix(", ")
+                yield self._plan("steps", told, forms, Step(self.grid * self.h, local))
 
     def _schemes(self) -> Iterator[Plan]:
         given = Choice(self.given, Step(self.h))

@@ -11,7 +11,8 @@ from sebody.studies.catalogue import builder
 SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
           "spherical-beam": "tip.position", "spherical-beam-strong": "tip.position",
           "slider-crank": "pin.rotation", "spin-up": "tip.position"}
-STEPS = {0.25: "4 h", 0.5: "2 h", 1.0: "h", 2.0: "h/2", 4.0: "h/4"}     # finer: name
+# finer: name, of the step of the scene
+STEPS = {0.25: "step x 4", 0.5: "step x 2", 1.0: "step x 1", 2.0: "step / 2", 4.0: "step / 4"}
 COARSEST = 4        # histories are compared on a grid of so many of the scene's own steps
 
 
@@ -35,16 +36,18 @@ def variants(scene: str) -> list[Variant]:
 
 def _frames(planar: bool) -> list[Variant]:
     frames = ["node", "converged_mean"] + ([] if planar else ["mean", "mean_small"])
-    titles = {"node": "frame at a node", "converged_mean": "mean frame", "mean": "mean, one step",
-              "mean_small": "mean, small increments (20)"}
-    found = [(f"{titles[f]}, B", {"frame": f, "inertia": "b"}) for f in frames]
-    found += [("mean frame, A", {"inertia": "a"}), ("frame at a node, C", {"frame": "node"}),
-              ("mean frame, C", {}), ("mean frame, C, no stiffening", {"stiffening": False})]
+    titles = {"node": "frame at a node", "converged_mean": "mean frame",
+              "mean": "mean frame, one iteration", "mean_small": "mean frame, linear increments"}
+    found = [(f"{titles[f]}, option b", {"frame": f, "inertia": "b"}) for f in frames]
+    found += [("mean frame, option a", {"inertia": "a"}),
+              ("frame at a node, option c", {"frame": "node"}), ("mean frame, option c", {}),
+              ("mean frame, option c, no stiffening", {"stiffening": False})]
     return [Variant("frames and inertia", *one) for one in found]
 
 
 def _divisions() -> list[Variant]:
-    found = [Variant("modes" + of, f"1 body, {m} modes{of}", {"modes": m, "bodies": 1} | given)
+    found = [Variant("modes" + of, f"1 body, {m} modes" + of.replace("B", "option b"),
+                     {"modes": m, "bodies": 1} | given)
              for of, given in (("", {}), (", B", {"inertia": "b"})) for m in (0, 1, 2, 4, 8)]
     found += [Variant("bodies", f"{n} bodies, {m} modes", {"bodies": n, "modes": m,
                                                            "elements": 24})

@@ -13,11 +13,18 @@ from sebody.studies.chart.points import Point
 COLORS = {"frames and inertia": "#c8452d", "modes": "#2a7f62", "modes, B": "#7fc8a9",
           "bodies": "#3c6fb6", "steps": "#b58a1b", "nonlinear beams": "#1f2a44",
           "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
+# families by what is varied in them
+NAMES = {"frames and inertia": "frame, inertia option", "modes": "number of modes",
+         "modes, B": "number of modes, option b", "bodies": "number of bodies",
+         "steps": "time step", "nonlinear beams": "nonlinear beam elements",
+         "schemes": "integration scheme", "inertia": "inertia option", "rigid": "rigid parts"}
 OTHERS = ("#c8452d", "#3c6fb6", "#2a7f62", "#8a4fa3", "#b58a1b", "#d98a6a", "#7fc8a9", "#1f2a44")
 INK, PALE = "#1f2a44", "#9aa5b8"
 MOST_NAMES = 7      # of the front that are written beside their points
 APART = 0.8         # of the error of the named point before: nearer names would cover one another
 DIFFER = 1.1        # cost of the slowest run over that of the quickest from which both are shown
+SLOWEST = {"linestyle": "-", "marker": "|", "linewidth": 0.8, "markersize": 4, "markevery": [-1],
+           "alpha": 0.6, "zorder": 1}
 MARGIN = 0.1        # of the axes beside the points, of their extent
 COLUMNS = 5         # of the legend
 TITLE, FAMILY = 60, 30      # characters of a line of the title, of a family's name
@@ -25,7 +32,7 @@ TITLE, FAMILY = 60, 30      # characters of a line of the title, of a family's n
 
 def draw(name: str, points: Iterable[Point], line: Iterable[Point], limit: float,
          path: str | Path, choice: Point | None = None, tolerance: float | None = None,
-         cost: str = "computing time a simulated second [s]") -> None:
+         cost: str = "computing time per simulated second [s]") -> None:
     """Error against computing time, one colour a family, the front as a line with its names.
 
     Parameters
@@ -65,7 +72,7 @@ def draw(name: str, points: Iterable[Point], line: Iterable[Point], limit: float
     axes.set_ylim(_around([*(p.error for p in points), *filter(None, (limit, tolerance))]))
     _families(axes, points)
     axes.step([p.cost for p in line], [p.error for p in line], where="post", color=INK,
-              linewidth=0.8, zorder=1)
+              linewidth=0.8, zorder=1, label="lowest error for the time")
     named = _named(line)
     if choice is not None and _drawn(choice):
         axes.plot([choice.cost], [choice.error], "o", markersize=13, markerfacecolor="none",
@@ -78,7 +85,7 @@ def draw(name: str, points: Iterable[Point], line: Iterable[Point], limit: float
         _level(axes, tolerance, f"tolerance {tolerance:g}")
     axes.set_xlabel(labels.wrapped(cost, TITLE))
     axes.set_ylabel("relative error")
-    axes.set_title(labels.wrapped(f"{name}: error against time", TITLE), loc="left",
+    axes.set_title(labels.wrapped(f"{name}: error and computing time", TITLE), loc="left",
                    fontsize=10)
     axes.grid(color="#e6e9ef", which="both", linewidth=0.5)
     axes.set_axisbelow(True)
@@ -110,11 +117,12 @@ def _families(axes, points: list[Point]) -> None:
         color = COLORS[family] if family in COLORS else next(others)
         axes.plot([p.cost for p in group], [p.error for p in group],
                   "^" if family == "Exudyn" else "o", color=color, markersize=5,
-                  label=labels.wrapped(family, FAMILY, 2))
+                  label=labels.wrapped(NAMES.get(family, family), FAMILY, 2))
         for p in group:
             if p.slowest > DIFFER * p.cost:
-                axes.plot([p.cost, p.slowest], [p.error, p.error], "-|", color=color,
-                          linewidth=0.8, markersize=4, markevery=[1], alpha=0.6, zorder=1)
+                axes.plot([p.cost, p.slowest], [p.error, p.error], color=color, **SLOWEST)
+    if any(p.slowest > DIFFER * p.cost for p in points):
+        axes.plot([], [], color=PALE, label="slowest of several runs", **SLOWEST)
 
 
 def _named(line: list[Point]) -> list[Point]:

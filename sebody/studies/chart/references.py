@@ -2,22 +2,24 @@
 
 import hashlib
 import warnings
-import zlib
 from pathlib import Path
 from typing import NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.simulation import simulate
+from sebody.errors import InputError
 from sebody.files import replacing
+from sebody.files.arrays import opened
+from sebody.files.members import Member, Table
 from sebody.kernels.loader import user_directory
 from sebody.studies.chart.cases import COARSEST, SCENES, builder
 
 ELEMENTS = 24       # of the first run; the second has twice as many
 FINER = 8           # scene's own step over that of the first run; twice that in the second
+MEMBERS = {"values": Member((None, ...)), "error": Member((), least=0)}
 
 
 class Reference(NamedTuple):
@@ -35,8 +37,10 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
     """
     folder = folder or user_directory().parent / "references"
     path = folder / f"{scene}-{_key(scene)}.npz"
-    if (kept := _read(path)) is not None:
-        return kept
+    try:
+        return kept(path)
+    except InputError:      # none, or a damaged one
+        pass
     coarse = history(scene, ELEMENTS, FINER)
     finer_beams = history(scene, 2 * ELEMENTS, FINER)
     finer_steps = history(scene, ELEMENTS, 2 * FINER)
@@ -53,13 +57,17 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
     return found
 
 
-def _read(path: Path) -> Reference | None:
-    """A reference that was kept; None where there is none, or a damaged file."""
-    try:
-        with np.load(path) as data:
-            return Reference(data["values"], float(data["error"]))
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error):
-        return None
+def kept(path: Path) -> Reference:
+    """A reference that was kept.
+
+    Raises
+    ------
+    InputError
+        There is none, or it is damaged.
+    """
+    with opened(path, "reference", "remove it") as reader:
+        found = Table(f"reference {path}", "remove it", MEMBERS).read(reader)
+    return Reference(found["values"], float(found["error"]))
 
 
 def history(scene: str, elements: int, finer: int) -> NDArray:

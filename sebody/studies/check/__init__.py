@@ -7,9 +7,9 @@ rotations of the order of one radian, elastic rotations to 0.3, moving and accel
 from collections.abc import Iterable
 
 from sebody.analysis.first_run import compile_missing
-from sebody.errors import InputError
 from sebody.kernels.loader import load
 from sebody.kernels.names import MOTION, SUPERELEMENT
+from sebody.spelling import unknown
 from sebody.studies.catalogue import kernel_files
 from sebody.studies.check.body_loads import check_body_load
 from sebody.studies.check.elements import check_element
@@ -33,7 +33,7 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
     chosen = list(names or known)
     for name in chosen:
         if name not in known:
-            raise InputError(f"kernel {name!r} is unknown: there are {', '.join(known)}")
+            raise unknown("kernel", name, known)
     compile_missing(chosen)
     for name in chosen:
         module = load(name)

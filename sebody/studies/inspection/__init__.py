@@ -22,6 +22,7 @@ class Inspection(NamedTuple):
     """Numbers by name, findings and the verdict on a body."""
 
     file: BodyFile
+    body: measures.Matrices
     numbers: dict
     findings: list[Finding]
     verdict: str
@@ -49,7 +50,7 @@ def inspect(file: BodyFile) -> Inspection:
     numbers["frame"] = measures.frame(body, numbers["centre"])
     numbers["stiffening"] = measures.stiffening(file, body)
     found = findings_of(file, body, numbers)
-    return Inspection(file, numbers, found, verdict(found))
+    return Inspection(file, body, numbers, found, verdict(found))
 
 
 def to_json(inspection: Inspection) -> str:

@@ -41,7 +41,7 @@ class Finding(NamedTuple):
 def findings_of(file: BodyFile, body: Matrices, numbers: dict) -> list[Finding]:
     """All findings, defects first."""
     found = [*_symmetry(body), *_mass(numbers), *_rigid(numbers), *_stiffness(body, numbers),
-             *_frame(body, numbers), *_steps(numbers), *_constants(file)]
+             *_frame(body, numbers), *_steps(numbers), *_cautions(file)]
     if all(one.severity != "defect" for one in found):
         found += _refused(file)
     return sorted(found, key=lambda one: one.severity != "defect")
@@ -161,9 +161,6 @@ def _steps(numbers: dict) -> list[Finding]:
     return []
 
 
-def _constants(file: BodyFile) -> list[Finding]:
-    if file.parts.get("invariants") is None:
-        return [Finding("caution", "no constants of exact inertia: inertia option D, or A and "
-                        "B, without stiffening",
-                        "import the FE model with its mesh, not reduced matrices alone")]
-    return []
+def _cautions(file: BodyFile) -> list[Finding]:
+    """Stresses, stiffening and inertia that the body does not know, and odd materials."""
+    return [Finding("caution", *text.split("; ", 1)) for text in file.cautions]

@@ -15,6 +15,7 @@ from sebody.errors import InputError
 from sebody.io.body_file import BodyFile
 from sebody.reduction import frame_weights
 from sebody.reduction.checks import (
+    asymmetry,
     check_layout,
     coordinate_names,
     rigid_residual,
@@ -76,8 +77,8 @@ def matrices_of(file: BodyFile) -> Matrices:
     parts = file.parts
     coordinates, keeps = np.asarray(parts["coordinates"], dtype=float), tuple(parts["keeps"])
     check_layout(coordinates, keeps)
-    names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0))
-    found, asymmetry = {}, {}
+    names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0), file.names)
+    found, differences = {}, {}
     for name in ("stiffness", "mass"):
         matrix = np.asarray(parts[name], dtype=float)
         if matrix.shape != (len(names),) * 2:
@@ -87,12 +88,11 @@ def matrices_of(file: BodyFile) -> Matrices:
             i, j = np.argwhere(~np.isfinite(matrix))[0]
             raise InputError(f"{name}[{i}, {j}] is {matrix[i, j]} ({names[i]}, {names[j]}): export "
                              "the matrix again")
-        scale = unit_scale(matrix, names)
-        asymmetry[name] = float(np.max(np.abs(matrix - matrix.T) / np.outer(scale, scale)))
+        differences[name] = float(asymmetry(matrix, names, coordinates).max())
         found[name] = (matrix + matrix.T) / 2
     rigid = rigid_motions(coordinates, keeps, len(names), coordinates.mean(axis=0))
     return Matrices(**found, coordinates=coordinates, keeps=keeps, names=names,
-                    asymmetry=asymmetry, rigid=rigid)
+                    asymmetry=differences, rigid=rigid)
 
 
 def mass_properties(body: Matrices) -> dict:
@@ -172,6 +172,23 @@ def frequencies(body: Matrices) -> dict:
     return {"rigid": hertz[:rigid], "flexible": flexible[:SHOWN], "count": len(flexible),
             "highest": float(last), "step_first": 1 / (PERIOD * first) if first > 0 else np.inf,
             "step_highest": 1 / (PERIOD * last) if last > 0 else np.inf}
+
+
+def free_modes(body: Matrices, most: int) -> tuple[NDArray, NDArray]:
+    """Frequencies (k,) in Hz of the lowest free vibrations, and their motions (n, k)."""
+    size = np.sqrt(unit_scale(body.mass, body.names))
+    stiffness, mass = (matrix / np.outer(size, size) for matrix in (body.stiffness, body.mass))
+    rigid = body.rigid.shape[1]
+    shift = np.trace(np.abs(stiffness)) / max(np.trace(mass), 1e-300) * 1e-6
+    try:        # the inverse problem: coordinates may be massless
+        inverse, shapes = eigh(mass, stiffness + shift * mass)
+    except LinAlgError:
+        return np.zeros(0), np.zeros((len(size), 0))
+    inverse, shapes = inverse[::-1], shapes[:, ::-1]
+    there = inverse[rigid:] > 1e-14 * inverse[0]
+    squares = 1 / inverse[rigid:][there] - shift
+    found = shapes[:, rigid:][:, there] / size[:, None]
+    return np.sqrt(np.maximum(squares, 0.0))[:most] / (2 * np.pi), found[:, :most]
 
 
 def _massless(stiffness: NDArray, mass: NDArray) -> NDArray:

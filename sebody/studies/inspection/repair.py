@@ -41,6 +41,7 @@ def free_rigid_motion(file: BodyFile) -> tuple[BodyFile, list[str]]:
     unit_free = remove @ (body.stiffness / np.outer(scale, scale)) @ remove
     stiffness = (unit_free + unit_free.T) / 2 * np.outer(scale, scale)
     repaired = replace(file, parts=file.parts | {"stiffness": stiffness},
+                       changed=tuple(name for name in file.changed if name != "stiffness"),
                        provenance={**file.provenance, "repair": f"rigid motion projected, |K R| "
                                    f"was {before:.3e} of |K| |R|"})
     repaired, constants = _without_contradictions(repaired)

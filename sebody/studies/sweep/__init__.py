@@ -5,7 +5,7 @@
 
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 from sebody import inputs
 from sebody.analysis.ensembles import Output
 from sebody.analysis.ensembles.work import processors
+from sebody.analysis.progress import showing
 from sebody.errors import InputError
 from sebody.files import check_target
 from sebody.studies.sweep import places, sobol
@@ -34,7 +35,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
           seed: int = 0, sampler: str = "lhs", sobol_n: int | None = None,
           fixed: Mapping[str, Any] | None = None, output: str | Path | None = None,
           threads: int | None = None, cluster: str | None = None, workers: int | None = None,
-          progress: Callable[[float], None] | None = None) -> Table:
+          progress: Callable[[float], None] | bool | None = None) -> Table:
     """Run a scene for all combinations of listed values, each with all sampled sets.
 
     Parameters are ``step``, ``t_end``, ``rho``, arguments of `build`, with which the model is built
@@ -70,7 +71,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     InputError
         Before the first run: unknown names, values that cannot be had, a table of another sweep.
     """
-    listed, sampled, fixed = dict(listed or {}), dict(sampled or {}), dict(fixed or {})
+    listed, sampled, fixed = _checked(build, outputs, listed, sampled, fixed)
     made = (sobol.saltelli(sampled, sobol_n, seed) if sobol_n is not None
             else design(listed, sampled, runs, seed, sampler))
     if sobol_n is not None and listed:
@@ -85,16 +86,16 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     path = None if output is None else check_target(output, "table", (".npz",))
     table = _begun(path, _text(build, fixed, outputs, made), made)
     left = np.flatnonzero(~table.done)
-    where = (places.cluster(cluster, workers) if cluster or workers else
+    where = (places.cluster(cluster, workers) if cluster is not None or workers is not None else
              places.threads(processors() if threads is None else
                             inputs.integer(threads, "threads", least=1)))
     saved = time.monotonic()
     try:
-        with where as run:
+        with showing(progress, None) as show, where as run:
             for answer in run(iter(tasks_of(plan, made.columns, structural, left, BATCH))):
                 table.take(answer)
-                if progress:
-                    progress(table.done.mean())
+                if show:
+                    show(table.done.mean())
                 if path and time.monotonic() - saved > SAVED:
                     table.save(path)
                     saved = time.monotonic()
@@ -104,11 +105,53 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     return table
 
 
+def _checked(build: Callable[..., Any], outputs: Mapping[str, Output],
+             *given: Mapping[str, Any] | None) -> list[dict[str, Any]]:
+    """Listed, sampled and fixed values as dicts of names.
+
+    Raises
+    ------
+    InputError
+        Something else, values that are no list or of which one is there twice.
+    """
+    inputs.function(build, "build", "give a function that returns a Scene")
+    inputs.mapping(outputs, "outputs", "give a dict of names and what maximum(...) and the like "
+                   "return")
+    found = [inputs.mapping({} if one is None else one, what, "give a dict of values by name")
+             for one, what in zip(given, ("listed", "sampled", "fixed"), strict=True)]
+    for one in found:
+        for name in one:
+            inputs.name(name, "name of a parameter")
+    for name, values in found[0].items():
+        found[0][name] = inputs.items(values, f"values of {name}", "give a list")
+        if not found[0][name]:
+            raise inputs.refusal(f"values of {name}", values, "give one at least")
+        for value in found[0][name]:
+            if not isinstance(value, Hashable):
+                raise inputs.refusal(f"a value of {name}", value, "give a number or a text")
+        if twice := first_twice(found[0][name]):
+            raise InputError(f"{name} has the value {inputs.shown(twice[0])} twice: give it once")
+    for name, one in found[1].items():
+        inputs.instance(one, f"distribution of {name}", Distribution, "give what "
+                        "sebody.studies.sweep.axes.distribution returns")
+    return found
+
+
+def first_twice(values: list) -> tuple | None:
+    """The first value that occurs again, if there is one; values may be of any kind."""
+    seen = set()
+    for value in values:
+        if (type(value), repr(value)) in seen:
+            return (value,)
+        seen.add((type(value), repr(value)))
+    return None
+
+
 def _begun(path: Path | None, text: str, made: Design) -> Table:
     """The table that is there already, or an empty one."""
     if path is not None and path.exists():
         table = Table.load(path)
-        if table.design != text:
+        if table.design != text or not table.has(made.columns):
             raise InputError(f"{path} is the table of another sweep, with other scenes, parameters "
                              "or outputs: give another --output, or remove it")
         return table

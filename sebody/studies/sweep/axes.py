@@ -14,6 +14,7 @@ from sebody.errors import InputError
 
 RANGE = re.compile(r"^(-?[^:]+):(-?[^:]+)(?::(.+))?$")
 CALL = re.compile(r"^(\w+)\((.*)\)$")
+MOST_VALUES = 100_000       # of a range
 SAMPLERS = ("lhs", "sobol", "random")
 
 
@@ -71,7 +72,10 @@ def values_of(text: str) -> tuple[str, list]:
     if not all(isinstance(n, int | float) for n in (low, high, step)) or not (
             step > 0 and high >= low):
         raise InputError(f"{text}: a range is LOW:HIGH or LOW:HIGH:STEP, with HIGH above LOW")
-    count = int(np.floor((high - low) / step + 1e-9)) + 1
+    count = np.floor((high - low) / step + 1e-9) + 1
+    if not count <= MOST_VALUES:
+        raise InputError(f"{text} are {count:.3g} values: give at most {MOST_VALUES}")
+    count = int(count)
     return name, [low + step * k for k in range(count)]
 
 
@@ -98,7 +102,9 @@ def distribution(kind: str, numbers: Sequence[float], what: str) -> Distribution
     InputError
         An unknown distribution, or numbers it cannot have.
     """
-    if kind not in DISTRIBUTIONS:
+    inputs.text(what, "name of a distribution")
+    numbers = inputs.items(numbers, f"{what}: numbers", "give a list")
+    if not isinstance(kind, str) or kind not in DISTRIBUTIONS:
         raise InputError(f"{what}: distribution {kind!r} is unknown, there are "
                          f"{', '.join(DISTRIBUTIONS)}")
     wanted = DISTRIBUTIONS[kind][0]
@@ -126,5 +132,5 @@ def _halves(text: str, form: str) -> tuple[str, str]:
 def _literal(text: str) -> Any:
     try:
         return ast.literal_eval(text.strip())
-    except (ValueError, SyntaxError):
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
         return text.strip()

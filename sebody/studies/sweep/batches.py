@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.analysis.ensembles import Ensemble, Output
 from sebody.analysis.schemes import generalized_alpha
-from sebody.errors import SebodyError
+from sebody.analysis.simulation import MOST_STEPS
+from sebody.errors import InputError, SebodyError
 
 KEPT = 32               # ensembles that a process keeps
+TRIED = 64              # structures that are built before the first run, to see that they can be
 OF_RUN = ("step", "t_end", "rho")       # parameters that are of the run, not of the scene
 
 _lock = Lock()
@@ -80,12 +82,36 @@ def _ensemble(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensem
 def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble, float]:
     given = {**dict(plan.fixed), **dict(structure)}
     of_run = {name: given.pop(name) for name in OF_RUN if name in given}
-    scene = plan.build(**given)
+    scene = _scene(plan.build, given)
     scheme = generalized_alpha(of_run["rho"]) if "rho" in of_run else None
     h = inputs.number(of_run.get("step", scene.h), "the time step", above=0)
     t_end = inputs.number(of_run.get("t_end", scene.t_end), "t_end", least=0)
+    if not t_end / h <= MOST_STEPS:
+        raise InputError(f"t_end is {t_end:g}: that is {t_end / h:.3g} steps of {h:g}, give an "
+                         "earlier time or a longer step")
     steps = round(t_end / h)
     return Ensemble(scene.model, h, scheme), steps * h
+
+
+def _scene(build: Callable[..., Any], given: Mapping[str, Any]) -> Any:
+    """What a scene's function returns.
+
+    Raises
+    ------
+    InputError
+        It raises something, or returns no scene.
+    """
+    shown = ", ".join(f"{name}={inputs.shown(value)}" for name, value in given.items())
+    try:
+        scene = build(**given)
+    except SebodyError as error:
+        raise InputError(f"build({shown}): {error}") from error
+    except Exception as error:          # of a user's file
+        raise InputError(f"build({shown}) raised {type(error).__name__}: {error}; correct the "
+                         "scene or its parameters") from error
+    if not all(hasattr(scene, name) for name in ("model", "h", "t_end")):
+        raise inputs.refusal(f"what build({shown}) returned", scene, "return a Scene")
+    return scene
 
 
 def tasks_of(plan: Plan, columns: Mapping[str, NDArray], structural: set[str], rows: NDArray,
@@ -135,5 +161,19 @@ def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str])
     of_structure = {n: v for n, v in columns.items() if n in structural}
     first = tasks_of(plan, of_structure, structural, np.arange(1), 1)[0][0]
     ensemble, t_end = _ensemble(plan, first.structure)
+    for structure in _others(of_structure, first.structure):
+        _built(plan, structure)
     ensemble.check({name: values for name, values in columns.items() if name not in structural},
                    t_end, dict(plan.outputs))
+
+
+def _others(columns: Mapping[str, NDArray], first: tuple[tuple[str, Any], ...]
+            ) -> list[tuple[tuple[str, Any], ...]]:
+    """Further structures to try: all of a few, else every value once beside the first ones."""
+    rows = zip(*(map(_plain, values) for values in columns.values()), strict=True)
+    every = list({repr(row): tuple(zip(columns, row, strict=True)) for row in rows}.values())
+    if len(every) > TRIED:
+        every = [tuple((n, value if n == name else old) for n, old in first)
+                 for name, values in columns.items()
+                 for value in {repr(v): _plain(v) for v in values}.values()]
+    return [one for one in every[:TRIED] if repr(one) != repr(first)]

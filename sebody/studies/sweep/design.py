@@ -13,6 +13,8 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.studies.sweep.axes import SAMPLERS, Distribution
 
+MOST_RUNS = 10_000_000
+
 
 @dataclass(frozen=True)
 class Design:
@@ -71,8 +73,9 @@ def design(listed: Mapping[str, list], sampled: Mapping[str, Distribution], runs
     if runs is not None and not sampled:
         raise InputError("runs counts sampled sets, and nothing is sampled: give --sample "
                          "NAME=DISTRIBUTION or leave it out")
-    combinations = list(product(*listed.values()))
     count = 1 if runs is None else inputs.integer(runs, "runs", least=1)
+    check_runs(float(count) * float(np.prod([float(len(v)) for v in listed.values()])))
+    combinations = list(product(*listed.values()))
     shares = _shares(len(sampled), count, seed, sampler)
     columns: dict[str, NDArray] = {}
     for k, name in enumerate(listed):
@@ -80,6 +83,19 @@ def design(listed: Mapping[str, list], sampled: Mapping[str, Distribution], runs
     for k, (name, one) in enumerate(sampled.items()):
         columns[name] = np.tile(one.at(shares[:, k]), len(combinations))
     return Design(listed, sampled, columns)
+
+
+def check_runs(runs: float) -> None:
+    """Refuse more runs than a sweep can have.
+
+    Raises
+    ------
+    InputError
+        There are.
+    """
+    if runs > MOST_RUNS:
+        raise InputError(f"that are {runs:.3g} runs: a sweep has at most {MOST_RUNS}; give fewer "
+                         "values or a smaller --runs")
 
 
 def _shares(dimensions: int, count: int, seed: int, sampler: str) -> NDArray:

@@ -1,15 +1,19 @@
 """Where the tasks of a sweep run: threads here, processes here, or the workers of a cluster."""
 
+import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from logging import CRITICAL, getLogger
 from typing import Any
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.studies.sweep.batches import Answer, Batch, run_task
 
 AHEAD = 4               # tasks that wait for each worker: more would only fill the scheduler
 RETRIES = 5             # of a task whose worker is lost
+MOST_WORKERS = 1024     # processes of one machine
 PATIENCE = 10           # seconds to find a scheduler
 
 Task = list[Batch]
@@ -55,6 +59,14 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Run]:
     InputError
         No Dask, no scheduler at the address, or workers with another version of this package.
     """
+    if workers is not None:
+        workers = inputs.integer(workers, "workers", least=1, most=MOST_WORKERS)
+    if address is not None:
+        if not re.search(r":\d{1,5}$", inputs.name(address, "address of a scheduler")):
+            raise inputs.refusal("address of a scheduler", address, "give host and port, such as "
+                                 "tcp://10.0.0.1:8786")
+        if workers is not None:
+            raise InputError("--cluster has workers of its own: leave out --workers")
     try:
         from distributed import Client, LocalCluster
     except ImportError as error:
@@ -65,11 +77,16 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Run]:
         if address is None:
             own = LocalCluster(n_workers=workers, threads_per_worker=1, processes=True,
                                dashboard_address=None)
+        log = getLogger("distributed")
+        level = log.level
+        log.setLevel(CRITICAL + 1)      # its own account of a scheduler that is not there is long
         try:
             client = Client(own or address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError) as error:
             raise InputError(f"there is no scheduler at {address} ({error}): start one with "
                              "'dask scheduler', and workers with 'dask worker ADDRESS'") from error
+        finally:
+            log.setLevel(level)
         with client:
             _check_versions(client, address)
             yield lambda tasks: _on_workers(client, tasks)
@@ -89,13 +106,10 @@ def _check_versions(client: Any, address: str | None) -> None:
 
 
 def _version() -> str:
-    """Version of the package, none where it is not installed."""
-    from importlib.metadata import PackageNotFoundError, version
+    """Version of the package, also that of a worker."""
+    from sebody.version import __version__
 
-    try:
-        return version("sebody")
-    except PackageNotFoundError:
-        return "not installed"
+    return __version__
 
 
 def _on_workers(client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:

@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.studies.sweep.axes import Distribution
-from sebody.studies.sweep.design import Design
+from sebody.studies.sweep.design import Design, check_runs
 from sebody.studies.sweep.table import Table
 
 
@@ -22,6 +23,8 @@ def saltelli(sampled: dict[str, Distribution], n: int, seed: int) -> Design:
     """
     if len(sampled) < 2:
         raise InputError("--sobol tells parameters apart: give two --sample at least")
+    n = inputs.integer(n, "--sobol", least=1)
+    check_runs(float(n) * (len(sampled) + 2))
     if n < 2 or n & (n - 1):
         raise InputError(f"--sobol is {n}: Sobol's sequence needs a power of two, give "
                          f"{1 << max(1, n).bit_length()}")

@@ -1,15 +1,18 @@
 """The table of a sweep: parameters and outputs of every run, in memory and in files."""
 
+import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.files import replacing
+from sebody.files import members, replacing
+from sebody.files.arrays import json_of, opened
+from sebody.files.checksums import changed, checksums
 from sebody.studies.sweep.batches import Answer
 
 if TYPE_CHECKING:
@@ -75,11 +78,20 @@ class Table:
         raise InputError(f"{name!r} is no column: there are "
                          f"{', '.join([*self.parameters, *self.outputs])}")
 
+    def has(self, columns: Mapping[str, NDArray]) -> bool:
+        """Whether its parameters are those of a design."""
+        return columns.keys() == self.parameters.keys() and all(
+            np.array_equal(_storable(self.parameters[name]), _storable(values))
+            for name, values in columns.items())
+
     def take(self, answer: Answer) -> None:
         """Enter what a batch gave."""
         for name, values in answer.values.items():
             if name not in self.outputs:
                 self.outputs[name] = np.full((self.runs, *values.shape[1:]), np.nan)
+            if self.outputs[name].shape[1:] != values.shape[1:]:
+                raise InputError(f"output {name} has shape {values.shape[1:]}, in the table "
+                                 f"{self.outputs[name].shape[1:]}: give another --output")
             self.outputs[name][answer.rows] = values
         for row, reason in answer.failures.items():
             self.failures[row] = reason
@@ -145,8 +157,9 @@ class Table:
         arrays |= {f"output/{n}": v for n, v in self.outputs.items()}
         arrays |= {"design": np.array(self.design), "version": np.array(VERSION),
                    "done": self.done, "failure": _storable(self.failures)}
+        noted = np.array(json.dumps(checksums(arrays)))
         with replacing(path, "table") as file:
-            np.savez_compressed(file, **arrays)
+            np.savez_compressed(file, **arrays, checksums=noted)
 
     @classmethod
     def load(cls, path: Path) -> "Table":
@@ -155,19 +168,37 @@ class Table:
         Raises
         ------
         InputError
-            A file of another kind or version.
+            A file of another kind or version, or members that do not fit together.
         """
-        try:
-            with np.load(path, allow_pickle=False) as file:
-                if int(file["version"]) != VERSION:
-                    raise InputError(f"table {path} is of version {file['version']}, this program "
-                                     f"reads {VERSION}: give another --output")
-                parts = {kind: {name.partition("/")[2]: file[name] for name in file.files
-                                if name.startswith(kind + "/")} for kind in ("parameter", "output")}
-                return cls(str(file["design"]), parts["parameter"], parts["output"], file["done"],
-                           file["failure"].astype(object))
-        except (KeyError, ValueError, OSError, BadZipFile) as error:
-            raise InputError(f"{path} is no table of a sweep: give another --output") from error
+        what, remedy = "table of a sweep", "give another --output, or remove it"
+        with opened(path, what, remedy) as reader:
+            version = reader.read("version")
+            if version.shape or version != VERSION:
+                raise InputError(f"table {path} is of version {version}, this program "
+                                 f"reads {VERSION}: give another --output")
+            noted = json_of(reader, "checksums") if "checksums" in reader.headers else None
+            table = members.Table(f"{what} {path}", remedy, _members(reader.headers))
+            found = table.read(reader, others=["checksums"])
+            if odd := changed(found, noted):
+                raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+            parts = {kind: {name.partition("/")[2]: values for name, values in found.items()
+                            if name.startswith(kind + "/")} for kind in ("parameter", "output")}
+            return cls(str(found["design"]), parts["parameter"], parts["output"], found["done"],
+                       found["failure"].astype(object))
+
+
+def _members(headers: Mapping[str, members.Header]) -> dict[str, members.Member]:
+    """What a table with these members must have: parameters of any kind, outputs of any shape."""
+    one = members.Member
+    found = {"design": one((), "U"), "version": one((), "i"), "done": one(("runs",), "b"),
+             "failure": one(("runs",), "U")}
+    for name, header in headers.items():
+        if name.startswith("parameter/"):
+            kind = header.dtype.kind
+            found[name] = one(("runs",), kind if kind in members.KINDS else "f")
+        elif name.startswith("output/"):
+            found[name] = one(("runs", ...), finite=False)
+    return found
 
 
 def _storable(values: NDArray) -> NDArray:

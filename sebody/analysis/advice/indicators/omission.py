@@ -5,7 +5,6 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
-from scipy.signal import lfilter
 
 from sebody.analysis.advice.forms import Form, Part
 from sebody.analysis.advice.indicators.carried import Force, carried
@@ -73,6 +72,8 @@ def _given_way(body: ReducedBody, coupling: NDArray, y: NDArray, inertia: NDArra
 
 def _answers(p: NDArray, k: NDArray, m: NDArray, dt: float) -> NDArray:
     """Oscillators driven by histories (n, j), from rest in balance; quick ones answer at once."""
+    from scipy.signal import lfilter  # takes half a second to import
+
     y = p / k
     for j, angle in enumerate(np.sqrt(k / m) * dt):
         if angle < RESOLVED:        # exact for a drive that is constant in each step

@@ -19,7 +19,8 @@ def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
     With the recorded boundary deformation y of a body the strains of its resultants are
     ``e = E . y + y . Ghat y / (2 lam)``. Their forces ``sum e Ghat y`` stiffen: the body gives way
     to them as its stiffness allows, and the work that they do on y, relative to its strain energy,
-    changes the period of the vibration. What bends shortens, by ``y . Ghat y / (2 lam) E``.
+    changes the period of the vibration. What bends shortens: by displacements u with the strains
+    ``E . u = y . Ghat y / (2 lam)``.
     """
     if form.stiffening:
         return 0.0
@@ -50,7 +51,9 @@ def _second_order(body: ReducedBody, y: NDArray) -> tuple[NDArray, NDArray]:
     i, n = body.invariants, y.shape[1]
     E, G = i.E[:n], i.Ghat[:, :n, :n]
     shorter = np.einsum("ni,eij,nj->ne", y, G, y, optimize=True) / (2.0 * i.lam)
-    return np.einsum("ne,eij,nj->ni", y @ E + shorter, G, y, optimize=True), shorter @ E.T
+    # of displacements with these strains of the resultants, the smallest
+    return (np.einsum("ne,eij,nj->ni", y @ E + shorter, G, y, optimize=True),
+            shorter @ np.linalg.pinv(E))
 
 
 def spin(recorded: Recorded, part: Part, form: Form) -> float:

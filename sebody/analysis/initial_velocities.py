@@ -1,0 +1,135 @@
+"""Initial velocities that users gave against those a run starts with: both values are named."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.assembly.numbering import Numbering, coordinates
+from sebody.engine.state import State
+from sebody.errors import InputError
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Superelement, Triplet
+from sebody.reduction import ReducedBody
+
+SMALL = 1e-6        # difference of velocities, of the largest one
+STRAINED = 1e-4     # share of the kinetic energy in deformation: speeds off by a hundredth
+MOST = 4            # triplets that a message lists
+
+
+def refuse_contradicted(model: Mechanism, numbering: Numbering, state: State) -> None:
+    """Refuse a velocity that was given to what is fixed, prescribed or hangs on another node.
+
+    Raises
+    ------
+    InputError
+        It has another velocity; the message names both.
+    """
+    for triplet, actual in _triplets(model, numbering, state):
+        if triplet.given and not triplet.solved and _differ(state, triplet.rate, actual):
+            raise InputError(
+                f"{triplet.name} is given the initial velocity {_shown(triplet.rate)}, but "
+                f"{_holds(triplet)}, so it has {_shown(actual)}: leave one of them out, or give "
+                "both the same velocity")
+
+
+def changed(model: Mechanism, numbering: Numbering, state: State) -> str:
+    """What a run says where joints and drives demand other velocities than `rigid_velocity` gave.
+
+    Nothing where they do not.
+    """
+    found = [f"{triplet.name} {_shown(_round(state, actual))} in place of {_shown(triplet.rate)}"
+             for triplet, actual in _triplets(model, numbering, state)
+             if triplet.solved and not triplet.given and triplet.rate.any()
+             and _differ(state, triplet.rate, actual)]
+    if not found:
+        return ""
+    return (f"joints and drives demand other initial velocities than rigid_velocity gave: "
+            f"{_listed(found)}; give the model a motion that they allow, or only those of its "
+            "bodies that are free to have it, by body=")
+
+
+def strained(model: Mechanism, numbering: Numbering, state: State) -> str:
+    """What a run says of bodies of which some nodes were given velocities and others rest or not.
+
+    Their velocities are not those of a rigid motion, nor were all of them given on purpose.
+    """
+    found = [body for body in model.bodies.values()
+             if _is_partly_given(body) and _share(body, numbering, state) > STRAINED]
+    if not found:
+        return ""
+    first, others = found[0], [repr(body.name) for body in found[1:]]
+    own = {id(t): t for t in (*first.positions, *first.rotations)}.values()
+    values = [(t, _round(state, state.v[coordinates(numbering, t)])) for t in own]
+    given = [f"{t.name} {_shown(v)}" for t, v in values if _is_given(t)]
+    rest = [f"{t.name} {_shown(v) if v.any() else 'at rest'}" for t, v in values
+            if not _is_given(t)]
+    return (f"body {first.name!r} is strained from the start: initial velocities are given to "
+            f"{_listed(given)}, not to {_listed(rest)}"
+            + (f"; likewise {_listed(others)}" if others else "")
+            + f": start it by rigid_velocity(..., body={first.name!r}), or give every node of it a "
+            "velocity, zero where it rests")
+
+
+def _triplets(model: Mechanism, numbering: Numbering,
+              state: State) -> Iterator[tuple[Triplet, NDArray]]:
+    """Triplets of a model with the velocities a run starts with."""
+    for triplet in model.triplets():
+        if id(triplet) in numbering.triplets:
+            yield triplet, state.v[coordinates(numbering, triplet)]
+
+
+def _differ(state: State, one: NDArray, other: NDArray) -> bool:
+    return bool(np.abs(one - other).max() > SMALL * max(np.abs(state.v).max(), np.abs(one).max()))
+
+
+def _holds(triplet: Triplet) -> str:
+    """What gives a triplet that is not solved for its velocity."""
+    if triplet.root is not None:
+        return f"it hangs on {triplet.root.name} by a rigid link"
+    if triplet.motions:
+        return f"{', '.join(repr(motion.name) for motion in triplet.motions)} moves it"
+    return "it is fixed"
+
+
+def _is_partly_given(body: Superelement) -> bool:
+    """Whether some of the nodes of a body have velocities from the user, and some have not."""
+    free = [t for t in (*body.positions, *body.rotations) if t.solved]
+    return any(t.rate.any() for t in free) and not all(t.given for t in free)
+
+
+def _share(body: Superelement, numbering: Numbering, state: State) -> float:
+    """Share of the kinetic energy of the nodes of a body that is in its deformation."""
+    own = [c for t in (*body.positions, *body.rotations) for c in coordinates(numbering, t)]
+    v = np.concatenate([state.v[own], np.zeros(body.body.modes)])
+    return float(v @ _deformation(body.body) @ v / max(v @ body.body.mass @ v, 1e-300))
+
+
+def _deformation(reduced: ReducedBody) -> NDArray:
+    """Matrix D of a body, ``v^T D v / 2`` being the kinetic energy of its deformation.
+
+    That of the velocities v less that of the rigid motion with the same momenta.
+    """
+    r = reduced.rigid_modes_about(reduced.centre_of_mass)
+    momentum = reduced.mass @ r
+    return reduced.mass - momentum @ np.linalg.pinv(r.T @ momentum) @ momentum.T
+
+
+def _is_given(triplet: Triplet) -> bool:
+    """Whether `initial_velocity` or `rigid_velocity` has set the velocity, the latter not to 0."""
+    return triplet.given or bool(triplet.rate.any())
+
+
+def _round(state: State, values: NDArray) -> NDArray:
+    """Velocities without what is rounding against the largest one."""
+    return np.where(np.abs(values) > SMALL * np.abs(state.v).max(), values, 0.0)
+
+
+def _shown(value: NDArray) -> str:
+    texts = [f"{number:.6g}" for number in value]
+    return texts[0] if len(texts) == 1 else f"({', '.join(texts)})"
+
+
+def _listed(texts: list[str]) -> str:
+    more = len(texts) - MOST
+    return ", ".join(texts[:MOST]) + (f" and {more} more" if more > 0 else "")

@@ -1,0 +1,73 @@
+"""What a long reduction says of itself while it works."""
+
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from sebody import inputs
+
+
+class Watch:
+    """Stages of the work, and remarks that are to stay; both are lost by default."""
+
+    def stage(self, text: str) -> None:
+        """What is being done now."""
+
+    def remark(self, text: str) -> None:
+        """What a user should know before it is done."""
+
+    def close(self) -> None:
+        """Nothing more will be said."""
+
+
+SILENT = Watch()
+
+
+class Terminal(Watch):
+    """Remarks on standard error; on a terminal stages, too, on one line that changes."""
+
+    def __init__(self) -> None:
+        self._shows = sys.stderr.isatty()
+        self._width = 0
+
+    def stage(self, text: str) -> None:
+        """Replace the line."""
+        if self._shows:
+            print("\r" + text.ljust(self._width), end="", file=sys.stderr, flush=True)
+            self._width = len(text)
+
+    def remark(self, text: str) -> None:
+        """A line of its own."""
+        self.close()
+        print(text, file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        """Take the line of stages away."""
+        if self._width:
+            print("\r" + " " * self._width + "\r", end="", file=sys.stderr, flush=True)
+            self._width = 0
+
+
+class _Calls(Watch):
+    """Stages and remarks as calls of a function."""
+
+    def __init__(self, function: Callable[[str], Any]) -> None:
+        self.stage = self.remark = function
+
+
+def watching(progress: Callable[[str], Any] | bool | Watch | None) -> Watch:
+    """What is told: a function of a text, the terminal for True, nothing for None.
+
+    Raises
+    ------
+    InputError
+        Anything else.
+    """
+    if isinstance(progress, Watch):
+        return progress
+    if progress is None or progress is False:
+        return SILENT
+    if progress is True:
+        return Terminal()
+    return _Calls(inputs.function(progress, "progress",
+                                  "give a function of a text, or True for lines"))

@@ -1,0 +1,222 @@
+"""Where displacements are measured from: the undeformed body that moves with a chosen node.
+
+A body that is held at a node is compared with the undeformed body that has the position and the
+rotation of this node, so the support does not move. Bodies that are welded together, such as the
+parts of a beam, are measured from one node, so displacements are continuous from part to part. A
+body that nothing holds is compared with the undeformed body on its floating frame.
+"""
+
+from collections.abc import Hashable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Node, Superelement
+from sebody.results.recording import Recording
+
+FRAME = "frame"         # in place of the name of a node: the floating frame of the body
+
+
+class Undeformed(NamedTuple):
+    """The undeformed body of a reference in n states, seen from the floating frame of the body.
+
+    A point X of the body, from the origin of the frame, is at ``rotation X + shift``.
+    """
+
+    rotation: NDArray       # (n, D, D)
+    shift: NDArray          # (n, D)
+
+    def places(self, points: NDArray) -> NDArray:
+        """Places (n, k, D) of points (k, D)."""
+        return points @ self.rotation.transpose(0, 2, 1) + self.shift[:, None]
+
+
+def undeformed(recording: Recording, body: Superelement, rotation: NDArray, origin: NDArray,
+               node: Node, states: slice | NDArray) -> Undeformed:
+    """The undeformed body at a node, seen from a frame.
+
+    Parameters
+    ----------
+    rotation, origin : (n, D, D), (n, D)
+        Of the floating frame, see `BodyMotion`.
+    node : Node
+        See `Welded.reference`.
+    states : slice or (n,) of int
+        Recorded states in which they are.
+    """
+    known = recording.numbering.triplets
+    held = np.array([body.nodes[i].point for i in body.body.position_nodes])
+    arm = body.alpha @ held - node.point        # from the node to the frame, both undeformed
+    first = known[id(node.position)]
+    place = recording.recorded("q")[states, first:first + node.position.start.size]
+    turned = (_rotations(recording, node, states)
+              if node not in body.nodes or node in _full(body) else rotation)
+    back = rotation.transpose(0, 2, 1)
+    shift = place + turned @ arm - origin
+    return Undeformed(back @ turned, (back @ shift[:, :, None])[:, :, 0])
+
+
+class Set(NamedTuple):
+    """Nodes at one place."""
+
+    number: int
+    fixed: bool             # whether one of them is
+
+
+def together(model: Mechanism) -> dict[str, Set]:
+    """Nodes that joints and rigid links keep together, by name; those of the ground, too."""
+    union = _Union()
+    nodes = [*model.nodes.values(), *model.grounds]
+    for joint in model.joints:
+        if joint.kind != "distance":
+            union.join(joint.node.name, joint.to.name)
+    for one in model.connections:
+        if one.kind == "position" and one.to is not None:
+            union.join(one.node.name, one.to.name)
+    for node in nodes:
+        if node.position is not None:
+            union.join(id(node.position), node.name)
+    roots = {node.name: union.root(node.name) for node in nodes}
+    fixed = {roots[node.name] for node in nodes if node.position is not None
+             and node.position.fixed}
+    number = {root: k for k, root in enumerate(dict.fromkeys(roots.values()))}
+    return {name: Set(number[root], root in fixed) for name, root in roots.items()}
+
+
+class Welded:
+    """Nodes of a model that move as one, and bodies that are welded together at such nodes."""
+
+    def __init__(self, model: Mechanism):
+        self._model = model
+        self._nodes, self._bodies = _Union(), _Union()
+        for joint in model.joints:
+            if joint.kind == "weld":
+                self._nodes.join(_key(joint.node), _key(joint.to))
+        for body in model.bodies.values():
+            for node in _full(body):
+                self._bodies.join(body.name, self._cluster(node))
+        self._fixed = {self._cluster(node) for node in model.nodes.values()
+                       if node.position is not None and node.position.fixed}
+        self._jointed = self._with_joints()
+
+    def reference(self, body: Superelement, name: str | None = None) -> Node | None:
+        """The node that displacements of a body are measured from; None for its floating frame.
+
+        Parameters
+        ----------
+        name : str, optional
+            A node of the body or of one that is welded to it, or `FRAME`; see `default`.
+
+        Raises
+        ------
+        InputError
+            A node of another body, or one without a position and a rotation where it needs them.
+        """
+        if name is None:
+            return self.default(body)
+        if inputs.name(name, "reference of displacements") == FRAME:
+            return None
+        known = {node.name: node for node in self.candidates(body)}
+        if name in known:
+            return known[name]
+        raise InputError(f"displacements of body {body.name!r} cannot be measured from {name!r}: "
+                         f"give one of its nodes, {', '.join(known)}, or {FRAME!r}, its floating "
+                         "frame")
+
+    def default(self, body: Superelement) -> Node | None:
+        """The first node that is fixed, else the first one with a joint.
+
+        None if there is none; of several bodies that are welded together their first node.
+        """
+        nodes = list(self.candidates(body))
+        for held in (self._fixed, self._jointed):
+            for node in nodes:
+                if self._cluster(node) in held:
+                    return node
+        return nodes[0] if len(self.bodies(body)) > 1 else None
+
+    def has(self, body: Superelement, name: str) -> bool:
+        """Whether displacements of a body can be measured from a node of this name, or `FRAME`."""
+        return name == FRAME or any(node.name == name for node in self.candidates(body))
+
+    def candidates(self, body: Superelement) -> Iterator[Node]:
+        """Nodes that displacements of a body can be measured from, each once."""
+        group, found = self.bodies(body), {}
+        for one in group:
+            nodes = _full(one) if len(group) > 1 else [one.nodes[i]
+                                                       for i in one.body.position_nodes]
+            found |= {node.name: node for node in nodes}
+        yield from found.values()
+
+    def clusters(self) -> dict[str, int]:
+        """Numbers of nodes by name, equal for those that move as one."""
+        roots = {node.name: self._cluster(node)
+                 for node in (*self._model.nodes.values(), *self._model.grounds)}
+        number = {root: k for k, root in enumerate(dict.fromkeys(roots.values()))}
+        return {name: number[root] for name, root in roots.items()}
+
+    def bodies(self, body: Superelement) -> list[Superelement]:
+        """Bodies that are welded to one, in the order of the model, this one among them."""
+        root = self._bodies.root(body.name)
+        return [one for one in self._model.bodies.values()
+                if self._bodies.root(one.name) == root]
+
+    def _with_joints(self) -> set[Hashable]:
+        """Clusters with a joint; nodes that share a position alone have one, too."""
+        found = {self._cluster(node) for joint in self._model.joints if joint.kind != "weld"
+                 for node in (joint.node, joint.to)}
+        sharing: dict[int, set[Hashable]] = {}
+        for node in self._model.nodes.values():
+            if node.position is not None:
+                sharing.setdefault(id(node.position), set()).add(self._cluster(node))
+        return found.union(*(group for group in sharing.values() if len(group) > 1))
+
+    def _cluster(self, node: Node) -> Hashable:
+        """What stands for all nodes that move as one with a node."""
+        return self._nodes.root(_key(node))
+
+
+class _Union:
+    """Sets that are joined, each with an element that stands for it."""
+
+    def __init__(self) -> None:
+        self._parent: dict[Hashable, Hashable] = {}
+
+    def root(self, one: Hashable) -> Hashable:
+        while one in self._parent:
+            one = self._parent[one]
+        return one
+
+    def join(self, one: Hashable, other: Hashable) -> None:
+        one, other = self.root(one), self.root(other)
+        if one != other:
+            self._parent[other] = one
+
+
+def _key(node: Node) -> tuple[int, int]:
+    """Equal for nodes that share a rotation, and a position or rigid links from one."""
+    position = node.position
+    if position is not None and position.root is not None and all(
+            rotation is node.rotation for rotation, _ in position.arms):
+        position = position.root
+    return id(node.rotation), id(position) if node.rotation is not None else id(node)
+
+
+def _full(body: Superelement) -> list[Node]:
+    """Nodes of which a body keeps the position and the rotation."""
+    return [body.nodes[i] for i in body.body.position_nodes if i in body.body.rotation_nodes]
+
+
+def _rotations(recording: Recording, node: Node, states: slice | NDArray) -> NDArray:
+    """Rotation matrices (n, D, D) of a node."""
+    if recording.model.planar:
+        first = recording.numbering.triplets[id(node.rotation)]
+        angle = recording.recorded("q")[states, first]
+        c, s = np.cos(angle), np.sin(angle)
+        return np.stack([c, -s, s, c], axis=1).reshape(-1, 2, 2)
+    k = recording.numbering.rotations[id(node.rotation)]
+    return recording.recorded("R")[states, 9 * k:9 * k + 9].reshape(-1, 3, 3)
