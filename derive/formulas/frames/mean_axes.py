@@ -1,8 +1,8 @@
 """Mean axes: to first order the deformation has no moment of momentum, ``sum Gam_i y_i = 0``.
 
-The sum is over all local coordinates. ``Gam = J_c^-1 y_r^T Mbar`` with the rigid rotations y_r about
-the centre of mass is their mean rotation, weighted by mass: one of a rigid rotation, zero of a
-translation. So the frame is the same wherever its origin is, and it follows no light node.
+The sum is over all local coordinates. ``Gam = J_c^-1 y_r^T Mbar`` with the rigid rotations y_r
+about the centre of mass is their mean rotation, weighted by mass: one of a rigid rotation, zero of
+a translation. So the frame is the same wherever its origin is, and it follows no light node.
 """
 
 import sympy as sp
