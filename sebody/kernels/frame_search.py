@@ -112,6 +112,8 @@ def planar_mean(count, alpha, angles, frame, psi):
     frame[1] = -frame[3]
     return 0
 
+ROUNDING = 1e-15        # rad, of a rotation
+
 
 @compiled
 def best_fit(count, fit, X, alpha, x, frame):
@@ -217,6 +219,8 @@ def mean_axes(positions, rotations, n, nodes, alpha, X, Gam, q, R, frame, psi):
         size = x * x + y * y + z * z
         if not size < 16.0:
             return NO_FRAME
+        if newton and size < ROUNDING * ROUNDING:   # the frame of this state was found before
+            return 0
         rotate(frame, 0, x, y, z, frame, 0)
         if newton and size < 1e-16:         # Newton: the error left is the square of the step
             return relative_rotations(rotations, nodes, R, frame, psi)
@@ -306,6 +310,8 @@ def planar_mean_axes(positions, rotations, n, alpha, X, Gam, q, frame, psi):
         step = mean / slope if slope > 0.1 else mean
         if not abs(step) < 4.0:
             return NO_FRAME
+        if slope > 0.1 and abs(step) < ROUNDING:    # the frame of this state was found before
+            return 0
         angle += step
         if slope > 0.1 and abs(step) < 1e-8:
             frame[0] = frame[4] = math.cos(angle)
