@@ -17,9 +17,9 @@ from sebody.analysis.softening import cautious_limit, divergence, first_frequenc
 from sebody.analysis.thresholds import BENT, FAST, FLAT, LINEAR, OFF_LINE
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import Numbering
+from sebody.contract.layout import MOTION, Counts
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
-from sebody.kernels.layout import MOTION, Counts
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement

@@ -11,9 +11,9 @@ from sebody.analysis.linearization import rotating
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.sparse import Scaled
 from sebody.analysis.turning import Spin
+from sebody.contract.layout import FIELD, RECORD_T
 from sebody.engine.evaluate import set_loads, to_body_axes, update_rotations
 from sebody.errors import SimulationError
-from sebody.kernels.layout import FIELD, RECORD_T
 from sebody.model.model import Model
 from sebody.results.result import Result
 

@@ -4,12 +4,14 @@ What a compiled function calls by name is compiled again as a part of it. Factor
 seldom and are long: by address the loop is compiled without them, and beside them.
 """
 
+from collections.abc import Callable
 from functools import cache
 
 from llvmlite import ir
 from numba import typeof, types
 from numba.extending import intrinsic
 
+from sebody.compiler.choice import way
 from sebody.engine.matrix import refactorize
 
 
@@ -29,8 +31,11 @@ def refactorize_address(system, state) -> int:
     return _address(typeof(system), typeof(state), types.int64, types.boolean)
 
 
+def compile_refactorize(function: Callable, kinds: tuple[types.Type, ...]) -> None:
+    """Compile it for some types as the loop calls it."""
+    way().address(function, types.boolean, kinds)
+
+
 @cache
 def _address(*kinds: types.Type) -> int:
-    refactorize.compile(kinds)
-    compiled = refactorize.overloads[kinds]
-    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+    return way().address(refactorize, types.boolean, kinds)

@@ -17,8 +17,8 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
+from sebody.compiler.user_functions import UserFunction, compile_history
 from sebody.errors import InputError
-from sebody.kernels.user_functions import UserFunction, compile_history
 from sebody.model.derivatives import rates_of
 from sebody.model.functions import compilable, compiled_history
 

@@ -44,7 +44,7 @@ print(len(result.t), sorted(set(compiled)))
 # a kernel that takes half a second, and processes for it all the same
 KERNEL = SPY + """
 from sebody.analysis import first_run
-from sebody.analysis import workers
+from sebody.compiler import workers
 from sebody.kernels.loader import load
 first_run.WORTH_IT = 0.0
 if "broken" in sys.argv:

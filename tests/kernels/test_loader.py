@@ -5,8 +5,8 @@ import sys
 import pytest
 
 from sebody import InputError
+from sebody.compiler.sources import room_hash
 from sebody.kernels import loader
-from sebody.kernels.sources import room_hash
 
 KERNEL = '''LAYOUT = "planar-f9"
 FRAME = "mean"

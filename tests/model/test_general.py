@@ -7,11 +7,11 @@ from sebody import InputError, Model, generalized_alpha, simulate
 from sebody.assembly.batches import make_batches
 from sebody.assembly.build import work_size
 from sebody.assembly.numbering import number
+from sebody.contract.layout import ENERGY, RESIDUAL, TANGENT
+from sebody.contract.names import ANY, general_layout, superelement_name
 from sebody.derive.kernels.manifest import SUPERELEMENTS
 from sebody.fem import frame, planar_beam, straight_beam
-from sebody.kernels.layout import ENERGY, RESIDUAL, TANGENT
 from sebody.kernels.loader import load
-from sebody.kernels.names import ANY, general_layout, superelement_name
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
 from sebody.studies.check import states
@@ -142,7 +142,7 @@ def test_scratch_memory_is_that_of_the_nodes():
 
 def test_a_specialised_kernel_of_the_user_comes_first(monkeypatch, tmp_path):
     """Found by name, not run."""
-    from sebody.kernels.sources import room_hash
+    from sebody.compiler.sources import room_hash
 
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
     kernel = tmp_path / "superelement_f5_converged_mean_c.py"

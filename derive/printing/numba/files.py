@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import sympy
 
+from sebody.compiler.sources import TEXT, room_hash
+from sebody.contract.layout import ARGUMENTS
 from sebody.derive.form.kernel import Kernel, Operations
 from sebody.derive.printing.lines import WIDTH
 from sebody.derive.printing.numba.imports import import_lines
 from sebody.derive.printing.numba.statements import lines
-from sebody.kernels.layout import ARGUMENTS
-from sebody.kernels.sources import room_hash
 
 VERSION = "1.0"     # of the generator, in the head of every file
 SIGNATURE = fill(", ".join(("def kernel(task", "count", "stride", "width",
@@ -55,7 +55,7 @@ def file_text(head: Head, kernel: Kernel, shipped: bool = True) -> str:
     shipped : bool
         The file goes with the package whose functions it calls; else it carries their hash.
     """
-    facts = head.facts if shipped else (*head.facts, ROOM.format(room_hash("kernels")))
+    facts = head.facts if shipped else (*head.facts, ROOM.format(room_hash(*TEXT)))
     return FILE.format(
         title=head.title, summary="\n".join(head.summary), version=VERSION,
         sympy=sympy.__version__, imports=import_lines(kernel, head.rows, head.classes),

@@ -12,6 +12,7 @@ from sebody.analysis.ensembles.outputs import Fold, Output
 from sebody.analysis.evaluation import evaluate
 from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.simulation import Simulation
+from sebody.contract.layout import ACCELERATION, RESIDUAL, TANGENT
 from sebody.engine.evaluate import move_prescribed, set_loads, set_powers, to_body_axes
 from sebody.engine.links import place_dependent
 from sebody.engine.loop import advance
@@ -34,7 +35,6 @@ from sebody.engine.state import (
 )
 from sebody.engine.step import write_record
 from sebody.engine.system import System
-from sebody.kernels.layout import ACCELERATION, RESIDUAL, TANGENT
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from sebody.contract.layout import FrameTraits
 from sebody.generated.options import FRAMES, INERTIA_OPTIONS
-from sebody.kernels.layout import FrameTraits
 from sebody.studies.check.states import Case, constants_of
 
 

@@ -4,9 +4,9 @@ import re
 
 from numba import njit, types
 
+from sebody.compiler.decorators import KernelPasses, compiled
 from sebody.engine.elimination import eliminate
 from sebody.kernels.frame_search import converged_mean
-from sebody.kernels.pipeline import KernelPasses, compiled
 
 
 @compiled
