@@ -47,7 +47,7 @@ ROOMS = {
 RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory": set(),
             "units": set(), "files": {"numpy"}, "lazy": set(), "spelling": set(), "version": set(),
-            "contract": set(), "compiler": RUNTIME | {"llvmlite"},
+            "contract": {"numpy"}, "compiler": RUNTIME | {"llvmlite"},
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib

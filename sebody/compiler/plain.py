@@ -53,7 +53,7 @@ def kernel(function: Callable, signature, options: dict, made_from: str) -> Call
     """A function to be called through its attribute `address`, compiled at once."""
     with _folder(function, made_from) as kept:
         made = cfunc(signature, cache=kept, **options)(function)
-        _mark(function, made_from, kept)
+    _mark(function, made_from, kept)
     return made
 
 
@@ -62,7 +62,7 @@ def compile_for(function: Callable, kinds: tuple[types.Type, ...]) -> None:
     options, made_from = _made[function.py_func]
     with _folder(function.py_func, made_from) as kept:
         njit(kinds, cache=kept, **options)(function.py_func)
-        _mark(function.py_func, made_from, kept)
+    _mark(function.py_func, made_from, kept)
 
 
 def is_compiled(function: Callable) -> bool:
