@@ -134,6 +134,17 @@ def test_packages_of_others(path):
     assert unknown <= (set() if own == "generated" else set(sys.stdlib_module_names)), unknown
 
 
+def test_numbas_inside_is_used_in_one_module():
+    """What a release of Numba may change stands in one table, and has a plain counterpart."""
+    users = {name for name, path in MODULES.items() for other in imported(path.read_text())
+             if other.startswith(("numba.core", "numba.misc", "numba.np", "numba.cpython"))}
+    assert users == {"sebody.compiler.inside.names"}
+    ways = [{node.name for node in ast.parse((ROOT / path).read_text()).body
+             if isinstance(node, ast.FunctionDef) and node.name[0] != "_"}
+            for path in ("sebody/compiler/plain.py", "sebody/compiler/inside/entry.py")]
+    assert ways[0] == ways[1] | {"is_kept"}      # that of the fast way is in its cache.py
+
+
 def test_no_circle_among_modules():
     graph = {name: imported_modules(path) for name, path in MODULES.items()}
     try:
