@@ -1,7 +1,7 @@
 """The plain way to compile beside the fast one: first runs, and differences of the numbers.
 
-Both ways run the scenes of ``sebody bench`` for a few steps, and the kernels that are named, each
-in a cache of its own: the first time everything is compiled, the second time it is read.
+Both ways run the scenes of ``sebody bench`` for a few steps, or what is named, with a new cache:
+the first scene compiles the time loop and its kernels, others the kernels they have beyond those.
 """
 
 import argparse
@@ -18,12 +18,10 @@ from plain_numbers import compared  # noqa: E402
 from sebody.studies.bench import SCENES  # noqa: E402
 
 
-def measured(name: str) -> dict[str, float]:
+def measured(name: str, folder: Path) -> dict[str, float]:
     """Largest difference and the seconds of both ways, first and second time."""
-    with tempfile.TemporaryDirectory() as folder:
-        os.environ["NUMBA_CACHE_DIR"] = folder
-        differences, first = compared(Path(folder), name)
-        second = compared(Path(folder), name)[1]
+    differences, first = compared(folder, name)
+    second = compared(folder, name)[1]
     return {"difference": max(differences.values()),
             "fast first": first["0"], "plain first": first["1"],
             "fast again": second["0"], "plain again": second["1"]}
@@ -36,11 +34,13 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args(arguments)
     found = {}
-    for name in options.names:
-        found[name] = row = measured(name)
-        if not options.json:
-            print(f"{name:40} {row['difference']:8.1e} " + "".join(
-                f"  {key} {row[key]:6.1f} s" for key in row if key != "difference"), flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["NUMBA_CACHE_DIR"] = folder
+        for name in options.names:
+            found[name] = row = measured(name, Path(folder))
+            if not options.json:
+                print(f"{name:40} {row['difference']:8.1e} " + "".join(
+                    f"  {key} {row[key]:6.1f} s" for key in row if key != "difference"), flush=True)
     if options.json:
         print(json.dumps(found, indent=1))
 
