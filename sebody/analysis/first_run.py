@@ -21,8 +21,8 @@ from sebody.compiler.choice import way
 from sebody.compiler.decorators import is_compiled
 from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
-from sebody.engine import evaluate, links, loop, matrix, newton, step, step_control
-from sebody.engine.routines import compile_refactorize
+from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, step_control
+from sebody.engine.routines import compile_routine
 from sebody.engine.state import Record
 from sebody.kernels import loader
 from sebody.kernels.loader import USER_FORCE, element_kernel_name, find
@@ -61,13 +61,13 @@ LOOP = {        # callees of the loop, which waits for them
 PARTS = {name: part for name, part in LOOP.items() if part.function} | {
     "loop": Part(loop.advance, "system state record scheme whole whole flag", 3.6, tuple(LOOP)),
     "sums": Part(matrix.sum_matrices, "system state vector", 1.4),
-    "matrix": Part(matrix.refactorize, "system state whole flag", 3.4, ("sums",),
-                   compile_refactorize),
+    "matrix": Part(matrix.refactorize, "system state whole flag", 3.4, ("sums",), compile_routine),
+    "restart": Part(restart.restart, "system state number flag", 2.0, ("solution",),
+                    compile_routine),
     "forces": Part(evaluate.assemble, "whole whole system state vector", 0.3,
                    ("forces in the loop",)),
     "constraints": Part(postprocessing._evaluate_constraints, "system state table table", 0.6,
                         ("forces in the loop",)),
-    "powers": Part(evaluate.set_powers, "system state", 0.3, ("forces in the loop",)),
     "energies": Part(postprocessing._evaluate_energies, "system state table table", 0.3,
                      ("forces in the loop",)),
     "reactions": Part(postprocessing._evaluate_forces, "system state table table table", 0.4,
