@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS, Part
+from sebody.contract.names import superelement_name
 from sebody.derive.form.arrays import Array
 from sebody.derive.form.spaces import Space
 from sebody.derive.form.statements import Let
@@ -32,8 +34,6 @@ from sebody.derive.kernels.options import (
 from sebody.derive.passes.linearize import Linearizer
 from sebody.derive.passes.lower import Names
 from sebody.derive.symbolic.rotations import cross, stumpff, tangent_inverse
-from sebody.kernels.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS, Part
-from sebody.kernels.names import superelement_name
 
 
 class Formulas(NamedTuple):

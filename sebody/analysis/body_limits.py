@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sebody.analysis.axial import Axial
 from sebody.analysis.softening import cautious_limit, divergence, first_frequency, reach
 from sebody.analysis.thresholds import AXIAL, BENT, FAST, FLAT, LINEAR
-from sebody.kernels.layout import Counts
+from sebody.contract.layout import Counts
 from sebody.model.frames import FRAMES, mass_off_line
 from sebody.model.parts import Superelement
 

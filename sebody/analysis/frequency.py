@@ -21,9 +21,9 @@ from sebody.analysis.linearization import small_motion
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.turning import Spin, motion
 from sebody.assembly.numbering import coordinates
+from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.errors import InputError
-from sebody.kernels.layout import RECORD_T, RESIDUAL
 from sebody.model.parts import Element
 from sebody.results import rotations
 from sebody.results.frequency_pictures import save_response

@@ -11,12 +11,12 @@ from sebody.analysis.redundancy import Solver, least, part_sizes
 from sebody.analysis.rigid_start import follow_drives
 from sebody.analysis.user_faults import fault
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.contract.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
 from sebody.engine.links import place_dependent
 from sebody.engine.state import ASKED, RESTART, State
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.model.mechanism import Mechanism
 from sebody.results.recording import Start
 

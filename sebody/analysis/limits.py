@@ -17,9 +17,9 @@ from sebody.analysis.quality import remarks
 from sebody.analysis.softening import divergence
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import Numbering
+from sebody.contract.layout import MOTION
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
-from sebody.kernels.layout import MOTION
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 from sebody.results.motion import evaluated

@@ -7,10 +7,10 @@ from scipy.linalg import LinAlgError, eigh, null_space
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import matrix
 from sebody.analysis.thresholds import CUT, EXCITED, GROWN, PERIOD
+from sebody.contract.layout import ENERGIES, RECORD_T
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import ADAPTIVE, CUTS, STEPS
 from sebody.errors import InputError
-from sebody.kernels.layout import ENERGIES, RECORD_T
 from sebody.model.parts import Element
 from sebody.results import energy_balance
 from sebody.results.audit import DRIFT

@@ -13,6 +13,7 @@ from sebody import inputs
 from sebody.analysis.fingerprint import fingerprint
 from sebody.analysis.simulation import MOST_STEPS, Simulation
 from sebody.analysis.tolerance import Tolerance
+from sebody.contract.layout import RECORD_T
 from sebody.engine.state import (
     ADAPTIVE,
     AHEAD,
@@ -47,7 +48,6 @@ from sebody.files import check_target, replacing
 from sebody.files.arrays import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.files.members import Header, Member, Table
-from sebody.kernels.layout import RECORD_T
 from sebody.model.model import Model
 
 VERSION = 3

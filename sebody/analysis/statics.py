@@ -11,9 +11,9 @@ from sebody.analysis.folding import Tensions
 from sebody.analysis.settling import balance, settle
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.turning import Spin
+from sebody.contract.layout import FIELD, RECORD_T
 from sebody.engine.evaluate import set_loads
 from sebody.errors import SimulationError
-from sebody.kernels.layout import FIELD, RECORD_T
 from sebody.model.model import Model
 from sebody.results.result import Result
 

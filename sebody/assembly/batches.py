@@ -21,8 +21,8 @@ from sebody.assembly.contracts import (
 )
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism

@@ -9,10 +9,10 @@ from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
+from sebody.contract.layout import scratch_size
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import scratch_size
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism

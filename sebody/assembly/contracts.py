@@ -10,9 +10,7 @@ from types import ModuleType
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.numbering import Numbering
-from sebody.errors import InputError
-from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.layout import (
+from sebody.contract.layout import (
     INDEX,
     MOST_SLAVED,
     ContractError,
@@ -25,6 +23,8 @@ from sebody.kernels.layout import (
     floating_counts,
     superelement_counts,
 )
+from sebody.errors import InputError
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.parts import Element, Superelement
 
 REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebody"

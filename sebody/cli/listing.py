@@ -61,7 +61,7 @@ def meanings_of(build: Callable) -> dict[str, str]:
 
 
 def _list_all() -> None:
-    from sebody.kernels.names import ELEMENT
+    from sebody.contract.names import ELEMENT
     from sebody.studies.catalogue import kernels, scenes
 
     print("scenes")

@@ -129,9 +129,11 @@ def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
 
 def _start(scene: "Scene", options: argparse.Namespace) -> "Result | None":
     """The state to start from, if it is not the scene's own."""
+    if not options.equilibrium:
+        return None
     from sebody.analysis.statics import equilibrium
 
-    return equilibrium(scene.model) if options.equilibrium else None
+    return equilibrium(scene.model)
 
 
 def _step(scene: "Scene", options: argparse.Namespace) -> float:

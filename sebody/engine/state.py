@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OK, RECORD
 from sebody.engine.arrays import Arrays
-from sebody.kernels.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OK, RECORD
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
 # phases of the loop: where it continues when it is called again

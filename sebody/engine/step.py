@@ -5,6 +5,16 @@ The unknowns of a step are the increments dq (rotations: R exp(dTheta)) and the 
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import (
+    C_CONSTRAINT,
+    C_DAMPING,
+    C_GEO,
+    C_MASS,
+    C_STIFFNESS,
+    RECORD_ITERATIONS,
+    RECORD_T,
+)
 from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
 from sebody.engine.newton import SLOWEST, watch_age
 from sebody.engine.state import (
@@ -49,16 +59,6 @@ from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, go_on, set_end
 from sebody.engine.vectors import copy
 from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.layout import (
-    C_CONSTRAINT,
-    C_DAMPING,
-    C_GEO,
-    C_MASS,
-    C_STIFFNESS,
-    RECORD_ITERATIONS,
-    RECORD_T,
-)
-from sebody.kernels.pipeline import compiled
 
 ORTHOGONAL = 8          # steps after which rotation matrices are made orthogonal again
 STEADY = 0.5            # share of a change by which the next one may differ

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sebody.kernels.pipeline import compiled
+from sebody.compiler.decorators import compiled
 
 # numbers of a piece: those of its polynomial by ascending powers, then amplitude, angular
 # frequency and phase of its harmonic

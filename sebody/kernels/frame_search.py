@@ -6,9 +6,9 @@ or NO_FRAME where the search does not end.
 
 import math
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import HALF_TURN, NO_FRAME
 from sebody.kernels.dense import inverse_3
-from sebody.kernels.layout import HALF_TURN, NO_FRAME
-from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import (
     NEAR_PI,
     inverse_tangent_coefficients,

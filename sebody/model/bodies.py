@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
+from sebody.contract.layout import layout_name
 from sebody.errors import InputError
 from sebody.io.body_file import load_body
-from sebody.kernels.layout import layout_name
 from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.frames import check_frame, default_frame, frame_weights, known_frame
 from sebody.model.inertias import chosen_inertia, needs_damped_kernel

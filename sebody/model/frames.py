@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
+from sebody.contract.layout import FrameTraits
 from sebody.errors import InputError
 from sebody.generated import options
-from sebody.kernels.layout import FrameTraits
 from sebody.reduction import ReducedBody, body_weights
 from sebody.reduction.mean_rotation import central_inertia
 

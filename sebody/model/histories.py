@@ -17,8 +17,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.kernels.layout import CLOCK
-from sebody.kernels.user_functions import UserFunction, compile_history
+from sebody.compiler.user_functions import UserFunction, compile_history
+from sebody.contract.layout import CLOCK
 from sebody.model.functions import compilable, compiled_history
 from sebody.model.history_rows import linear, table
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Sequence
 from numpy.typing import ArrayLike
 
 from sebody import inputs
+from sebody.contract.names import body_load_kind
 from sebody.errors import InputError
-from sebody.kernels.names import body_load_kind
 from sebody.model.frames import FRAMES
 from sebody.model.functions import compiled_force
 from sebody.model.histories import History, clock, history

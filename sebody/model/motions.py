@@ -5,8 +5,8 @@ from dataclasses import replace
 from numbers import Number
 
 from sebody import inputs
+from sebody.compiler.user_functions import UserFunction
 from sebody.errors import InputError
-from sebody.kernels.user_functions import UserFunction
 from sebody.model.derivatives import rates_of
 from sebody.model.functions import compiled_history
 from sebody.model.histories import (

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import rotational
-from sebody.kernels.layout import ENERGIES
+from sebody.contract.layout import ENERGIES
 from sebody.model.extent import extent
 from sebody.model.parts import Element, Node, Superelement
 from sebody.results import energy_balance

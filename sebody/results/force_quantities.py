@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import RECORD
 from sebody.errors import InputError
-from sebody.kernels.layout import RECORD
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement
 from sebody.results.recording import Recording, record_counts
 

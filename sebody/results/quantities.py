@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import ENERGIES
 from sebody.errors import InputError
-from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
 from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces

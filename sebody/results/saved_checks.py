@@ -14,9 +14,9 @@ import numpy as np
 
 from sebody import inputs
 from sebody.assembly.numbering import Numbering
+from sebody.compiler.user_functions import UserFunction
+from sebody.contract.layout import ENERGIES, RECORD
 from sebody.errors import InputError
-from sebody.kernels.layout import ENERGIES, RECORD
-from sebody.kernels.user_functions import UserFunction
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 from sebody.reduction import ReducedBody

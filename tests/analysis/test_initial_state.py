@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model, Simulation, generalized_alpha, hht, ramp, simulate
+from sebody.contract.layout import HALF_TURN, RESIDUAL
 from sebody.engine import evaluate
 from sebody.fem import straight_beam
-from sebody.kernels.layout import HALF_TURN, RESIDUAL
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
 

@@ -5,9 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sebody import Model, Simulation, generalized_alpha, simulate
+from sebody.contract.layout import ENERGY, STRAIN
 from sebody.engine import evaluate
 from sebody.fem import Section, frame, straight_beam
-from sebody.kernels.layout import ENERGY, STRAIN
 from sebody.reduction import craig_bampton
 
 EXACT = generalized_alpha(tolerance=1e-13)

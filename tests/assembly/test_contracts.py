@@ -9,8 +9,8 @@ from sebody import InputError, Model, simulate
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.build import build
+from sebody.contract.layout import INDEX, Row
 from sebody.fem import Section, straight_beam
-from sebody.kernels.layout import INDEX, Row
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.histories import history
 from sebody.reduction import ReducedBody, craig_bampton

@@ -12,6 +12,7 @@ from plain_kernels import evaluated, executed
 from scipy.spatial.transform import Rotation
 
 from sebody import Model, Simulation
+from sebody.contract.layout import MOTION, RESIDUAL, FrameTraits
 from sebody.derive.compiler import Variant, compile_kernel, file_name
 from sebody.derive.form.counts import FIRST_ROTATION, ROTATIONS
 from sebody.derive.form.functions import RELATIVE_ANGLES, RELATIVE_ROTATIONS
@@ -32,7 +33,6 @@ from sebody.derive.printing.numba.options import options_text
 from sebody.derive.symbolic.rotations import cross
 from sebody.fem import Section, planar_beam
 from sebody.generated import options as generated
-from sebody.kernels.layout import MOTION, RESIDUAL, FrameTraits
 from sebody.model import frames
 from sebody.reduction import craig_bampton
 from sebody.studies.check.motions import motion_case

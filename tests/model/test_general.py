@@ -7,12 +7,12 @@ from sebody import InputError, Model, generalized_alpha, simulate
 from sebody.assembly.batches import make_batches
 from sebody.assembly.build import work_size
 from sebody.assembly.numbering import number
+from sebody.contract.layout import ENERGY, RESIDUAL, TANGENT
+from sebody.contract.names import ANY, general_layout, layout_variant, superelement_name
 from sebody.derive.kernels.manifest import SUPERELEMENTS
 from sebody.fem import frame as fe_frame
 from sebody.fem import planar_beam, straight_beam
-from sebody.kernels.layout import ENERGY, RESIDUAL, TANGENT
 from sebody.kernels.loader import load
-from sebody.kernels.names import ANY, general_layout, layout_variant, superelement_name
 from sebody.model.frames import FRAMES
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -151,11 +151,11 @@ def test_scratch_memory_is_that_of_the_nodes():
 
 def test_a_specialised_kernel_of_the_user_comes_first(monkeypatch, tmp_path):
     """Found by name, not run."""
-    from sebody.kernels.sources import room_hash
+    from sebody.compiler.sources import TEXT, room_hash
 
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
     kernel = tmp_path / "superelement_f5_converged_mean_c.py"
-    kernel.write_text(f'ROOM = "{room_hash("kernels")}"')
+    kernel.write_text(f'ROOM = "{room_hash(*TEXT)}"')
     model = Model()
     place(model, "long", beam(["full"] * 5), (0, 0, 0))
     assert model.element("long").kernel == "superelement_f5_converged_mean_c"

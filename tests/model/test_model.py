@@ -5,8 +5,8 @@ import pytest
 
 from sebody import InputError, Model
 from sebody.assembly.build import build, number
+from sebody.contract.layout import FrameTraits, layout_name
 from sebody.fem import Section, frame, planar_beam, straight_beam
-from sebody.kernels.layout import FrameTraits, layout_name
 from sebody.model import frames
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes.hinged_beam import SECTION

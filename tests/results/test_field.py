@@ -7,9 +7,9 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Result, simulate
 from sebody.assembly.numbering import number
+from sebody.contract.layout import RECORD
 from sebody.fem import Section, planar_beam
 from sebody.fem import frame as frame_of_beams
-from sebody.kernels.layout import RECORD
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.results.recording import record_counts
 from sebody.scenes import hinged_beam

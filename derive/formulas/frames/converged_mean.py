@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits
 from sebody.derive.form.counts import FIRST_ROTATION, ROTATIONS
 from sebody.derive.form.functions import CONVERGED_MEAN, PLANAR_MEAN
 from sebody.derive.form.spaces import Quantity
@@ -22,7 +23,6 @@ from sebody.derive.symbolic.rotations import (
     inverse_tangent_transposed_times,
 )
 from sebody.derive.symbolic.variation import check_same
-from sebody.kernels.layout import FrameTraits
 
 
 def converged_mean(q: Quantities) -> Frame:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits
 from sebody.derive.form.arrays import Place
 from sebody.derive.form.functions import INVERSE_TANGENT
 from sebody.derive.form.spaces import Quantity
@@ -17,7 +18,6 @@ from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import VirtualWork
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.variation import check_same
-from sebody.kernels.layout import FrameTraits
 
 
 class Condition(NamedTuple):

@@ -7,6 +7,7 @@ a translation. So the frame is the same wherever its origin is, and it follows n
 
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits, Part, axes_of
 from sebody.derive.form.arrays import Place, constant
 from sebody.derive.form.counts import (
     FIRST_ROTATION,
@@ -40,7 +41,6 @@ from sebody.derive.symbolic.rotations import (
     inverse_tangent_transposed_times,
 )
 from sebody.derive.symbolic.variation import check_same
-from sebody.kernels.layout import FrameTraits, Part, axes_of
 
 GAM = Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate")
 

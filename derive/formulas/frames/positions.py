@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits
 from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS
 from sebody.derive.form.functions import (
     BEST_FIT,
@@ -24,7 +25,6 @@ from sebody.derive.formulas.frames.frame import (
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import cross, skew
 from sebody.derive.symbolic.variation import along, check_same, differential, rotating
-from sebody.kernels.layout import FrameTraits
 
 
 def positions(q: Quantities) -> Frame:

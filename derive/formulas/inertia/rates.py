@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import axes_of
 from sebody.derive.form.arrays import Array, Place, scratch
 from sebody.derive.form.functions import BLOCK_TIMES, INVERSE_TANGENT_SECOND, ROWS_TIMES
 from sebody.derive.form.spaces import Quantity
@@ -23,7 +24,6 @@ from sebody.derive.symbolic.variation import (
     check_same,
     differential,
 )
-from sebody.kernels.layout import axes_of
 
 RATES = {"u": "eu", "psi": "ep", "ym": "em"}     # of local coordinates, by name
 MOVING, STRAINED, LOST = range(3)       # places among the squares: energies, power lost

@@ -8,8 +8,8 @@ import warnings
 from collections.abc import Callable, Iterable
 
 from sebody.analysis.first_run import PARTS, compile_missing
+from sebody.contract.names import element_name, superelement_name
 from sebody.errors import InputError, LimitWarning
-from sebody.kernels.names import element_name, superelement_name
 from sebody.studies.atlas import frames, geometry, inertia, integration, spin, torsion
 from sebody.studies.atlas.draw import draw
 from sebody.studies.atlas.finding import Finding, Row

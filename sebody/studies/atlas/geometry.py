@@ -3,10 +3,10 @@
 import numpy as np
 
 from sebody.analysis.simulation import Simulation, simulate
+from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import assemble
 from sebody.errors import InputError
 from sebody.fem import straight_beam
-from sebody.kernels.layout import RESIDUAL
 from sebody.kernels.rotations import NEAR_PI, exp_map
 from sebody.model.model import Model
 from sebody.reduction import ReducedBody, craig_bampton

@@ -3,9 +3,9 @@
 import numpy as np
 
 from sebody.analysis.simulation import Simulation, simulate
+from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import assemble
 from sebody.fem import straight_beam
-from sebody.kernels.layout import RESIDUAL
 from sebody.kernels.rotations import exp_map
 from sebody.model.model import Model
 from sebody.reduction import craig_bampton

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.optimize import root
 from scipy.spatial.transform import Rotation
 
+from sebody.contract.layout import FrameTraits
 from sebody.generated.options import FRAMES, INERTIA_OPTIONS
-from sebody.kernels.layout import FrameTraits
 from sebody.studies.check.states import Case, constants_of
 
 

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.layout import (
+from sebody.contract.layout import (
     ENERGY,
     KINETIC,
     MOMENTUM,
@@ -19,6 +18,7 @@ from sebody.kernels.layout import (
     TANGENT,
     first_mode,
 )
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.studies.check import carried
 from sebody.studies.check.carried import is_carried
 from sebody.studies.check.definitions import (
