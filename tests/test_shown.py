@@ -188,7 +188,7 @@ def test_a_model_says_what_it_is_before_a_run():
     model.force("o", (1, 0, 0), 5.0)
     model.torque("o", (1, 0, 0), lambda t: 2 * t)
     said = model.summary()
-    assert "free      ball: nothing ties them to the ground" in said
+    assert "free      ball: not connected to the ground" in said
     assert re.search(r"o +\(1, 2, 3\) +3 unknowns +3 unknowns +\(1, 0, 0\)", said)
     assert "constant 5" in said and "function <lambda>" in said and "gravity (0, 0, -9.81)" in said
     assert "array(" not in said

@@ -52,7 +52,7 @@ class Watch:
         undamped = scheme.gamma == 0.5 and scheme.alpha_f == scheme.alpha_m
         if constrained and undamped and not scheme.stabilized:
             self.say("scheme", "without numerical damping the multipliers of index-3 constraints "
-                               "oscillate and grow with every disturbance: use rho 0.9, alpha "
+                               "oscillate and grow after any disturbance: use rho 0.9, alpha "
                                "-0.05, or index=2")
         for name, body in bodies.items():
             follows = not FRAMES[body.frame].traits.needs_rotations
@@ -86,7 +86,7 @@ class Watch:
             for k, name in enumerate(group.bodies):
                 if local[k] > LINEAR:
                     self.say(f"turn {name}", f"local rotation {local[k]:.2g} rad of body {name!r} "
-                             f"exceeds the linear range, {LINEAR} rad: divide it")
+                             f"exceeds the linear range, {LINEAR} rad: divide the body")
                 if local[k] > BENT and self._off_line[name]:
                     self.say(f"bent {name}", f"local rotation {local[k]:.2g} rad of body {name!r}, "
                              "whose frame follows the rotations of its nodes while its mass is off "
@@ -117,11 +117,11 @@ class Watch:
         felt, limit = speed * reach(body, axis), divergence(body, axis)
         if felt > limit:
             self.say(keys[0], f"spin {speed:.3g} rad/s is above the limit {limit:.3g} of body "
-                     f"{body.name!r}, whose stiffness does not grow with it: {_remedy(body)}")
+                     f"{body.name!r}, whose stiffness does not grow with spin: {_remedy(body)}")
         elif keys[1] not in self._said and felt > FAST * min(limit, first_frequency(body)):
             self.say(keys[1], f"body {body.name!r} spins at {speed:.3g} rad/s, more than a quarter "
                      f"of {_compared(limit, first_frequency(body))}: its stiffness does not grow "
-                     "with the spin, and frequencies are off by a per cent and more; "
+                     "with the spin, and frequencies are wrong by 1 % or more; "
                      f"{_remedy(body)}")
 
 

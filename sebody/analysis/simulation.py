@@ -169,7 +169,7 @@ class Simulation:
         user_faults.refuse_changed(self.model)
         last = self._last_step(t_end)
         if abs(t_end / self.h - last) > OFF_GRID:
-            self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
+            self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: the "
                            f"run ends at t = {last * self.h:.9g}")
         if self.state.control[ADAPTIVE] == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
@@ -260,7 +260,7 @@ class Simulation:
         if scheme is None:
             return _default(2 if constrained and variable else 3)
         if variable and constrained and not scheme.stabilized:
-            raise InputError("with constraints of index 3 errors grow where steps change: give "
+            raise InputError("with constraints of index 3 errors grow where the step changes: give "
                              "generalized_alpha(index=2), or a fixed step")
         return scheme if constrained else scheme._replace(stabilized=False)
 

@@ -82,7 +82,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         step /= 2
         if step < SMALLEST:
             message = (f"no equilibrium was found above {share:.4g} of the load: the structure may "
-                       "buckle there, or a mechanism is free to move; use more steps or supports")
+                       "buckle, or a mechanism may be free to move; use more steps or supports")
             if did := user_faults.fault(model, -np.inf):
                 message = f"no equilibrium was found above {share:.4g} of the load: {did}"
             raise SimulationError(message, _result(run))

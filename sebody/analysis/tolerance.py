@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.errors import InputError
 
-UNSIZED = ("nothing in the model has a length: errors of positions are relative to one unit of "
-           "length; give an absolute one, such as Tolerance(1e-3, position=1e-6)")
+UNSIZED = ("the model has no characteristic length: errors of positions are relative to one unit "
+           "of length; give an absolute tolerance, such as Tolerance(1e-3, position=1e-6)")
 FINEST = 1e-9       # relative error of a run below which Newton's tolerance and rounding decide
 
 
@@ -38,7 +38,7 @@ class Tolerance(NamedTuple):
         for name, value in self._asdict().items():
             inputs.number(value, f"tolerance {name}", least=0, remedy="give a number >= 0")
         if self.relative == 0.0 and not (self.position > 0.0 and self.rotation > 0.0):
-            raise InputError("the tolerance allows no error: give a relative one, or absolute ones "
+            raise InputError("the tolerance allows no error: give a relative error, or absolute ones "
                              "of positions and of rotations")
         return self
 
@@ -59,8 +59,8 @@ class Tolerance(NamedTuple):
         found = (self.allowed(sizes, rotational) / sizes)[sizes > 0.0].min()
         if found < FINEST:
             raise InputError(f"the tolerance allows errors of {found:.3g}, relative to the model's "
-                             f"extent or in radians: give at least {FINEST:g}, below which shorter "
-                             "steps do not help")
+                             f"characteristic length or in radians: give at least {FINEST:g}, "
+                             "below which shorter steps do not help")
 
     def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
         """Allowed error of positions and rotations of a magnitude.

@@ -197,5 +197,5 @@ def _check(options: argparse.Namespace, scene: "Scene") -> None:
     if options.resume:
         for name in ("step", "rho", "index", "every", "equilibrium"):
             if getattr(options, name) not in (None, False):
-                raise InputError(f"--resume goes on with the {name} that was saved: leave out "
+                raise InputError(f"--resume continues with the {name} that was saved: leave out "
                                  f"--{name}")

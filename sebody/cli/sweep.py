@@ -139,7 +139,7 @@ def _time(text: str, time: str) -> float:
     try:
         return float(time)
     except ValueError as error:
-        raise InputError(f"--keep {text}: {time.strip()!r} is no time") from error
+        raise InputError(f"--keep {text}: {time.strip()!r} is not a time") from error
 
 
 def _written(table: "Table", stem: Path) -> list[str]:

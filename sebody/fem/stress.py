@@ -199,7 +199,7 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
         volumes = found[-1].volumes()
         _refuse(found[-1], np.abs(volumes).min(axis=1) <= FLAT, "has no volume")
         _refuse(found[-1], (volumes > 0).any(axis=1) & (volumes < 0).any(axis=1),
-                "is turned inside out in a part of it")
+                "is partly inverted")
     if not found:
         raise InputError(f"cells have no solid elements: give cells of the kinds "
                          f"{', '.join(SOLID_KINDS)}")

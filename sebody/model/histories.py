@@ -22,7 +22,7 @@ from sebody.kernels.user_functions import UserFunction, compile_history
 from sebody.model.functions import compilable, compiled_history
 from sebody.model.history_rows import linear, table
 
-LOAD, MOTION = "load history", "motion of a drive"
+LOAD, MOTION = "time function of a load", "motion of a drive"
 COEFFICIENTS = 6        # most of a polynomial
 SMALL = 1e-9            # jump of a value or rate, relative to its size, that is rounding
 NEAR = 1e-8             # distance at which a function is looked at beside a corner, relative to it
@@ -152,7 +152,7 @@ class History:
 
 
 def history(source: Source) -> History:
-    """A load history from None (1), a number, a table, a function of time or a ready profile.
+    """A time function of a load from None (1), a number, a table, a function of time or a ready profile.
 
     A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; two
     rows of one time are a jump. A function is compiled, of a tuple of a function and its rates the

@@ -13,7 +13,7 @@ def hold(model: Mechanism, node: Node, kind: str) -> Triplet:
     """Fix a triplet of a node, which must not be a dependent position."""
     held = triplet(node, kind)
     if held.root is not None:
-        raise InputError(f"{held.name} hangs on another node by a rigid link: fix or move "
+        raise InputError(f"{held.name} follows another node by a rigid link: fix or move "
                          f"{held.root.name} and its rotation instead")
     held.fixed = True
     model.connections.append(Connection(kind, node, None, spare=True))

@@ -51,7 +51,7 @@ class Stresses:
         self._body, self._motion, self._gravity = body, motion, gravity
         self._recovery: Recovery = body.body.recovery
         if not self._recovery.stress:
-            raise InputError(f"body {body.name!r} knows no stresses: "
+            raise InputError(f"body {body.name!r}has no known stresses: "
                              f"{body.body.lacks['stresses']}")
         own = self._recovery.stress
         self._solids = [one for one in own if isinstance(one, SolidStress)]
@@ -131,7 +131,7 @@ class Stresses:
                 return self._amplitudes[0] @ one.modes[own[-1]].T
         fibres = self.fibres_of_node(node)
         if not fibres.shape[1]:
-            raise InputError(f"body {self._body.name!r} knows no stress at node "
+            raise InputError(f"the stress of body {self._body.name!r} is unknown at node "
                              f"{self._recovery.called(node)}: no element with a known stress has "
                              "this node")
         worst = von_mises(fibres).argmax(axis=1)

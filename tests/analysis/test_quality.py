@@ -81,7 +81,7 @@ def test_a_step_that_is_too_long_is_told_on_standard_error(capsys):
     lines = capsys.readouterr().err.splitlines()
     assert lines and all(line.startswith("warning: ") for line in lines)
     assert any("of the energy exchanged (limit 0.05)" in line for line in lines)
-    assert any("cuts in" in line and "take a smaller one" in line for line in lines)
+    assert any("rejected steps, " in line and "take a smaller one" in line for line in lines)
 
 
 def test_a_warning_is_given_once_and_kept():

@@ -124,7 +124,7 @@ BODY = {
         "notes", lambda said: said["body"].update({"materials": [3]}))),
     "a material of negative speed": Packed("speed of sound of material 'M' is -1.0", text(
         "notes", lambda said: said["body"].update({"materials": [["M", -1.0, 2.0]]}))),
-    "a provenance of numbers": Packed("has a provenance that is no text", text(
+    "a provenance of numbers": Packed("has a provenance that is not a text", text(
         "notes", lambda said: said.update({"provenance": {"source": 3}}))),
     "a provenance that is a list": Packed("has [] for its provenance", text(
         "notes", lambda said: said.update({"provenance": []}))),
@@ -153,7 +153,7 @@ BODY = {
     "more than any memory": Packed("member mass has", lambda path: claims(path, "mass", 2**40)),
     "an encrypted member": Packed("member mass is encrypted", encrypted("mass")),
     "another packing": Packed("member mass is packed by method 14", method("mass", 14)),
-    "a member twice": Packed("member mass is there twice", twice("mass")),
+    "a member twice": Packed("member mass occurs twice", twice("mass")),
     "objects": Packed("member mass has", arrays(lambda found: found.update(
         {"mass": np.array([None, {}], dtype=object)}))),
     "indefinite mass": Packed("mass is indefinite", member("mass", lambda old: -old)),

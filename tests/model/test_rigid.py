@@ -219,9 +219,9 @@ def test_hanging_body_equals_an_explicit_joint():
     (lambda m: m.attach("a", (0, 0, 1), "a"), "node 'a' exists already"),
     (lambda m: m.attach("c", (0, 0, 1), "half"), "node 'half' has no rotation"),
     (lambda m: (m.attach("c", (0, 0, 1), "a"), m.fix("c", "position")),
-     "c.position hangs on another node by a rigid link: fix or move a.position and its rotation"),
+     "c.position follows another node by a rigid link: fix or move a.position and its rotation"),
     (lambda m: (m.attach("c", (0, 0, 1), "a"), m.initial_velocity("c", (1, 0, 0))),
-     "initial rate of c.position is .*, but it is fixed, prescribed or hangs on another node"),
+     "initial rate of c.position is .*, but it is fixed, prescribed or follows another node"),
 ])
 def test_wrong_bodies_and_links(action, message):
     model = Model()

@@ -167,7 +167,7 @@ def test_save_refuses_other_files(tmp_path):
 def test_summary_says_what_matters():
     text = spatial().summary()
     assert "unknowns             13" in text
-    assert "steps                50 (0 cut), to t = 0.5" in text
+    assert "steps                50 (0 rejected), to t = 0.5" in text
     for line in ("iterations per step", "time per step", "energy balance"):
         assert line in text
     assert "FAILED" not in text

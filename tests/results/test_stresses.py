@@ -220,7 +220,7 @@ def test_stress_modes_of_another_program():
     with pytest.raises(InputError, match="no node with the label 5: there are 1000 to 1035"):
         field.label(5)
     bare = replace(body, recovery=replace(shapes, stress=()))
-    with pytest.raises(InputError, match="'block' knows no stresses: the body was made without"):
+    with pytest.raises(InputError, match="'block'has no known stresses: the body was made without"):
         equilibrium(held(bare, points), 1).field("block").von_mises()
 
 
