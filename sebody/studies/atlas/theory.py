@@ -154,7 +154,7 @@ def deflection_of_spin_up(beam: Beam, rate: Callable[[float], float],
 
 
 def euler_load(beam: Beam) -> float:
-    """Dead load along the axis that buckles the cantilever, infinite where none does."""
+    """Fixed-direction axial load that buckles the cantilever, infinite where none does."""
     largest = eigh(-2 * beam.shortening, beam.stiffness, eigvals_only=True)[-1]
     return float(1 / largest) if largest > 1e-6 else np.inf
 
