@@ -40,7 +40,7 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     h : float
         Output grid [time].
     tolerance : Tolerance
-        Allowed error of the run, by default 1e-3 of the extent and 1e-3 rad.
+        Allowed error of the run, by default 1e-3 of the characteristic length and 1e-3 rad.
     scheme, progress, start
         As for `Simulation` and its `run_to`; a bar counts the runs.
 

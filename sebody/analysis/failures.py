@@ -35,5 +35,5 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
     variable = state.control[ADAPTIVE] == 1
     shortest = state.clock[CHOSEN] if variable else state.clock[STEP] / FINEST
     remedy = "a larger tolerance" if variable else "a smaller step"
-    return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. Use "
-            f"{remedy}, check the loads, or split the body into more superelements")
+    return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
+            f"Use {remedy}, check the loads, or split the body into more superelements")

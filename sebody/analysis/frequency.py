@@ -1,4 +1,4 @@
-"""Steady answers of any quantity to a harmonic load, about a state at rest or in steady rotation.
+"""Frequency response of any quantity to a harmonic load, about rest or a steady rotation.
 
 The load has the amplitude ``exp(i omega t)``; the unknowns, multipliers included, answer with
 ``(-omega^2 M + i omega C + K) X = F``, with the exact derivatives of `linearization` and F that of
@@ -38,7 +38,7 @@ SMALL = 1e-5        # motion of the states that are compared, of the extent or i
 
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
-    """Complex answers of quantities to a load of unit amplitude; see `frequency_response`.
+    """Complex frequency response of quantities to a load of unit amplitude.
 
     ``response["tip.position"]`` is the change of the quantity, (m, ...), over the angular
     frequencies `omega`, (m,) [1/time]; its argument is the phase ahead of the load.
@@ -60,7 +60,7 @@ class FrequencyResponse:
                 f"{self.omega.min(initial=np.inf):.6g} to {self.omega.max(initial=0.0):.6g} rad/s")
 
     def _rows(self) -> Iterator[tuple[str, ...]]:
-        """The largest answer of every component of every quantity."""
+        """The largest response of every component of every quantity."""
         for name, answer in self.answers.items():
             columns = answer.reshape(len(self.omega), -1).T
             for label, column in zip(component_names(answer, name), columns, strict=True):

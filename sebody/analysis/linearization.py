@@ -226,7 +226,7 @@ class Modes(NamedTuple):
 
     @property
     def growth(self) -> NDArray:
-        """Rates of growth, negative where the motion decays [1/time]."""
+        """Real parts of the eigenvalues, negative where the motion decays [1/time]."""
         return self.values.real
 
 

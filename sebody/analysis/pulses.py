@@ -1,4 +1,4 @@
-"""What steps do not see of load histories: peaks between them, jumps nobody told them of."""
+"""Features of time functions that steps miss: peaks between steps, jumps that are not declared."""
 
 from collections.abc import Callable, Iterator
 
@@ -90,7 +90,7 @@ def _jump(function: Callable[[float], float],
 
 
 def _known(history: History) -> NDArray:
-    """Times at which a history may have a peak."""
+    """Times at which a time function may have a peak."""
     if not history.functions:
         return np.array(history.times)
     corners = np.array(history.corners)

@@ -79,7 +79,7 @@ def growth(energy: NDArray, work: NDArray) -> float:
 
 
 def _steps(run: Recording) -> dict[str, str]:
-    """Whether many steps were cut."""
+    """Whether many steps were rejected."""
     steps, cuts = int(run.state.control[STEPS]), int(run.state.control[CUTS])
     if cuts <= CUT * steps:
         return {}

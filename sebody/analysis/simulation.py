@@ -169,8 +169,8 @@ class Simulation:
         user_faults.refuse_changed(self.model)
         last = self._last_step(t_end)
         if abs(t_end / self.h - last) > OFF_GRID:
-            self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: the "
-                           f"run ends at t = {last * self.h:.9g}")
+            self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "
+                           f"the run ends at t = {last * self.h:.9g}")
         if self.state.control[ADAPTIVE] == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)

@@ -32,11 +32,11 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     Parameters
     ----------
     steps : int
-        Load steps; cut where Newton's iteration does not converge.
+        Load steps; divided where Newton's iteration does not converge.
     t : float
-        Time at which the histories of the loads are read [time].
+        Time at which the time functions of the loads are evaluated [time].
     tolerance : float
-        Of the last correction, relative to the extent of the model or in radians.
+        Of the last correction, relative to the model's characteristic length or in radians.
     spin : (3,) array_like or float, optional
         Angular velocity of a frame about the origin in which everything rests, fixed nodes,
         supports and loads included [1/time]; a number in a plane.

@@ -18,7 +18,7 @@ FINEST = 1e-9       # relative error of a run below which Newton's tolerance and
 class Tolerance(NamedTuple):
     """Allowed errors of positions and rotations, relative ones added to absolute ones.
 
-    Relative means of the model's extent for positions and of one radian for rotations. Where
+    Relative to the model's characteristic length for positions, to one radian for rotations. Where
     nothing in the model has a length, as in a single mass without a moment of inertia, it means one
     unit of length, and a run warns.
     """
@@ -38,7 +38,8 @@ class Tolerance(NamedTuple):
         for name, value in self._asdict().items():
             inputs.number(value, f"tolerance {name}", least=0, remedy="give a number >= 0")
         if self.relative == 0.0 and not (self.position > 0.0 and self.rotation > 0.0):
-            raise InputError("the tolerance allows no error: give a relative error, or absolute ones "
+            raise InputError("the tolerance allows no error: give a relative error, or absolute "
+                             "ones "
                              "of positions and of rotations")
         return self
 

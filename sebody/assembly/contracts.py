@@ -32,7 +32,7 @@ REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebo
 
 def check_element(element: Element, kernel: ModuleType, unknowns: int,
                   numbering: Numbering) -> None:
-    """Check counts, history and power port of an element.
+    """Check counts, time function and power port of an element.
 
     Raises
     ------

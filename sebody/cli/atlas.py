@@ -8,7 +8,8 @@ from sebody.cli.inputs import check_picture
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
-    parser = commands.add_parser("atlas", help="known limits: theory, measured value, how sebody reacts")
+    parser = commands.add_parser("atlas", help="known limits: theory, measured value, how sebody "
+                                               "reacts")
     parser.add_argument("cases", nargs="*", metavar="CASE", help="cases (default: all)")
     parser.add_argument("--output", type=Path, metavar="FILE.png",
                         help="draw all cases")

@@ -5,7 +5,8 @@ import argparse
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
-    parser = commands.add_parser("check", help="check kernels: forces against energies, tangents against forces")
+    parser = commands.add_parser("check", help="check kernels: forces against energies, tangents "
+                                               "against forces")
     parser.add_argument("kernels", nargs="*", metavar="KERNEL",
                         help="show all criteria of these kernels (default: summary of all kernels)")
     return parser

@@ -76,7 +76,8 @@ def _list_all() -> None:
     print("  frame 'node' is the converged_mean kernel with all weight on one node\n"
           "  inertia a: angular velocities in frame axes, b: in material axes,\n"
           "  c: whole displacement field, d: exact rigid-body part and deformation rates\n"
-          "  layout any: used for all layouts that are not listed; for a faster or a damped kernel:\n"
+          "  layout any: used for all layouts that are not listed; for a faster or a damped "
+          "kernel:\n"
           "  python -m sebody.derive LAYOUT")
     print("\njoints and loads")
     names = ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout)

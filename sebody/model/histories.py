@@ -1,6 +1,6 @@
 """Histories of loads and motions of drives: pieces of formulas, or functions of a user.
 
-A history of pieces is on each of its intervals a polynomial of degree five at most plus a harmonic:
+A time function of pieces is on each interval a polynomial of at most degree five plus a harmonic:
 see `History`. Loads need the value alone, drives its first two derivatives, too.
 """
 
@@ -152,7 +152,7 @@ class History:
 
 
 def history(source: Source) -> History:
-    """A time function of a load from None (1), a number, a table, a function of time or a ready profile.
+    """A time function from None (1), a number, a table, a Python function or a ready profile.
 
     A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; two
     rows of one time are a jump. A function is compiled, of a tuple of a function and its rates the

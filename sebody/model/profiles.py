@@ -1,4 +1,4 @@
-"""Ready histories for drives and loads alike: each has exact rates and compiles nothing.
+"""Predefined time functions of drives and loads: they have exact rates and compile nothing.
 
 All but `harmonic` begin at `start` with the value `origin`, keep it before, and keep their last
 value afterwards. For drives this is the displacement or angle, which counts from where the model

@@ -13,7 +13,7 @@ from sebody.results import energy_balance
 from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording, record_counts
 
-DRIFT = 1e-5        # constraints, of the model's extent or rad: a thousand times a step's tolerance
+DRIFT = 1e-5        # constraints, of the model's size or rad: a thousand times a step's tolerance
 GOOD = 0.2          # of a limit, up to which a number is good
 IMPULSE = 0.05      # share of the impulse exchanged, as of energies
 RATES = 1e-3        # rates of constraints, of the largest speed: as errors of a step may be

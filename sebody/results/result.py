@@ -82,12 +82,12 @@ class Result(Recording):
 
     @property
     def steps(self) -> int:
-        """Accepted steps, cut ones included."""
+        """Accepted steps, those of reduced size included."""
         return int(self.counters[STEPS])
 
     @property
     def cuts(self) -> int:
-        """Steps that were cut because Newton's iteration did not converge."""
+        """Rejected steps: Newton's iteration did not converge, and the step was made smaller."""
         return int(self.counters[CUTS])
 
     @property

@@ -141,7 +141,8 @@ def _bodies(result: Result, states: NDArray, size: float, reference: str | None
     if reference is not None and not measured:
         known = {node.name for body in model.bodies.values() for node in welded.candidates(body)}
         raise InputError(f"displacements cannot be measured from {reference!r}: give a node of a "
-                         f"flexible body, {', '.join(sorted(known)) or 'of which there are none'}, or "
+                         f"flexible body, "
+                         f"{', '.join(sorted(known)) or 'of which there are none'}, or "
                          "'frame', the floating frame of each body")
     found = (flexible(result, body, states, size, welded,
                       reference if body.name in measured else None)

@@ -112,7 +112,8 @@ def test_the_loop_returns_several_times_a_second(monkeypatch, of_a_step):
 
 
 def test_an_end_off_the_grid_is_said():
-    with pytest.warns(LimitWarning, match="t = 0.126 is not a multiple of the step 0.01: the run ends "
+    with pytest.warns(LimitWarning, match="t = 0.126 is not a multiple of the step 0.01: the run "
+                                          "ends "
                                           "at t = 0.13"):
         result = small().run_to(0.126).result()
     assert result.t[-1] == pytest.approx(0.13, rel=1e-14)

@@ -136,7 +136,7 @@ def test_a_lone_mass_rests_where_nothing_pulls_and_nowhere_else(point):
 
 
 def test_a_body_that_is_held_at_both_ends_sags():
-    """Unknown are amplitudes of modes alone: rho A g L^4 / (384 EI), and the modes left out."""
+    """Unknown are amplitudes of modes alone: rho A g L^4 / (384 EI), and the omitted modes."""
     model = Model(planar=True)
     ends = [model.node(name, x) for name, x in (("a", (3.0, 1.0)), ("b", (3.0, 101.0)))]
     model.beam("beam", ends, BERNOULLI, 16, 1, 8)
@@ -148,7 +148,7 @@ def test_a_body_that_is_held_at_both_ends_sags():
     modes = result["beam.modes"][-1]
     deepest = np.abs(body.displacements(np.concatenate([np.zeros(6), modes]))[:, :2]).max()
     weight = 1e-3 * SECTION.density * SECTION.area
-    # modes left out have 1e-4 of the sag, elements of a consistent mass none
+    # omitted modes have 1e-4 of the sag, elements of a consistent mass none
     assert deepest == pytest.approx(weight * LENGTH**4 / (384 * EI), rel=5e-4)
 
 

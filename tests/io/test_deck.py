@@ -167,7 +167,8 @@ def test_stresses_of_masses_and_springs_are_not_missed(decks):
     ("TYPE=C3D8,", "TYPE=B31,", r"makes solids of beams, shells and plane elements \(B31\)"),
     ("TYPE=C3D8,", "TYPE=CPS6,", "delete elements of surfaces and lines that the mesher has"),
     ("*NSET, NSET=RIGHT\n", "*NSET, NSET=RIGHT\nRIGHT, ", "node set RIGHT has itself as a member"),
-    ("*NSET, NSET=RIGHT\n", "*NSET, NSET=RIGHT\nFAR, ", "'FAR' is neither a label nor a set of nodes"),
+    ("*NSET, NSET=RIGHT\n", "*NSET, NSET=RIGHT\nFAR, ", "'FAR' is neither a label nor a set of "
+                                                        "nodes"),
     ("*SURFACE, NAME=LEFT\n1, S6\n", "*SURFACE, NAME=LEFT\n1, S7\n",
      "there is no face 'S7' of the element: give S1 to S6"),
     ("*SURFACE, NAME=LEFT\n1, S6\n", "*SURFACE, NAME=LEFT\n9, S1\n",
@@ -178,7 +179,8 @@ def test_stresses_of_masses_and_springs_are_not_missed(decks):
     (SECTION, "*ELSET, ELSET=A, GENERATE\n1, 4, 0\n" + SECTION, "the step of GENERATE is 0"),
     ("3, 9, 13, 15, 11, 10, 14, 16, 12", "3, 9, 11, 15, 13, 10, 12, 16, 14",
      "element 3 of the deck is inverted or has no volume: correct the order"),
-    (SECTION, "*TIE, NAME=T\nLEFT, NEAR\n" + SECTION, r"\*TIE of surface NEAR, which does not exist"),
+    (SECTION, "*TIE, NAME=T\nLEFT, NEAR\n" + SECTION, r"\*TIE of surface NEAR, which does not "
+                                                      r"exist"),
 ])
 def test_refused_with_the_true_reason(decks, old, new, said):
     with pytest.raises(InputError, match=said):

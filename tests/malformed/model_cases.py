@@ -72,7 +72,8 @@ def histories() -> list:
     """Wrong histories of a load."""
     return [*have("time function of a load has shape", [1.0, 2.0], [(0.0, 1.0, 2.0)]),
             *are("time function of a load", NAN, INF, True, 1j, also=": give "),
-            *have("time function of a load", "abc", [("0", "1")], [(0, 1), (1,)], [(0.0, 1j)], {}, []),
+            *have("time function of a "
+                  "load", "abc", [("0", "1")], [(0, 1), (1,)], [(0.0, 1j)], {}, []),
             *have("time function of a load contains NaN or infinite", [(0.0, NAN)], [(0.0, INF)]),
             *have("times of a time function of a load must increase", [(1.0, 0.0), (0.0, 1.0)])]
 

@@ -41,7 +41,7 @@ def _numbering(said: dict) -> list:
 BODY = {
     "NaN in the shapes": Packed("holds numbers in recovery.shapes that are not finite (nan at "
                                 "[3, 2])", entry("recovery.shapes", (3, 2), np.nan)),
-    "infinity in the static answer": Packed("in recovery.static that are not finite", entry(
+    "infinity in the static response": Packed("in recovery.static that are not finite", entry(
         "recovery.static", (0, 0), np.inf)),
     "a row too few": Packed("has recovery.shapes of shape (17, 12), in place of (18, any)", member(
         "recovery.shapes", lambda old: old[:-1])),

@@ -29,16 +29,19 @@ def two_nodes():
 
 
 @pytest.mark.parametrize("table, message", [
-    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a time function of a load must not decrease, after t = 2 "
+    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a time function of a load must not decrease, "
+                                           "after t = 2 "
                                            "they do: sort the rows"),
     ([(0.0, 1.0), (3.0, 2.0), (3.0, 1.0), (3.0, 0.0)],
-     "time function of a load has more than two rows at t = 3: give the value before a jump and the value "
+     "time function of a load has more than two rows at t = 3: give the value before a jump and "
+     "the value "
      "after it"),
     ([1.0, 2.0], r"time function of a load has shape \(2,\): give rows \(t, value\)"),
     ([(0.0, 1.0, 2.0)], r"time function of a load has shape \(1, 3\): give rows"),
     ([], "time function of a load has shape .*: give rows"),
     (np.nan, "time function of a load is nan: give a finite number"),
-    ([(0.0, np.nan)], "time function of a load contains NaN or infinite entries: give finite numbers"),
+    ([(0.0, np.nan)], "time function of a load contains NaN or infinite entries: give finite "
+                      "numbers"),
     ([(np.inf, 1.0)], "NaN or infinite entries"),
 ])
 def test_wrong_tables(table, message):
@@ -56,7 +59,8 @@ def returns_nothing(t):
 
 @pytest.mark.parametrize("function", [opens_a_file, returns_nothing, lambda t: 1j * t])
 def test_function_that_cannot_be_compiled(function):
-    with pytest.raises(InputError, match=f"time function of a load '{function.__name__}' cannot be compiled: "
+    with pytest.raises(InputError, match=f"time function of a load '{function.__name__}' cannot "
+                                         f"be compiled: "
                                          "use only arithmetic, math and numpy in it"):
         history(function)
 

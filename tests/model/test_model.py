@@ -162,7 +162,8 @@ def test_massless_body():
                                               "its direction"),
     (lambda m: m.revolute("base", (0, 1)), "axis of the revolute joint at 'base' is .0, 1.: give"),
     (lambda m: m.revolute("base", (0, 0, np.nan)), "axis of .* give 3 finite numbers"),
-    (lambda m: m.revolute("base", to="tip"), "revolute joint: nodes 'base' and 'tip' do not coincide: "
+    (lambda m: m.revolute("base", to="tip"), "revolute joint: nodes 'base' and 'tip' do not "
+                                             "coincide: "
                                              "give both the same point"),
     (lambda m: m.revolute("base", to="far"), "node 'far' is unknown"),
     (lambda m: m.spherical("base", "tip"), "'base' and 'tip' do not coincide: give both the same"),

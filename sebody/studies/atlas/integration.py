@@ -68,7 +68,8 @@ def newton() -> Finding:
         "after a strong impact long steps take more iterations",
         "Newton's iteration converges from the prediction only if the state changes little during "
         "a step: long steps fail after a strong impulse.",
-        "sebody rejects the step and reduces its size until Newton's iteration converges; if 1/4096 "
+        "sebody rejects the step and reduces its size until Newton's iteration converges; if "
+        "1/4096 "
         "of the step still fails, the run stops with a message and keeps its results.",
         "step [s]", "iterations per step; rejected steps", logarithmic="x")
     steps, iterations, cuts = (0.00125, 0.0025, 0.005, 0.01, 0.02, 0.04), [], []

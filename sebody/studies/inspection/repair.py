@@ -54,7 +54,8 @@ def free_rigid_motion(file: BodyFile) -> tuple[BodyFile, list[str]]:
     softest = _softest(stiffness, body.rigid.shape[1], scale)
     said.append("not repaired: errors of the same size, which the other motions keep; the softest "
                 f"one has {softest:.3e} of |K|, so up to {min(1.0, before / softest):.1%} of its "
-                "stiffness may be wrong. Only an export with 14 digits before reducing repairs this")
+                "stiffness may be wrong. Only an export with 14 digits before reducing repairs "
+                "this")
     return repaired, said + constants
 
 
