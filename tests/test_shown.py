@@ -175,7 +175,7 @@ def test_a_model_says_what_it_is_before_a_run():
     said = model.summary()
     free = Simulation(model, 1e-3).numbering.free
     assert sum(unknowns(model)) == free
-    assert f"unknowns  {free}: 4 of nodes, 5 of modes, 1 of the equations of joints" in said
+    assert f"unknowns  {free}: 4 of nodes, 5 of modes, 1 of joint equations" in said
     assert "Bodies\n" in said and "Nodes\n" in said and "Joints and drives\n" in said
     assert "prescribed by motion of pin.position, motion 2 of pin.position" in said
     masses = [body.body.total_mass for body in model.bodies.values()]

@@ -18,7 +18,7 @@ from sebody.engine.state import (
 from sebody.engine.system import System
 from sebody.model.model import Model
 
-KEPT = "the results up to this time are kept"
+KEPT = "results up to this time are kept"
 
 
 def explained(model: Model, system: System, state: State, numbering: Numbering) -> str:

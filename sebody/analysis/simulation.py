@@ -192,7 +192,7 @@ class Simulation:
             raise SimulationError(self.failure, self.result())
         if code != DONE:
             result = self.result()
-            result.failure = f"interrupted at t = {self.time:.6g}: results up to there are kept"
+            result.failure = f"interrupted at t = {self.time:.6g}: results up to this time are kept"
             raise Interrupted(result.failure, result)
         return self
 

@@ -180,8 +180,8 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
     ------
     InputError
         No solid elements, a wrong number of nodes, elements without volume or turned inside out in
-        a part of them (a whole one may be mirrored, which changes no strain), or a material that
-        there is not.
+        a part of them (a whole one may be mirrored, which changes no strain), or an
+        invalid material.
     """
     coordinates = inputs.array(coordinates, "coordinates", (None, 3))
     inputs.number(youngs_modulus, "youngs_modulus", above=0)

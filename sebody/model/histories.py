@@ -1,4 +1,4 @@
-"""Histories of loads and motions of drives: pieces of formulas, or functions of a user.
+"""Time functions of loads and drives: pieces of formulas, or functions of a user.
 
 A time function of pieces is on each interval a polynomial of at most degree five plus a harmonic:
 see `History`. Loads need the value alone, drives its first two derivatives, too.

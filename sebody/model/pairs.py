@@ -25,7 +25,7 @@ def pair(model: Mechanism, node: Node | str, to: Node | str | None, what: str,
 
 
 def check_together(model: Mechanism, a: Node, b: Node, what: str) -> None:
-    """Refuse nodes that start apart."""
+    """Refuse nodes that do not coincide."""
     if np.abs(b.point - a.point).max() > NEAR * model.size():
         raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} do not coincide: give both the "
                          "same point")

@@ -21,9 +21,9 @@ def hold(model: Mechanism, node: Node, kind: str) -> Triplet:
 
 
 def can_share(one: Triplet, other: Triplet) -> bool:
-    """Whether two triplets can be one: at most one of them is fixed or hangs on another node.
+    """Whether two triplets can be one: at most one of them is fixed or follows another node.
 
-    Two that are fixed at one place and not moved are one already. One that hangs on the other by
+    Two that are fixed at one place and not moved are one already. One that follows the other by
     links closes a loop.
     """
     if one is other:

@@ -46,7 +46,7 @@ def described(model: Mechanism) -> str:
     masses += [float(body.constants["mass"]) for body in model.rigid_bodies.values()]
     lines = [summary(model),
              f"unknowns  {nodes + modes + equations}: {nodes} of nodes, {modes} of modes, "
-             f"{equations} multipliers of joints",
+             f"{equations} of joint equations",
              f"mass      {sum(masses):.6g}"]
     if loose := [name for group in untied(model) for name in group]:
         lines.append("free      " + ", ".join(loose) + ": not connected to the ground")

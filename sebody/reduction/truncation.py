@@ -18,7 +18,7 @@ def truncated(body: ReducedBody, modes: int) -> ReducedBody:
 
     The body is that of a reduction with fewer modes: fixed-interface modes are nested, if those of
     one frequency stay together. The static
-    answer of the omitted modes goes to the static shapes of the recovery. What stiffens is
+    response of the omitted modes goes to the static shapes of the recovery. What stiffens is
     projected on the modes that stay; a new reduction may choose and turn load modes and resultants
     differently. Damping is projected, too: it is not made anew from damping ratios.
 

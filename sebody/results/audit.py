@@ -108,7 +108,7 @@ def _constraints(result: Recording) -> list[Finding]:
 
 
 def _fastest(result: Recording, size: float) -> float:
-    """Largest speed of a coordinate, of rotations at the model's extent."""
+    """Largest speed of a coordinate, of rotations at the characteristic length."""
     moving = np.abs(result.recorded("v")).max(axis=0)
     turning = rotational(result.model, result.numbering)
     multipliers = [first + k for constraint in result.model.constraints

@@ -44,7 +44,7 @@ def test_a_moment_rolls_the_beam_up(planar):
 
 
 def test_elastica_of_a_cantilever():
-    """A dead load across the tip that bends it far: second order in the elements."""
+    """A fixed-direction load across the tip that bends it far: second order in the elements."""
     load = 5.0 * EI / LENGTH**2
 
     def rates(s, y):

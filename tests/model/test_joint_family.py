@@ -286,5 +286,5 @@ def test_constraints_that_contradict_each_other():
     model.drive_angle(base, DRIVE)
     model.drive_angle(base, (lambda t: t, lambda t: 1.0, lambda t: 0.0))
     with pytest.raises(InputError, match=r"violates 'angle at base( \(2\))?' by "
-                                         ".*no velocities fit this joint|contradict"):
+                                         ".*no velocities satisfy all joints|contradict"):
         Simulation(model, 1e-3)
