@@ -70,7 +70,8 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
-    state.frames[:] = state.frames_old[:] = _identities(len(state.frames))
+    of_bodies = 9 * len(numbering.modes)
+    state.frames[:of_bodies] = state.frames_old[:of_bodies] = _identities(of_bodies)
     return state
 
 

@@ -57,7 +57,7 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     state.frames_old[:] = state.frames
     system.relaxed[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
     state.control[RESTART] = ASKED
-    return Start(changed, solver.redundant)
+    return Start(changed, solver.redundant, solver.shared)
 
 
 def _check_accelerations(system: System, numbering: Numbering, state: State,

@@ -55,8 +55,9 @@ class State(Arrays):
     q                     (N,) positions, modes, multipliers; of rotations increments of the step
     R                     (9 r,) rotation matrices, row by row
     v, a                  (N,) velocities and accelerations; zeros at multipliers
-    frames                (9 b,) frames of the superelements, row by row, in the current iterate
-    frames_old            (9 b,) the same at the last accepted step
+    frames                (9 b + m,) frames of the superelements, row by row, in the current
+                          iterate, then what elements keep from step to step, m numbers
+    frames_old            (9 b + m,) the same at the last accepted step
     --------------------  --------------------------------------------------------------------------
     integrator
     ------------------------------------------------------------------------------------------------
@@ -197,7 +198,7 @@ class State(Arrays):
     def recorded_parts(self) -> dict[str, slice]:
         """Where the parts of `RECORD` are in `now` and in the rows of a record."""
         return RECORD.slices({"ports": self.works.size, "coordinates": self.q.size,
-                              "rotations": self.R.size // 9, "bodies": self.frames.size // 9})
+                              "rotations": self.R.size // 9, "kept": self.frames.size})
 
     def set_coefficients(self, **values: float) -> None:
         """Set some of the coefficients of the matrix, by their names in `COEFFICIENTS`."""
