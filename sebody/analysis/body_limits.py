@@ -55,12 +55,12 @@ def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, loc
     spins : (k, 3) or (k, 1)
         Of the frame, in its axes.
     local : float
-        Largest rotation of a node against the frame [rad].
+        Largest rotation of a node relative to the frame [rad].
     """
     name = body.name
     if local > LINEAR:
         yield Finding("turn", name, local, f"local rotation {local:.2g} rad of body {name!r} "
-                      f"exceeds the linear range, {LINEAR} rad: divide it")
+                      f"exceeds the linear range, {LINEAR} rad: divide the body")
     if local > BENT and limits.off_line:
         yield Finding("bent", name, local, f"local rotation {local:.2g} rad of body {name!r}, "
                       "whose frame follows the rotations of its nodes while its mass is off "
@@ -87,7 +87,7 @@ def flat(body: Superelement) -> Finding | None:
 
 
 def local_rotations(y: NDArray, counts: Counts) -> NDArray:
-    """Largest rotation of a node against its frame, (states, bodies), from local coordinates."""
+    """Largest rotation of a node relative to its frame, (states, bodies), from local coordinates."""
     first, turns = counts["D"] * counts["N_POSITIONS"], counts["turns"]
     psi = y[..., first:first + turns * counts["N_ROTATIONS"]].reshape(*y.shape[:2], -1, turns)
     return np.linalg.norm(psi, axis=3).max(axis=2, initial=0.0)

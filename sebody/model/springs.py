@@ -78,7 +78,7 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     Raises
     ------
     InputError
-        Coefficients that are negative, no rotation, or nodes that do not start together.
+        Coefficients that are negative, no rotation, or nodes that do not coincide.
     """
     a, b = pair(model, node, to, "bushing")
     check_together(model, a, b, "bushing")
