@@ -287,8 +287,8 @@ class Result(Recording):
                                      for name, change in self.start.changed.items()))
         if self.start and self.start.redundant:
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
-                         + f"; multipliers of {', '.join(self.start.shared)} are not unique: least "
-                         f"norm is taken (moments divided by {arm(self.model):.4g})")
+                         + f"; multipliers of {', '.join(self.start.shared)} are not unique, given "
+                         f"are those of least norm (moments divided by {arm(self.model):.4g})")
         lines += [f"general kernel       used for {', '.join(bodies)}: for a faster, specific "
                   f"kernel run {command}"
                   for command, bodies in self.advice.items()]

@@ -199,7 +199,7 @@ def test_equilibria_and_what_is_linearised_about_them_are_looked_at(force, count
     assert len(said(lambda: found.append(equilibrium(bent(force))))) == count
     messages = said(lambda: linearize(found[0]))
     assert len(messages) == count == len(found[0].warnings)
-    assert all("local rotation" in m and "divide it" in m for m in messages)
+    assert all("local rotation" in m and "divide the body" in m for m in messages)
 
 
 def test_an_equilibrium_that_spins_too_fast():

@@ -54,7 +54,7 @@ def arm():
 def test_a_velocity_that_contradicts_a_drive_names_both():
     model = arm()
     model.initial_velocity("a", angular=5.0)
-    with pytest.raises(InputError, match=r"the given initial velocity of a.rotation, \(5\), does "
+    with pytest.raises(InputError, match=r"the given initial velocity of a.rotation, \(5\), "
                                          r"contradicts joints, drives .* which demand \(2\): "):
         Simulation(model, 0.01)
     model = arm()

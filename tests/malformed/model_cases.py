@@ -75,7 +75,7 @@ def histories() -> list:
             *have("time function of a "
                   "load", "abc", [("0", "1")], [(0, 1), (1,)], [(0.0, 1j)], {}, []),
             *have("time function of a load contains NaN or infinite", [(0.0, NAN)], [(0.0, INF)]),
-            *have("times of a time function of a load must increase", [(1.0, 0.0), (0.0, 1.0)])]
+            *have("times of a time function of a load must not decrease", [(1.0, 0.0), (0.0, 1.0)])]
 
 
 BODIES = {

@@ -296,7 +296,7 @@ def test_a_force_keeps_the_defaults_of_further_arguments():
 @pytest.mark.parametrize("function, arguments", [
     (lambda t, u: t, "t, u"), (lambda t, u, F=1.0: t, "t, u, F")])
 def test_further_arguments_without_a_value_are_named(function, arguments):
-    with pytest.raises(InputError, match=f"load history '<lambda>' has the arguments "
+    with pytest.raises(InputError, match=f"time function of a load '<lambda>' has the arguments "
                                          rf"\({arguments}\): give a function of \(t\); further "
                                          "arguments need defaults"):
         history(function)

@@ -129,8 +129,8 @@ def test_multipliers_of_a_joint_by_its_name():
 
 def test_a_joint_without_equations_has_no_multipliers():
     with pytest.raises(InputError, match="joint 'hinge' has no equations and so no "
-                                         "multipliers: what it joins is shared or fixed; the "
-                                         "force on a fixed node is its reaction"):
+                                         "multipliers, since its nodes share coordinates or "
+                                         "are fixed; the force on a fixed node is its reaction"):
         hinged(False)["hinge.multipliers"]
 
 

@@ -172,7 +172,7 @@ def test_parts_of_the_recovery_data():
     assert fields[1].envelope().node in kept
     for call, message in (
             (lambda: fields[1].at(2), "node 2 of body 'block' is not among the 9 nodes whose"),
-            (lambda: fields[1].at(30).stress, "knows no stress at node 30"),
+            (lambda: fields[1].at(30).stress, "is unknown at node 30"),
             (lambda: fields[0].label(3), "the nodes of body 'block' have no labels: give their"),
             (lambda: block(0, recover=[99]), "recover: a node is 99: give nodes of the FE model"),
             (lambda: block(0, recover=[]), "recover names no node: give nodes"),
