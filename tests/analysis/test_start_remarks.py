@@ -61,8 +61,8 @@ def test_a_velocity_that_contradicts_a_drive_names_both():
     model.rigid_velocity((0, 0), 5.0)
     messages, run = said(model)
     assert len(messages) == 1
-    assert messages[0].startswith("joints and drives demand other initial velocities than "
-                                  "rigid_velocity gave: a.rotation 2 in place of 5; give ")
+    assert messages[0].startswith("rigid_velocity contradicts the initial velocities that joints "
+                                  "and drives demand: a.rotation 2 in place of 5; give ")
     assert run.result()["a.angular_velocity"][0] == pytest.approx(2.0)
     model = arm()
     model.rigid_velocity((0, 0), 2.0)
