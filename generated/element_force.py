@@ -1,4 +1,4 @@
-"""Element kernel: dead force on a position.
+"""Element kernel: fixed-direction force on a position.
 
 3 coordinates, 0 multipliers.
 

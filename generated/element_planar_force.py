@@ -1,4 +1,4 @@
-"""Element kernel: planar dead force on a position.
+"""Element kernel: planar fixed-direction force on a position.
 
 2 coordinates, 0 multipliers.
 

@@ -1,4 +1,4 @@
-"""Element kernel: planar dead torque on a rotation.
+"""Element kernel: planar fixed-direction torque on a rotation.
 
 1 coordinates, 0 multipliers.
 

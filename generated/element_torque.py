@@ -1,4 +1,4 @@
-"""Element kernel: dead torque on a rotation.
+"""Element kernel: fixed-direction torque on a rotation.
 
 3 coordinates, 0 multipliers.
 

@@ -55,12 +55,12 @@ def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, loc
     spins : (k, 3) or (k, 1)
         Of the frame, in its axes.
     local : float
-        Largest rotation of a node against the frame [rad].
+        Largest rotation of a node relative to the frame [rad].
     """
     name = body.name
     if local > LINEAR:
         yield Finding("turn", name, local, f"local rotation {local:.2g} rad of body {name!r} "
-                      f"exceeds the linear range, {LINEAR} rad: divide it")
+                      f"exceeds the linear range, {LINEAR} rad: divide the body")
     if local > BENT and limits.off_line:
         yield Finding("bent", name, local, f"local rotation {local:.2g} rad of body {name!r}, "
                       "whose frame follows the rotations of its nodes while its mass is off "
@@ -87,7 +87,7 @@ def flat(body: Superelement) -> Finding | None:
 
 
 def local_rotations(y: NDArray, counts: Counts) -> NDArray:
-    """Largest rotation of a node against its frame, (states, bodies), from local coordinates."""
+    """Largest rotation of a node in its body frame, (states, bodies), from local coordinates."""
     first, turns = counts["D"] * counts["N_POSITIONS"], counts["turns"]
     psi = y[..., first:first + turns * counts["N_ROTATIONS"]].reshape(*y.shape[:2], -1, turns)
     return np.linalg.norm(psi, axis=3).max(axis=2, initial=0.0)
@@ -131,12 +131,12 @@ def _too_strong(body: Superelement, axial: Axial, y: NDArray) -> Iterator[Findin
 def remedy(body: Superelement) -> str:
     """What to do about a spin, or an axial force."""
     if body.body.invariants is None:
-        return "divide it in two, or reduce it from an FE model with its mass"
+        return "divide the body in two, or reduce it from an FE model with its mass"
     if body.inertia != "c":
-        return "divide it in two, or take inertia='c'"
+        return "divide the body in two, or take inertia='c'"
     if body.body.invariants.stiffens:
-        return "divide it in two, or let it stiffen with stiffening=True"
-    return "divide it in two, or give its FE model a geometric stiffness"
+        return "divide the body in two, or let it stiffen with stiffening=True"
+    return "divide the body in two, or give its FE model a geometric stiffness"
 
 
 def _compared(limit: float, first: float) -> str:

@@ -130,11 +130,11 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
         if change > 1e-6 * size:
             demanded = _shown(state.v[coordinates(numbering, triplet)])
             raise InputError(f"the given initial velocity of {triplet.name}, "
-                             f"{_shown(triplet.rate)}, does not fit the joints, drives and other "
-                             f"given ones, which demand {demanded}: leave some of them out, they "
+                             f"{_shown(triplet.rate)}, contradicts joints, drives or other initial "
+                             f"velocities, which demand {demanded}: leave some of them out, they "
                              "are solved for")
     _check(_rates(system, state, multipliers), size, "velocity", multipliers, numbering,
-           "no velocities fit this joint or drive, the others and those given; change one of them")
+           "no velocities satisfy all joints, drives and initial velocities; change one of them")
     changes = {t.name: float(np.abs(answer[coordinates(numbering, t)]).max()) for t in triplets}
     return {name: change for name, change in changes.items() if change > SMALL * size}
 

@@ -61,7 +61,7 @@ class Watch:
         undamped = scheme.gamma == 0.5 and scheme.alpha_f == scheme.alpha_m
         if constrained and undamped and not scheme.stabilized:
             self.say("scheme", "without numerical damping the multipliers of index-3 constraints "
-                               "oscillate and grow with every disturbance: use rho 0.9, alpha "
+                               "oscillate and grow after any disturbance: use rho 0.9, alpha "
                                "-0.05, or index=2")
         self.say_of_bodies(found for body in bodies.values() if (found := flat(body)))
 

@@ -145,8 +145,8 @@ def _begun(file: str, model: Model, settings: dict) -> Simulation:
         run = Simulation(model, settings["h"], Scheme(*settings["scheme"]), settings["every"],
                          tolerance)
     except TypeError as error:      # too many numbers of the scheme or the tolerance, or too few
-        raise InputError(f"{file} has a scheme {settings['scheme']} or a tolerance "
-                         f"{settings['tolerance']} that there is not: {REPEAT}") from error
+        raise InputError(f"{file} has an unknown scheme {settings['scheme']} or tolerance "
+                         f"{settings['tolerance']}: {REPEAT}") from error
     if settings["model"] != fingerprint(run):
         raise _other_model(file)
     return run
@@ -175,7 +175,7 @@ def _check_numbers(table: Table, run: Simulation, arrays: Mapping[str, NDArray])
     for k, value in enumerate(control):
         most = MOST.get(k, MOST_STEPS if k != CORNER else run.system.corners.size)
         if not 0 <= value <= most:
-            raise table.fault(f"holds {value} in control at {k}, where 0 to {most:g} can be")
+            raise table.fault(f"holds {value} in control at {k}, outside 0 to {most:g}")
     for k in (TIME, STEP, CURRENT_STEP):
         if not np.isfinite(clock[k]):
             raise table.fault("holds numbers in clock that are not finite")

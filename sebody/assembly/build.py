@@ -26,7 +26,8 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     Raises
     ------
     InputError
-        No bodies, a triplet that nothing holds, or an element that does not fit its kernel.
+        No bodies, a node that is not connected to anything, or an element that does not fit its
+        kernel.
     """
     if not (model.bodies or model.rigid_bodies):
         raise InputError("the model has no body: add one with model.superelement(...) or "
@@ -101,7 +102,7 @@ def _rotation_starts(numbering: Numbering) -> NDArray:
 
 
 def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
-    """Magnitudes of coordinates: the model's extent for positions, one radian for rotations."""
+    """Magnitudes: the characteristic length for positions, one radian for rotations."""
     length = extent(model)
     size = np.zeros(numbering.total)
     for node in model.nodes.values():

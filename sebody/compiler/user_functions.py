@@ -1,4 +1,4 @@
-"""Functions of users, compiled for the time loop: histories of loads and drives, and forces.
+"""Functions of users, compiled for the time loop: time functions of loads and drives, and forces.
 
 They are compiled with bounds checks. Where one raises, or gives what is not finite, its result is
 NaN: no state that contains it is accepted, and the run stops. The arguments are kept to say why.

@@ -105,9 +105,9 @@ def begin_step(system, state, scheme):
 def _steady(system, state):
     """Whether auxiliary accelerations changed in the last step as in the step before, roughly.
 
-    If so, they are predicted to go on changing like that, else to stay as they are: after cut steps
-    and new matrices, too, which come where a motion is not smooth. What Newton's iteration with
-    old matrices leaves is proportional to the error of the prediction.
+    If so, they are predicted to go on changing like that, else to stay as they are: after rejected
+    steps and new matrices, too, which come where a motion is not smooth. The error that Newton's
+    iteration with old matrices leaves is proportional to the error of the prediction.
     """
     constant = linear = 0.0
     for i in range(system.diagonal.size):

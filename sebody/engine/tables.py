@@ -1,4 +1,4 @@
-"""Histories of loads and drives in compiled code."""
+"""Time functions of loads and drives in compiled code."""
 
 import numpy as np
 

@@ -1,6 +1,6 @@
 """Searches for the rotation of a floating frame, called by superelement kernels.
 
-Each returns a status: 0, HALF_TURN where a node is rotated by nearly half a turn against the frame,
+Each returns a status: 0, HALF_TURN where a node is nearly 180 degrees off the frame,
 or NO_FRAME where the search does not end.
 """
 

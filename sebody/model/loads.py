@@ -60,7 +60,7 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
 def mode_force(model: Mechanism, body: str, mode: int, factor: float,
                amplitude: ArrayLike | Callable[[float], float] | History | None = None,
                name: str | None = None) -> Element:
-    """Force on an internal mode of a superelement: `factor` times a history.
+    """Force on an internal mode of a superelement: `factor` times a time function.
 
     A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
     """

@@ -1,4 +1,4 @@
-"""Motions of drives: histories with two rates, that do not jump but in the second."""
+"""Motions of drives: time functions with two derivatives, of which only the second may jump."""
 
 from collections.abc import Sequence
 from dataclasses import replace

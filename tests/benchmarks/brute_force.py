@@ -6,19 +6,19 @@ table. Four rules save runs; no indicator of advise is used.
 1. Choices run in the order of predicted time, that of the poorest model with the same step and of
    each part's form beside it, all measured. They end where the rest is predicted to take `SLACK`
    times as long as the cheapest that was found.
-2. A form that alone, beside the richest forms of the other parts and with the same step, errs by
+2. A form that alone, beside the reference forms of the other parts and with the same step, errs by
    `SPOILS` times the tolerance is left out, and so are forms whose errors alone do as the root of
    the sum of their squares: errors of several parts do not take one another away.
 3. In a model of several parts a form is left out if another form of its part takes less time and
    errs less alone.
-4. Forms that miss the tolerance with a step with which the richest model errs by less than `FINE`
+4. Forms that miss the tolerance with a step with which the reference model errs by less than `FINE`
    of it do not run with other steps: the step is not what they miss it by.
 
 As `advise` does, the search wants a choice to be within the tolerance with half its step, too;
 what is so by luck is counted apart.
 
 Planar models, shared and dropped triplets are to change nothing but the time: they are taken
-where they can be made, agree with the richest model and take less time.
+where they can be made, agree with the reference model and take less time.
 """
 
 import heapq
@@ -97,7 +97,7 @@ class BruteForce:
 
     @property
     def richest(self) -> Choice:
-        """The richest model with the shortest step."""
+        """The reference model with the shortest step."""
         return Choice(tuple(part.richest for part in self.parts), self.fine)
 
     def _steps(self) -> list[Step]:
@@ -108,7 +108,7 @@ class BruteForce:
                 *(Step(self.h, local) for local in LOCAL)]
 
     def _reference(self) -> tuple[Values, float]:
-        """The richest model, extrapolated in the step, and the estimate of its error."""
+        """The reference model, extrapolated in the step, and the estimate of its error."""
         coarse, fine = (self._values(self.richest._replace(step=Step(self.h / k)))[0]
                         for k in (FINEST, 2 * FINEST))
         best = Values([b + (b - a) / 3.0 for a, b in zip(coarse.histories, fine.histories,
@@ -174,7 +174,7 @@ class BruteForce:
                                            for i, one in enumerate(choice.forms)))
 
     def _alone(self, k: int, form: Form, step: Step, whole: Values) -> float:
-        """Error of a form of one part, against the richest with the same step."""
+        """Error of a form of one part, against the reference with the same step."""
         try:
             values, _, _ = self._values(self._with(self.richest._replace(step=step), k, form))
             return difference(values, whole, self.sizes, (1, 1))

@@ -122,7 +122,7 @@ def test_a_summary_says_once_where_a_kernel_of_its_own_would_pay():
         place(model, f"more{k} ", reduced(keeps, 2, line), (0, 100 + 50 * k))
     lines = simulate(model, 0.01, 0.02).summary().splitlines()
     assert [line for line in lines if line.startswith("general kernel")] == [
-        f"general kernel       of {bodies}: one of the layout's own is faster, made by "
+        f"general kernel       used for {bodies}: for a faster, specific kernel run "
         f"python -m sebody.derive {variant}:converged_mean:c" for bodies, variant in (
             ("long, more0 ", "planar-f4m2"), ("mixed", "planar-t2r1m0"))]
 

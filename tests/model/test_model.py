@@ -162,10 +162,11 @@ def test_massless_body():
                                               "its direction"),
     (lambda m: m.revolute("base", (0, 1)), "axis of the revolute joint at 'base' is .0, 1.: give"),
     (lambda m: m.revolute("base", (0, 0, np.nan)), "axis of .* give 3 finite numbers"),
-    (lambda m: m.revolute("base", to="tip"), "revolute joint: nodes 'base' and 'tip' start apart: "
+    (lambda m: m.revolute("base", to="tip"), "revolute joint: nodes 'base' and 'tip' do not "
+                                             "coincide: "
                                              "give both the same point"),
     (lambda m: m.revolute("base", to="far"), "node 'far' is unknown"),
-    (lambda m: m.spherical("base", "tip"), "'base' and 'tip' start apart: give both the same"),
+    (lambda m: m.spherical("base", "tip"), "'base' and 'tip' do not coincide: give both the same"),
     (lambda m: m.spherical("base", "base"), "node 'base' is joined to itself: give two nodes"),
     (lambda m: (m.node("twin", (0, 0, 0), at="base"), m.spherical("base", "twin")),
      "nodes 'base' and 'twin' share their position already: leave the joint out"),

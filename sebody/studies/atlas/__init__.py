@@ -1,4 +1,4 @@
-"""``sebody atlas``: where methods fail: prediction of theory, measurement, reaction.
+"""``sebody atlas``: known limits: theory, measured value, how sebody reacts.
 
 Every row of the table is a number that a run has to show: theory or another program predicts it,
 or it says what this program is to do there.
