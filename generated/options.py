@@ -26,6 +26,14 @@ FRAMES = {
         needs_rotations=False,
         fewest_positions=(3, 2),
     ),
+    "mean_axes": FrameTraits(
+        "axes in which the deformation has no moment of momentum: mean axes",
+        needs_rotations=False,
+        modes=True,
+        constants=(
+            Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate"),
+        ),
+    ),
 }
 INERTIA_OPTIONS = {
     "a": InertiaTraits(
@@ -112,6 +120,16 @@ def _positions_in_a_plane(fits, X):
     return [[-X_y*fit, X_x*fit]]
 
 
+def _mean_axes_in_space(Gam):
+    Gam_coordinate_x, Gam_coordinate_y, Gam_coordinate_z = Gam
+    return [[Gam_coordinate_x], [Gam_coordinate_y], [Gam_coordinate_z]]
+
+
+def _mean_axes_in_a_plane(Gam):
+    Gam_coordinate_z, = Gam
+    return [[Gam_coordinate_z]]
+
+
 # by frame, and whether it is in a plane
 CONDITIONS = {
     ("converged_mean", False): Condition("rotation", ("alpha_rs",), _converged_mean_in_space),
@@ -120,4 +138,6 @@ CONDITIONS = {
     ("mean_small", False): Condition("rotation", ("alpha_rs",), _mean_small_in_space),
     ("positions", False): Condition("position", ("fits", "X"), _positions_in_space),
     ("positions", True): Condition("position", ("fits", "X"), _positions_in_a_plane),
+    ("mean_axes", False): Condition("coordinate", ("Gam",), _mean_axes_in_space),
+    ("mean_axes", True): Condition("coordinate", ("Gam",), _mean_axes_in_a_plane),
 }

@@ -2,7 +2,7 @@
 
 from sebody.contract.layout import FrameTraits, InertiaTraits
 from sebody.derive.form.spaces import Space
-from sebody.derive.formulas.frames import converged_mean, mean, mean_small, positions
+from sebody.derive.formulas.frames import converged_mean, mean, mean_axes, mean_small, positions
 from sebody.derive.formulas.frames.frame import Condition
 from sebody.derive.formulas.inertia import option_a, option_b, option_c, option_d
 from sebody.derive.formulas.quantities import Quantities
@@ -12,6 +12,7 @@ FRAMES = {
     "mean": mean.FRAME,
     "mean_small": mean_small.FRAME,
     "positions": positions.FRAME,
+    "mean_axes": mean_axes.FRAME,
 }
 INERTIA_OPTIONS = {
     "a": option_a.INERTIA,

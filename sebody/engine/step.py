@@ -241,4 +241,7 @@ def cut_step(state):
     while clock[CURRENT_STEP] >= tried and (1 << control[LEVEL]) <= FINEST:
         control[LEVEL] += 1
         clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
-    return (1 << control[LEVEL]) <= FINEST
+    if (1 << control[LEVEL]) <= FINEST:
+        return True
+    control[LEVEL] -= 1         # of the finest parts, should the run be resumed
+    return False

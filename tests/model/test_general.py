@@ -34,7 +34,7 @@ GRAVITY = (0.0, -40.0, 0.0)
 
 
 def test_what_is_shipped():
-    assert len(GENERAL) == 18 and len(SPECIAL) == 16
+    assert len(GENERAL) == 20 and len(SPECIAL) == 16
 
 
 @pytest.mark.parametrize("layout, floating, inertia", SPECIAL, ids=lambda x: x)

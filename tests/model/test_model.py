@@ -64,7 +64,7 @@ def place(nodes=("base", "tip"), body=None, **options):
     (place(["tip", "base"]), "superelement 'b': the nodes do not lie where the body's boundary "
                              "nodes are .off by .*: pass rotation=, the matrix that turns FE"),
     (place(["base", "base"]), "the nodes do not lie where the body's boundary nodes are"),
-    (place(frame="mine"), "frame 'mine' is unknown: use one of converged_mean, mean, mean_small"),
+    (place(frame="mine"), "frame 'mine' is unknown: use one of converged_mean, mean, mean_axes"),
     (place(inertia="z"), "inertia 'z' is unknown: use one of a, b"),
     (place(frame="positions"), "lie on a line, so the frame 'positions' cannot see rotations "
                                "about it: use 'converged_mean'"),

@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping
 
 from sebody.contract.layout import FrameTraits, InertiaTraits
+from sebody.derive.form.spaces import Quantity
 from sebody.derive.formulas.frames.frame import Condition
 from sebody.derive.printing.lines import INDENT
 from sebody.derive.printing.numba import parts
@@ -37,7 +38,8 @@ def {name}({arguments}):
 {loads}
     return {rows}
 '''
-AXES = {("vector", True): (0, 1), ("axial", True): (2,)}        # of a plane
+AXES = {("vector", True): (0, 1), ("axial", True): (2,),        # of a plane
+        ("scalar", True): (0,), ("scalar", False): (0,)}
 Conditions = Mapping[tuple[str, bool], Condition]
 
 
@@ -69,11 +71,16 @@ def _function(key: tuple[str, bool], condition: Condition) -> str:
     """Coefficients of one node, from its constants."""
     rows, columns = (AXES.get((kind, key[1]), (0, 1, 2)) for kind in ("axial", condition.of.kind))
     entries = [f"[{', '.join(code(condition.weight[r, c]) for c in columns)}]" for r in rows]
-    loads = [f"{INDENT}{', '.join(map(str, q.kept))} = {q.array.name}"
+    loads = [f"{INDENT}{', '.join(map(str, q.kept))}{',' * _alone(q)} = {q.array.name}"
              for q in condition.constants]
     return FUNCTION.format(
         name=_name(*key), arguments=", ".join(q.array.name for q in condition.constants),
         loads="\n".join(loads), rows=f"[{', '.join(entries)}]")
+
+
+def _alone(quantity: Quantity) -> bool:
+    """Whether a row of one number is given."""
+    return quantity.kind != "scalar" and len(quantity.kept) == 1
 
 
 def _condition(key: tuple[str, bool], condition: Condition) -> str:
