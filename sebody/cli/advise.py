@@ -16,6 +16,9 @@ KINDS = {"reference": "richest model", "alone": "one part alone", "together": "t
          "confirmation": "half the step", "given": "as given"}
 
 
+NOT_CONFIRMED = 3       # exit code of advice that is as uncertain as the reference
+
+
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
@@ -64,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
         _draw(advice, scene.name, options.output)
         print(f"picture: {options.output}")
     print(last)
-    return interrupts.exit_code()
+    return interrupts.exit_code() or (0 if advice.confirmed else NOT_CONFIRMED)
 
 
 def _print(advice: "Advice") -> str:

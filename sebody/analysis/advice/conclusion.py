@@ -25,14 +25,15 @@ def conclusion(search: Search, found: Tried, given: Tried | None = None,
     made = lab.builder.make(choice)
     seconds = found.seconds if interrupted else _quickest(search, found)
     remarks = [] if given is None or interrupted else [
-        *_saved(search, seconds, given), *doubts(search), *neighbours(search, choice)]
+        *lab.remarks, *_saved(search, seconds, given), *neighbours(search, choice)]
+    warnings = lab.warnings if interrupted else _warnings(search, found)
     return Advice(
         made.model, choice.step.h, made.sentences, float(found.error), lab.tolerance,
         tuple(lab.table), tuple(search.untried),
         None if choice.step.local is None else Tolerance(choice.step.local),
         float(found.predicted), seconds, lab.runs.t_end,
         tuple(change.code() for change in made.changes), tuple(reasons(search, choice)),
-        tuple(remarks), interrupted)
+        tuple(remarks), interrupted, tuple(doubts(lab)), warnings)
 
 
 def _quickest(search: Search, found: Tried) -> float:
@@ -41,6 +42,13 @@ def _quickest(search: Search, found: Tried) -> float:
     if seconds <= QUICK and not search.spent():
         seconds = min([seconds, *(search.lab.run(found.choice).seconds for _ in range(REPEATS))])
     return seconds
+
+
+def _warnings(search: Search, found: Tried) -> tuple[str, ...]:
+    """Those of the reference, and of the chosen model, which runs once more."""
+    lab = search.lab
+    own = lab.run(found.choice, watched=True).result.warnings if found.error < float("inf") else ()
+    return tuple(dict.fromkeys((*lab.warnings, *own)))
 
 
 def _saved(search: Search, seconds: float, given: Tried) -> list[str]:

@@ -9,18 +9,28 @@ from sebody.analysis.advice.changes import Builder, Choice, Step
 from sebody.analysis.advice.cost import Cost
 from sebody.analysis.advice.estimates import Estimates, expected
 from sebody.analysis.advice.forms import Part, parts_of
+from sebody.analysis.advice.guards import (
+    OFF_GRID,
+    Scales,
+    amplified,
+    disturbed,
+    off_the_grid,
+)
 from sebody.analysis.advice.indicators.recorded import Recorded
-from sebody.analysis.advice.outcome import Trial
+from sebody.analysis.advice.loads import SEEN, Missed, missed
+from sebody.analysis.advice.outcome import Doubt, Trial
 from sebody.analysis.advice.quantities import Quantities, difference
 from sebody.analysis.advice.reference import ORDER_FACTOR, Reference, reference, still
 from sebody.analysis.advice.runs import Run, Runs
 from sebody.analysis.advice.words import in_brief
+from sebody.assembly.build import build
 from sebody.errors import InputError, SimulationError
 from sebody.model.model import Model
 
 FINER = (4, 2, 1)       # parts of the given step, of the first runs of the richest model
 SHORTER = (8, 16)       # further ones, where the tolerance needs them
 GOOD = 0.2              # of the tolerance, that the reference may be off by without them
+SHORTEST = 64           # parts of the given step, of the grid
 SHARE = 0.5             # of the tolerance, that the reference must be good to
 
 
@@ -55,6 +65,11 @@ class Laboratory:
         self.table: list[Trial] = []
         self.tried: list[Tried] = []
         self.bases: dict[float, Run] = {}       # runs of the richest model by their steps
+        self.doubts: list[Doubt] = []           # of the guards
+        self.warnings: tuple[str, ...] = ()     # of the reference
+        self.remarks: list[str] = []
+        self._ports: tuple | None = None
+        self.given_step = Step(runs.h)
         self._work = self._unit = 0.0
 
     @property
@@ -78,6 +93,7 @@ class Laboratory:
         SimulationError
             It does not run, or its error does not fall with the step.
         """
+        self._shorten()
         choice = self.richest
         first = self._base(choice.step.h)
         for k in still(first.values):
@@ -104,6 +120,7 @@ class Laboratory:
             self._base(self.runs.h / part)
             self.reference = self._reference()
         self._judge()
+        self._guard()
         errors = {h: self.error(run) for h, run in self.bases.items()}
         finest = min(errors)
         errors[finest] = max(self.reference.step_error, self.reference.error)
@@ -118,10 +135,59 @@ class Laboratory:
         self.estimates = Estimates(recorded, self.parts,
                                    {Step(h): error for h, error in errors.items()})
 
+    def _shorten(self) -> None:
+        """Take a part of the given step as the grid where loads need shorter ones.
+
+        Raises
+        ------
+        InputError
+            No part that is tried resolves a load.
+        """
+        if not self.quantities.histories:
+            return
+        given = self.runs.h
+        while (load := self.missed(self.runs.h / FINER[0])).share > SEEN:
+            self.runs.h /= 2
+            if given / self.runs.h > SHORTEST:
+                raise InputError(
+                    f"{load.name} changes too fast for the step: even steps of "
+                    f"{2 * self.runs.h / FINER[0]:.3g} miss {load.share:.0%} of it, most at t = "
+                    f"{load.time:.5g}; give a smaller h than {given:g}")
+            self.remarks = [f"{load.name} needs shorter steps than those of {given:g}: the grid "
+                            f"is {self.runs.h:g}"]
+
+    def missed(self, h: float) -> Missed:
+        """The load or drive of which steps see least."""
+        if self._ports is None:
+            found = build(self.model)[1]
+            self._ports = found.port_names, found.histories
+        return missed(*self._ports, h, self.runs.t_end)
+
+    def _guard(self) -> None:
+        """Run the richest model off the grid, and disturbed: what that casts doubt on."""
+        fine = min(self.bases)
+        self.warnings = self.bases[fine].result.warnings
+        if not self.quantities.histories:
+            return
+        step = Step(OFF_GRID * fine)
+        run = self.runs.run(self.builder.build(self.richest), step, every=1)
+        self.doubts.append(off_the_grid(run.result, run.values, step.h, self.reference,
+                                        self.runs.h))
+        coarse = max(self.bases)
+        still = self.bases[coarse].result
+        scales = Scales.of(still)
+        other = self.runs.run(disturbed(self.builder.build(self.richest), scales), Step(coarse))
+        self.doubts.append(amplified(other.result, still, scales))
+
+    @property
+    def unstable(self) -> bool:
+        """Whether a disturbance grows: then no symmetry may be assumed."""
+        return any(one.error > 0.0 for one in self.doubts[1:])
+
     def _base(self, h: float) -> Run:
         """Run the richest model with a step."""
         choice = self.richest._replace(step=Step(h))
-        self.bases[h] = self.run(choice)
+        self.bases[h] = self.run(choice, watched=True)
         return self.bases[h]
 
     def _reference(self) -> Reference:
@@ -141,7 +207,7 @@ class Laboratory:
                          f"{own:.2g} from the step: give a smaller h, or a larger "
                          f"tolerance than {self.tolerance:g}")
 
-    def run(self, choice: Choice) -> Run:
+    def run(self, choice: Choice, watched: bool = False) -> Run:
         """Run a choice.
 
         Raises
@@ -149,7 +215,7 @@ class Laboratory:
         InputError, SimulationError
             It cannot be made, does not run, or lacks a quantity.
         """
-        found = self.runs.run(self.builder.build(choice), choice.step)
+        found = self.runs.run(self.builder.build(choice), choice.step, watched)
         if self._unit == 0.0:
             self.cost.measured(choice, found.seconds, found.iterations)
             self._unit = self.cost.work(choice, found.iterations)
@@ -160,7 +226,7 @@ class Laboratory:
     def given(self) -> Tried:
         """The model as it was given, with the given step: what would have been run."""
         forms = tuple(part.given for part in self.parts)
-        return self.attempt(Choice(forms, Step(self.runs.h)), "given")[0]
+        return self.attempt(Choice(forms, self.given_step), "given")[0]
 
     def error(self, run: Run) -> float:
         """Error of a run with that of the reference."""

@@ -8,6 +8,8 @@ from sebody.analysis.tolerance import Tolerance
 from sebody.errors import InputError
 from sebody.model.model import Model
 
+TRUSTED = 0.5       # of the tolerance, that the reference may be off by
+
 
 @dataclass(frozen=True)
 class Trial:
@@ -76,6 +78,14 @@ class Reason(NamedTuple):
         return f"{self.of}: {self.chosen}" + (f"; {told}" if told else "")
 
 
+class Doubt(NamedTuple):
+    """An error that the richest model itself may have: how large, why, and what helps."""
+
+    error: float
+    sentence: str
+    remedy: str
+
+
 @dataclass(frozen=True, eq=False)
 class Advice:
     """The cheapest model found that keeps the quantities.
@@ -89,7 +99,7 @@ class Advice:
     changes : tuple of str
         What was changed, in sentences.
     error : float
-        Largest relative error of the quantities, with that of the reference: confirmed.
+        Largest relative error of the quantities, with that of the reference.
     tolerance : float
     table : tuple of Trial
         All runs, in their order; the first is the reference.
@@ -110,6 +120,11 @@ class Advice:
         What was found besides: times, neighbours at other tolerances, limits.
     interrupted : bool
         Whether Ctrl-C ended the search: this is the best until then.
+    doubts : tuple of Doubt
+        What the reference itself may be off by, the largest first: by theory in its bodies, by
+        loads between its steps, by instability.
+    warnings : tuple of str
+        Of the runs of the reference and of the chosen model.
     """
 
     model: Model
@@ -127,6 +142,18 @@ class Advice:
     reasons: tuple[Reason, ...] = ()
     remarks: tuple[str, ...] = ()
     interrupted: bool = False
+    doubts: tuple[Doubt, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def doubt(self) -> float:
+        """What the reference may be off by."""
+        return max((one.error for one in self.doubts), default=0.0)
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether the error is within the tolerance, of a reference good to half of it."""
+        return self.error <= self.tolerance and self.doubt <= TRUSTED * self.tolerance
 
     def __repr__(self) -> str:
         return self.summary()
@@ -159,5 +186,16 @@ class Advice:
             *([f"not tried: {', '.join(self.untried)}; raise the budget"] if self.untried else []),
             *self.remarks,
             *(["interrupted: this is the best until then"] if self.interrupted else []),
-            f"predicted error {self.predicted:.2g}",
-            f"confirmed error {self.error:.2g} <= {self.tolerance:g}"])
+            *(f"warning: {one}" for one in self.warnings),
+            *(f"the richest model may itself be off by {one.error:.1g}: {one.sentence}; "
+              f"{one.remedy}" for one in self.doubts if one.error > TRUSTED * self.tolerance),
+            f"predicted error {self.predicted:.2g}", self._verdict()])
+
+    def _verdict(self) -> str:
+        """The last line."""
+        if self.confirmed:
+            return f"confirmed error {self.error:.2g} <= {self.tolerance:g}"
+        if self.error > self.tolerance:
+            return f"not confirmed: error {self.error:.2g} > {self.tolerance:g}"
+        return (f"not confirmed: within {self.error:.2g} of the reference model, which may itself "
+                f"be off by {self.doubt:.2g}")

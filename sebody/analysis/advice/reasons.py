@@ -87,7 +87,7 @@ def _of_step(search: Search, choice: Choice) -> Reason:
                   for part, form in zip(lab.parts, choice.forms, strict=True) if not form.rigid]
     fastest = max(vibrations, default=0.0)
     steps = f"{_short(TURN / fastest / step.h)} steps a period of the vibration" if fastest else ""
-    return Reason("step", f"{step.h:g}, {_times(step.h / lab.runs.h)} given", steps,
+    return Reason("step", f"{step.h:g}, {_times(step.h / lab.given_step.h)} given", steps,
                   confirmed=halved)
 
 

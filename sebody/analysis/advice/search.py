@@ -17,6 +17,7 @@ LONGER = (4, 2)             # steps that are tried, in given ones
 MOST_ALONE = 12             # forms of a part that are tried alone
 APART = 0.5                 # of the budget, that all of them may take
 MOST_TOGETHER = 24          # choices that are tried
+MISSED = 0.2                # of a load, that steps which are tried may not see
 SHARE = 0.5                 # of the tolerance, that one part may use
 EXACT = 0.05                # of the tolerance, that a change may make that should make none
 RARE = 0.5                  # steps of variable length relative to fixed ones, that pay
@@ -66,6 +67,8 @@ class Search:
         """Try what should change nothing: shared and dropped triplets, a planar model."""
         for name in ("shared", "dropped", "planar"):
             changed = self.base._replace(**{name: True})
+            if name == "planar" and self.lab.unstable:
+                continue
             if self.spent() or not self._applies(changed):
                 continue
             found, run = self.lab.attempt(changed, "alone")
@@ -131,7 +134,8 @@ class Search:
         if not self.lab.quantities.histories:
             return [Step(h)]
         count = round(self.lab.runs.t_end / h)
-        found = [Step(k * h) for k in LONGER if count % k == 0]
+        found = [Step(k * h) for k in LONGER
+                 if count % k == 0 and self.lab.missed(k * h).share <= MISSED]
         found += [Step(h / k) for k in sorted(FINER)]
         while found[-1].h > shortest or expected(
                 self.lab.estimates.of_step(found[-1])) > SHARE * self.tolerance:
