@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-
 from advised_crane import T_END, H, crane
 
 from sebody import InputError, Model, simulate
 from sebody.analysis import advise
+
 
 def error(found: Model, step: float, quantity: str) -> float:
     """Against the whole model at a step half as long as the reference's."""

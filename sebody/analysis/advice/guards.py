@@ -25,7 +25,7 @@ JUMP = 0.05             # of a history's largest value, that counts as a jump
 EXPECTED = 3.0          # times the reference's error by its step, that another step may make
 
 SMALL = 1e-6            # of velocities, by which a run is disturbed
-FORCES = 0.01           # of that, as forces: a soft direction may yield by far more than a stiff one
+FORCES = 0.01           # of that, as forces: soft directions yield by far more than stiff ones
 GROWTH = 20.0           # times what a drift at the disturbed velocity makes: more is unstable
 REAL = 1e-3             # of the motion, that real systems are disturbed by
 
