@@ -36,6 +36,7 @@ CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
 )
 MULTIPLIERS = 0
+MEMORY = 0
 WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive

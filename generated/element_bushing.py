@@ -31,15 +31,19 @@ CONSTANTS = (
     Part("c", (3,), "damping along each axis"),
     Part("kt", (3,), "stiffness about each axis"),
     Part("ct", (3,), "damping about each axis"),
+    Part("e1", (3,), "direction of an axis, in axes of body a"),
+    Part("e2", (3,), "direction of an axis, in axes of body a"),
+    Part("e3", (3,), "direction of an axis, in axes of body a"),
 )
 MULTIPLIERS = 0
 WIDTH = 12
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (375, 0, 0, 0),
-              "column": (1122, 0, 0, 0)}
+OPERATIONS = {"residual": (720, 0, 0, 0),
+              "column": (1723, 0, 0, 0)}
 
 
 @kernel_function
@@ -63,6 +67,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         ct_x = constant[9]
         ct_y = constant[10]
         ct_z = constant[11]
+        e1_x = constant[12]
+        e1_y = constant[13]
+        e1_z = constant[14]
+        e2_x = constant[15]
+        e2_y = constant[16]
+        e2_z = constant[17]
+        e3_x = constant[18]
+        e3_y = constant[19]
+        e3_z = constant[20]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -99,221 +112,391 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Omb_x = v[unknowns[9]]
         Omb_y = v[unknowns[10]]
         Omb_z = v[unknowns[11]]
-        t0 = -xa_x + xb_x
-        t1 = Ra_xx*t0
-        t2 = -xa_y + xb_y
-        t3 = Ra_yx*t2
-        t4 = -xa_z + xb_z
-        t5 = Ra_zx*t4
-        t6 = t1 + t3 + t5
-        t7 = k_x*t6
-        t8 = Ra_xy*t0
-        t9 = Ra_yy*t2
-        t10 = Ra_zy*t4
-        t11 = t10 + t8 + t9
-        t12 = k_y*t11
-        t13 = Ra_xz*t0
-        t14 = Ra_yz*t2
-        t15 = Ra_zz*t4
-        t16 = t13 + t14 + t15
-        t17 = k_z*t16
+        t0 = 2*Ra_xx
+        t1 = 2*Ra_xy
+        t2 = 2*Ra_xz
+        t3 = e1_x*t0 + e1_y*t1 + e1_z*t2
+        t4 = -0.5*t3
+        t5 = -xa_x + xb_x
+        t6 = -xa_y + xb_y
+        t7 = -xa_z + xb_z
+        t8 = Ra_xx*t5 + Ra_yx*t6 + Ra_zx*t7
+        t9 = Ra_xy*t5 + Ra_yy*t6 + Ra_zy*t7
+        t10 = Ra_xz*t5 + Ra_yz*t6 + Ra_zz*t7
+        t11 = k_x*(e1_x*t8 + e1_y*t9 + e1_z*t10)
+        t12 = e2_x*t0 + e2_y*t1 + e2_z*t2
+        t13 = -0.5*t12
+        t14 = k_y*(e2_x*t8 + e2_y*t9 + e2_z*t10)
+        t15 = e3_x*t0 + e3_y*t1 + e3_z*t2
+        t16 = -0.5*t15
+        t17 = k_z*(e3_x*t8 + e3_y*t9 + e3_z*t10)
         t18 = -va_x + vb_x
         t19 = -va_y + vb_y
         t20 = -va_z + vb_z
-        t21 = c_x*(-Oma_y*t16 + Oma_z*t11 + Ra_xx*t18 + Ra_yx*t19 + Ra_zx*t20)
-        t22 = c_y*(Oma_x*t16 - Oma_z*t6 + Ra_xy*t18 + Ra_yy*t19 + Ra_zy*t20)
-        t23 = c_z*(-Oma_x*t11 + Oma_y*t6 + Ra_xz*t18 + Ra_yz*t19 + Ra_zz*t20)
-        t24 = Ra_xx*t21 + Ra_xx*t7 + Ra_xy*t12 + Ra_xy*t22 + Ra_xz*t17 + Ra_xz*t23
-        t25 = Ra_yx*t21 + Ra_yx*t7 + Ra_yy*t12 + Ra_yy*t22 + Ra_yz*t17 + Ra_yz*t23
-        t26 = Ra_zx*t21 + Ra_zx*t7 + Ra_zy*t12 + Ra_zy*t22 + Ra_zz*t17 + Ra_zz*t23
-        t27 = Ra_xy*Rb_xx
-        t28 = Ra_yy*Rb_yx
-        t29 = Ra_zy*Rb_zx
-        t30 = t27 + t28 + t29
-        t31 = Ra_xx*Rb_xz
-        t32 = Ra_xz*Rb_xx
-        t33 = Ra_yx*Rb_yz
-        t34 = Ra_yz*Rb_yx
-        t35 = Ra_zx*Rb_zz
-        t36 = Ra_zz*Rb_zx
-        t37 = (0.5)*kt_y*((0.5)*t31 - 0.5*t32 + (0.5)*t33 - 0.5*t34 + (0.5)*t35 - 0.5*t36)
-        t38 = t32 + t34 + t36
-        t39 = Ra_xx*Rb_xy
-        t40 = Ra_yx*Rb_yy
-        t41 = Ra_zx*Rb_zy
-        t42 = ((0.5)*kt_z*((0.5)*Ra_xy*Rb_xx + (0.5)*Ra_yy*Rb_yx + (0.5)*Ra_zy*Rb_zx - 0.5*t39 -
-            0.5*t40 - 0.5*t41))
-        t43 = Ra_xx*Rb_xx
-        t44 = Ra_yx*Rb_yx
-        t45 = Ra_zx*Rb_zx
-        t46 = t43 + t44 + t45
-        t47 = Omb_x*t46
-        t48 = t39 + t40 + t41
-        t49 = Omb_y*t48
-        t50 = t31 + t33 + t35
-        t51 = Omb_z*t50
-        t52 = (0.5)*ct_x
-        t53 = 2*t13 + 2*t14 + 2*t15
-        t54 = (0.5)*t53
-        t55 = 2*t10 + 2*t8 + 2*t9
-        t56 = -0.5*t55
-        t57 = Ra_xy*Rb_xy
-        t58 = Ra_yy*Rb_yy
-        t59 = Ra_zy*Rb_zy
-        t60 = t57 + t58 + t59
-        t61 = Ra_xz*Rb_xz
-        t62 = Ra_yz*Rb_yz
-        t63 = Ra_zz*Rb_zz
-        t64 = t61 + t62 + t63
-        t65 = t60 + t64
-        t66 = Ra_xy*Rb_xz
-        t67 = Ra_yy*Rb_yz
-        t68 = Ra_zy*Rb_zz
-        t69 = ((0.5)*kt_x*((0.5)*Ra_xz*Rb_xy + (0.5)*Ra_yz*Rb_yy + (0.5)*Ra_zz*Rb_zy - 0.5*t66 -
-            0.5*t67 - 0.5*t68))
-        t70 = Ra_xz*Rb_xy
-        t71 = Ra_yz*Rb_yy
-        t72 = Ra_zz*Rb_zy
-        t73 = t70 + t71 + t72
-        t74 = Omb_x*t30
-        t75 = Omb_y*t60
-        t76 = t66 + t67 + t68
-        t77 = Omb_z*t76
-        t78 = (0.5)*ct_y
-        t79 = -0.5*t53
-        t80 = 2*t1 + 2*t3 + 2*t5
-        t81 = (0.5)*t80
-        t82 = t46 + t64
-        t83 = Omb_x*t38
-        t84 = Omb_y*t73
-        t85 = Omb_z*t64
-        t86 = (0.5)*ct_z
-        t87 = (0.5)*t55
-        t88 = -0.5*t80
-        t89 = t46 + t60
-        t90 = t52*(-Oma_x + t47 + t49 + t51)
-        t91 = t78*(-Oma_y + t74 + t75 + t77)
-        t92 = t86*(-Oma_z + t83 + t84 + t85)
-        g[0] = -t24
-        g[1] = -t25
-        g[2] = -t26
-        g[3] = t24
-        g[4] = t25
-        g[5] = t26
-        g[6] = (t12*t54 + t17*t56 + t22*t54 + t23*t56 + t30*t37 + t38*t42 + t52*(2*Oma_x - 2*t47 -
-            2*t49 - 2*t51) - t65*t69)
-        g[7] = (t17*t81 + t21*t79 + t23*t81 - t37*t82 + t42*t73 + t48*t69 + t7*t79 + t78*(2*Oma_y
-            - 2*t74 - 2*t75 - 2*t77))
-        g[8] = (t12*t88 + t21*t87 + t22*t88 + t37*t76 - t42*t89 + t50*t69 + t7*t87 + t86*(2*Oma_z
-            - 2*t83 - 2*t84 - 2*t85))
-        g[9] = (-t37*t48 - t42*t50 + t65*t69 + t90*(2*t43 + 2*t44 + 2*t45) + t91*(2*t27 + 2*t28 +
-            2*t29) + t92*(2*t32 + 2*t34 + 2*t36))
-        g[10] = (-t30*t69 + t37*t82 - t42*t76 + t90*(2*t39 + 2*t40 + 2*t41) + t91*(2*t57 + 2*t58 +
-            2*t59) + t92*(2*t70 + 2*t71 + 2*t72))
-        g[11] = (-t37*t73 - t38*t69 + t42*t89 + t90*(2*t31 + 2*t33 + 2*t35) + t91*(2*t66 + 2*t67 +
-            2*t68) + t92*(2*t61 + 2*t62 + 2*t63))
+        t21 = -Oma_y*t10 + Oma_z*t9 + Ra_xx*t18 + Ra_yx*t19 + Ra_zx*t20
+        t22 = Oma_x*t10 - Oma_z*t8 + Ra_xy*t18 + Ra_yy*t19 + Ra_zy*t20
+        t23 = -Oma_x*t9 + Oma_y*t8 + Ra_xz*t18 + Ra_yz*t19 + Ra_zz*t20
+        t24 = c_x*(e1_x*t21 + e1_y*t22 + e1_z*t23)
+        t25 = c_y*(e2_x*t21 + e2_y*t22 + e2_z*t23)
+        t26 = c_z*(e3_x*t21 + e3_y*t22 + e3_z*t23)
+        t27 = 2*Ra_yx
+        t28 = 2*Ra_yy
+        t29 = 2*Ra_yz
+        t30 = e1_x*t27 + e1_y*t28 + e1_z*t29
+        t31 = -0.5*t30
+        t32 = e2_x*t27 + e2_y*t28 + e2_z*t29
+        t33 = -0.5*t32
+        t34 = e3_x*t27 + e3_y*t28 + e3_z*t29
+        t35 = -0.5*t34
+        t36 = 2*Ra_zx
+        t37 = 2*Ra_zy
+        t38 = 2*Ra_zz
+        t39 = e1_x*t36 + e1_y*t37 + e1_z*t38
+        t40 = -0.5*t39
+        t41 = e2_x*t36 + e2_y*t37 + e2_z*t38
+        t42 = -0.5*t41
+        t43 = e3_x*t36 + e3_y*t37 + e3_z*t38
+        t44 = -0.5*t43
+        t45 = (0.5)*t3
+        t46 = (0.5)*t12
+        t47 = (0.5)*t15
+        t48 = (0.5)*t30
+        t49 = (0.5)*t32
+        t50 = (0.5)*t34
+        t51 = (0.5)*t39
+        t52 = (0.5)*t41
+        t53 = (0.5)*t43
+        t54 = 2*t10
+        t55 = -2*t9
+        t56 = (0.5)*e1_y*t54 + (0.5)*e1_z*t55
+        t57 = (0.5)*e2_y*t54 + (0.5)*e2_z*t55
+        t58 = (0.5)*e3_y*t54 + (0.5)*e3_z*t55
+        t59 = Ra_xx*Rb_xx
+        t60 = Ra_yx*Rb_yx
+        t61 = Ra_zx*Rb_zx
+        t62 = t59 + t60 + t61
+        t63 = Ra_xx*Rb_xy
+        t64 = Ra_yx*Rb_yy
+        t65 = Ra_zx*Rb_zy
+        t66 = t63 + t64 + t65
+        t67 = Ra_xx*Rb_xz
+        t68 = Ra_yx*Rb_yz
+        t69 = Ra_zx*Rb_zz
+        t70 = t67 + t68 + t69
+        t71 = -Oma_x + Omb_x*t62 + Omb_y*t66 + Omb_z*t70
+        t72 = Ra_xy*Rb_xx
+        t73 = Ra_yy*Rb_yx
+        t74 = Ra_zy*Rb_zx
+        t75 = t72 + t73 + t74
+        t76 = Ra_xy*Rb_xy
+        t77 = Ra_yy*Rb_yy
+        t78 = Ra_zy*Rb_zy
+        t79 = t76 + t77 + t78
+        t80 = Ra_xy*Rb_xz
+        t81 = Ra_yy*Rb_yz
+        t82 = Ra_zy*Rb_zz
+        t83 = t80 + t81 + t82
+        t84 = -Oma_y + Omb_x*t75 + Omb_y*t79 + Omb_z*t83
+        t85 = Ra_xz*Rb_xx
+        t86 = Ra_yz*Rb_yx
+        t87 = Ra_zz*Rb_zx
+        t88 = t85 + t86 + t87
+        t89 = Ra_xz*Rb_xy
+        t90 = Ra_yz*Rb_yy
+        t91 = Ra_zz*Rb_zy
+        t92 = t89 + t90 + t91
+        t93 = Ra_xz*Rb_xz
+        t94 = Ra_yz*Rb_yz
+        t95 = Ra_zz*Rb_zz
+        t96 = t93 + t94 + t95
+        t97 = -Oma_z + Omb_x*t88 + Omb_y*t92 + Omb_z*t96
+        t98 = ct_x*(e1_x*t71 + e1_y*t84 + e1_z*t97)
+        t99 = ct_y*(e2_x*t71 + e2_y*t84 + e2_z*t97)
+        t100 = ct_z*(e3_x*t71 + e3_y*t84 + e3_z*t97)
+        t101 = (0.5)*t72
+        t102 = (0.5)*t73
+        t103 = (0.5)*t74
+        t104 = t101 + t102 + t103
+        t105 = 2*t104
+        t106 = (0.5)*t85
+        t107 = (0.5)*t86
+        t108 = (0.5)*t87
+        t109 = t106 + t107 + t108
+        t110 = 2*t109
+        t111 = (0.5)*t93 + (0.5)*t94 + (0.5)*t95
+        t112 = (0.5)*t76 + (0.5)*t77 + (0.5)*t78
+        t113 = t111 + t112
+        t114 = -2*t113
+        t115 = (0.5)*t89
+        t116 = (0.5)*t90
+        t117 = (0.5)*t91
+        t118 = (0.5)*t80 + (0.5)*t81 + (0.5)*t82
+        t119 = t115 + t116 + t117 - t118
+        t120 = (0.5)*t67 + (0.5)*t68 + (0.5)*t69
+        t121 = -t106 - t107 - t108 + t120
+        t122 = (0.5)*t63 + (0.5)*t64 + (0.5)*t65
+        t123 = t101 + t102 + t103 - t122
+        t124 = (0.5)*kt_x*(e1_x*t119 + e1_y*t121 + e1_z*t123)
+        t125 = (0.5)*kt_y*(e2_x*t119 + e2_y*t121 + e2_z*t123)
+        t126 = (0.5)*kt_z*(e3_x*t119 + e3_y*t121 + e3_z*t123)
+        t127 = 2*t8
+        t128 = -2*t10
+        t129 = (0.5)*e1_x*t128 + (0.5)*e1_z*t127
+        t130 = (0.5)*e2_x*t128 + (0.5)*e2_z*t127
+        t131 = (0.5)*e3_x*t128 + (0.5)*e3_z*t127
+        t132 = 2*t122
+        t133 = t115 + t116 + t117
+        t134 = 2*t133
+        t135 = (0.5)*t59 + (0.5)*t60 + (0.5)*t61
+        t136 = t111 + t135
+        t137 = -2*t136
+        t138 = 2*t9
+        t139 = -2*t8
+        t140 = (0.5)*e1_x*t138 + (0.5)*e1_y*t139
+        t141 = (0.5)*e2_x*t138 + (0.5)*e2_y*t139
+        t142 = (0.5)*e3_x*t138 + (0.5)*e3_y*t139
+        t143 = 2*t120
+        t144 = 2*t118
+        t145 = t112 + t135
+        t146 = -2*t145
+        t147 = -2*t122
+        t148 = -2*t120
+        t149 = 2*t113
+        t150 = 2*t62
+        t151 = 2*t75
+        t152 = 2*t88
+        t153 = (0.5)*t98
+        t154 = (0.5)*t99
+        t155 = (0.5)*t100
+        t156 = -2*t104
+        t157 = -2*t118
+        t158 = 2*t136
+        t159 = 2*t66
+        t160 = 2*t79
+        t161 = 2*t92
+        t162 = -2*t109
+        t163 = -2*t133
+        t164 = 2*t145
+        t165 = 2*t70
+        t166 = 2*t83
+        t167 = 2*t96
+        g[0] = t11*t4 + t13*t14 + t13*t25 + t16*t17 + t16*t26 + t24*t4
+        g[1] = t11*t31 + t14*t33 + t17*t35 + t24*t31 + t25*t33 + t26*t35
+        g[2] = t11*t40 + t14*t42 + t17*t44 + t24*t40 + t25*t42 + t26*t44
+        g[3] = t11*t45 + t14*t46 + t17*t47 + t24*t45 + t25*t46 + t26*t47
+        g[4] = t11*t48 + t14*t49 + t17*t50 + t24*t48 + t25*t49 + t26*t50
+        g[5] = t11*t51 + t14*t52 + t17*t53 + t24*t51 + t25*t52 + t26*t53
+        g[6] = (-e1_x*t98 - e2_x*t99 - e3_x*t100 + t11*t56 + t124*(e1_x*t114 + e1_y*t105 +
+            e1_z*t110) + t125*(e2_x*t114 + e2_y*t105 + e2_z*t110) + t126*(e3_x*t114 + e3_y*t105 +
+            e3_z*t110) + t14*t57 + t17*t58 + t24*t56 + t25*t57 + t26*t58)
+        g[7] = (-e1_y*t98 - e2_y*t99 - e3_y*t100 + t11*t129 + t124*(e1_x*t132 + e1_y*t137 +
+            e1_z*t134) + t125*(e2_x*t132 + e2_y*t137 + e2_z*t134) + t126*(e3_x*t132 + e3_y*t137 +
+            e3_z*t134) + t129*t24 + t130*t14 + t130*t25 + t131*t17 + t131*t26)
+        g[8] = (-e1_z*t98 - e2_z*t99 - e3_z*t100 + t11*t140 + t124*(e1_x*t143 + e1_y*t144 +
+            e1_z*t146) + t125*(e2_x*t143 + e2_y*t144 + e2_z*t146) + t126*(e3_x*t143 + e3_y*t144 +
+            e3_z*t146) + t14*t141 + t140*t24 + t141*t25 + t142*t17 + t142*t26)
+        g[9] = (t124*(e1_x*t149 + e1_y*t147 + e1_z*t148) + t125*(e2_x*t149 + e2_y*t147 +
+            e2_z*t148) + t126*(e3_x*t149 + e3_y*t147 + e3_z*t148) + t153*(e1_x*t150 + e1_y*t151 +
+            e1_z*t152) + t154*(e2_x*t150 + e2_y*t151 + e2_z*t152) + t155*(e3_x*t150 + e3_y*t151 +
+            e3_z*t152))
+        g[10] = (t124*(e1_x*t156 + e1_y*t158 + e1_z*t157) + t125*(e2_x*t156 + e2_y*t158 +
+            e2_z*t157) + t126*(e3_x*t156 + e3_y*t158 + e3_z*t157) + t153*(e1_x*t159 + e1_y*t160 +
+            e1_z*t161) + t154*(e2_x*t159 + e2_y*t160 + e2_z*t161) + t155*(e3_x*t159 + e3_y*t160 +
+            e3_z*t161))
+        g[11] = (t124*(e1_x*t162 + e1_y*t163 + e1_z*t164) + t125*(e2_x*t162 + e2_y*t163 +
+            e2_z*t164) + t126*(e3_x*t162 + e3_y*t163 + e3_z*t164) + t153*(e1_x*t165 + e1_y*t166 +
+            e1_z*t167) + t154*(e2_x*t165 + e2_y*t166 + e2_z*t167) + t155*(e3_x*t165 + e3_y*t166 +
+            e3_z*t167))
         if task == ENERGY:
             t900 = -xa_x + xb_x
             t901 = -xa_y + xb_y
             t902 = -xa_z + xb_z
-            t903 = (0.5)*Rb_xz
-            t904 = (0.5)*Rb_yz
-            t905 = (0.5)*Rb_zz
-            energies[STRAIN] += ((0.5)*k_x*(Ra_xx*t900 + Ra_yx*t901 + Ra_zx*t902)*(Ra_xx*t900 +
-                Ra_yx*t901 + Ra_zx*t902) + (0.5)*k_y*(Ra_xy*t900 + Ra_yy*t901 +
-                Ra_zy*t902)*(Ra_xy*t900 + Ra_yy*t901 + Ra_zy*t902) + (0.5)*k_z*(Ra_xz*t900 +
-                Ra_yz*t901 + Ra_zz*t902)*(Ra_xz*t900 + Ra_yz*t901 + Ra_zz*t902) +
-                (0.5)*kt_x*(-Ra_xy*t903 + (0.5)*Ra_xz*Rb_xy - Ra_yy*t904 + (0.5)*Ra_yz*Rb_yy -
-                Ra_zy*t905 + (0.5)*Ra_zz*Rb_zy)*(-Ra_xy*t903 + (0.5)*Ra_xz*Rb_xy - Ra_yy*t904 +
-                (0.5)*Ra_yz*Rb_yy - Ra_zy*t905 + (0.5)*Ra_zz*Rb_zy) + (0.5)*kt_y*(Ra_xx*t903 -
-                0.5*Ra_xz*Rb_xx + Ra_yx*t904 - 0.5*Ra_yz*Rb_yx + Ra_zx*t905 -
-                0.5*Ra_zz*Rb_zx)*(Ra_xx*t903 - 0.5*Ra_xz*Rb_xx + Ra_yx*t904 - 0.5*Ra_yz*Rb_yx +
-                Ra_zx*t905 - 0.5*Ra_zz*Rb_zx) + (0.5)*kt_z*(-0.5*Ra_xx*Rb_xy + (0.5)*Ra_xy*Rb_xx -
-                0.5*Ra_yx*Rb_yy + (0.5)*Ra_yy*Rb_yx - 0.5*Ra_zx*Rb_zy +
-                (0.5)*Ra_zy*Rb_zx)*(-0.5*Ra_xx*Rb_xy + (0.5)*Ra_xy*Rb_xx - 0.5*Ra_yx*Rb_yy +
-                (0.5)*Ra_yy*Rb_yx - 0.5*Ra_zx*Rb_zy + (0.5)*Ra_zy*Rb_zx))
+            t903 = Ra_xx*t900 + Ra_yx*t901 + Ra_zx*t902
+            t904 = Ra_xy*t900 + Ra_yy*t901 + Ra_zy*t902
+            t905 = Ra_xz*t900 + Ra_yz*t901 + Ra_zz*t902
+            t906 = (0.5)*Rb_xz
+            t907 = (0.5)*Rb_yz
+            t908 = (0.5)*Rb_zz
+            t909 = (-Ra_xy*t906 + (0.5)*Ra_xz*Rb_xy - Ra_yy*t907 + (0.5)*Ra_yz*Rb_yy - Ra_zy*t908
+                + (0.5)*Ra_zz*Rb_zy)
+            t910 = (Ra_xx*t906 - 0.5*Ra_xz*Rb_xx + Ra_yx*t907 - 0.5*Ra_yz*Rb_yx + Ra_zx*t908 -
+                0.5*Ra_zz*Rb_zx)
+            t911 = (-0.5*Ra_xx*Rb_xy + (0.5)*Ra_xy*Rb_xx - 0.5*Ra_yx*Rb_yy + (0.5)*Ra_yy*Rb_yx -
+                0.5*Ra_zx*Rb_zy + (0.5)*Ra_zy*Rb_zx)
+            energies[STRAIN] += ((0.5)*k_x*(e1_x*t903 + e1_y*t904 + e1_z*t905)*(e1_x*t903 +
+                e1_y*t904 + e1_z*t905) + (0.5)*k_y*(e2_x*t903 + e2_y*t904 + e2_z*t905)*(e2_x*t903
+                + e2_y*t904 + e2_z*t905) + (0.5)*k_z*(e3_x*t903 + e3_y*t904 +
+                e3_z*t905)*(e3_x*t903 + e3_y*t904 + e3_z*t905) + (0.5)*kt_x*(e1_x*t909 + e1_y*t910
+                + e1_z*t911)*(e1_x*t909 + e1_y*t910 + e1_z*t911) + (0.5)*kt_y*(e2_x*t909 +
+                e2_y*t910 + e2_z*t911)*(e2_x*t909 + e2_y*t910 + e2_z*t911) + (0.5)*kt_z*(e3_x*t909
+                + e3_y*t910 + e3_z*t911)*(e3_x*t909 + e3_y*t910 + e3_z*t911))
         if task == ENERGY:
-            t900 = Ra_xx*Rb_xx
-            t901 = Ra_yx*Rb_yx
-            t902 = Ra_zx*Rb_zx
-            t903 = Omb_x*(t900 + t901 + t902)
-            t904 = Ra_xx*Rb_xy
-            t905 = Ra_yx*Rb_yy
-            t906 = Ra_zx*Rb_zy
-            t907 = Omb_y*(t904 + t905 + t906)
-            t908 = Ra_xx*Rb_xz
-            t909 = Ra_yx*Rb_yz
-            t910 = Ra_zx*Rb_zz
-            t911 = Omb_z*(t908 + t909 + t910)
-            t912 = (0.5)*ct_x
-            t913 = t912*(-Oma_x + t903 + t907 + t911)
-            t914 = Ra_xy*Rb_xx
-            t915 = Ra_yy*Rb_yx
-            t916 = Ra_zy*Rb_zx
-            t917 = Omb_x*(t914 + t915 + t916)
-            t918 = Ra_xy*Rb_xy
-            t919 = Ra_yy*Rb_yy
-            t920 = Ra_zy*Rb_zy
-            t921 = Omb_y*(t918 + t919 + t920)
-            t922 = Ra_xy*Rb_xz
-            t923 = Ra_yy*Rb_yz
-            t924 = Ra_zy*Rb_zz
-            t925 = Omb_z*(t922 + t923 + t924)
-            t926 = (0.5)*ct_y
-            t927 = t926*(-Oma_y + t917 + t921 + t925)
-            t928 = Ra_xz*Rb_xx
-            t929 = Ra_yz*Rb_yx
-            t930 = Ra_zz*Rb_zx
-            t931 = Omb_x*(t928 + t929 + t930)
-            t932 = Ra_xz*Rb_xy
-            t933 = Ra_yz*Rb_yy
-            t934 = Ra_zz*Rb_zy
-            t935 = Omb_y*(t932 + t933 + t934)
-            t936 = Ra_xz*Rb_xz
-            t937 = Ra_yz*Rb_yz
-            t938 = Ra_zz*Rb_zz
-            t939 = Omb_z*(t936 + t937 + t938)
-            t940 = (0.5)*ct_z
-            t941 = t940*(-Oma_z + t931 + t935 + t939)
-            t942 = -va_x + vb_x
-            t943 = -va_y + vb_y
-            t944 = -va_z + vb_z
-            t945 = -xa_x + xb_x
-            t946 = Ra_xy*t945
-            t947 = -xa_y + xb_y
-            t948 = Ra_yy*t947
-            t949 = -xa_z + xb_z
-            t950 = Ra_zy*t949
-            t951 = t946 + t948 + t950
-            t952 = Ra_xz*t945
-            t953 = Ra_yz*t947
-            t954 = Ra_zz*t949
-            t955 = t952 + t953 + t954
-            t956 = c_x*(-Oma_y*t955 + Oma_z*t951 + Ra_xx*t942 + Ra_yx*t943 + Ra_zx*t944)
-            t957 = Ra_xx*t945
-            t958 = Ra_yx*t947
-            t959 = Ra_zx*t949
-            t960 = t957 + t958 + t959
-            t961 = c_y*(Oma_x*t955 - Oma_z*t960 + Ra_xy*t942 + Ra_yy*t943 + Ra_zy*t944)
-            t962 = c_z*(-Oma_x*t951 + Oma_y*t960 + Ra_xz*t942 + Ra_yz*t943 + Ra_zz*t944)
-            t963 = Ra_xx*t956 + Ra_xy*t961 + Ra_xz*t962
-            t964 = Ra_yx*t956 + Ra_yy*t961 + Ra_yz*t962
-            t965 = Ra_zx*t956 + Ra_zy*t961 + Ra_zz*t962
-            t966 = 2*t952 + 2*t953 + 2*t954
-            t967 = (0.5)*t961
-            t968 = 2*t946 + 2*t948 + 2*t950
-            t969 = (0.5)*t962
-            t970 = (0.5)*t956
-            t971 = 2*t957 + 2*t958 + 2*t959
-            energies[POWERS + index[first + AT_PORT]] = (-Oma_x*(t912*(2*Oma_x - 2*t903 - 2*t907 -
-                2*t911) + t966*t967 - t968*t969) - Oma_y*(t926*(2*Oma_y - 2*t917 - 2*t921 -
-                2*t925) - t966*t970 + t969*t971) - Oma_z*(t940*(2*Oma_z - 2*t931 - 2*t935 -
-                2*t939) - t967*t971 + t968*t970) - Omb_x*(t913*(2*t900 + 2*t901 + 2*t902) +
-                t927*(2*t914 + 2*t915 + 2*t916) + t941*(2*t928 + 2*t929 + 2*t930)) -
-                Omb_y*(t913*(2*t904 + 2*t905 + 2*t906) + t927*(2*t918 + 2*t919 + 2*t920) +
-                t941*(2*t932 + 2*t933 + 2*t934)) - Omb_z*(t913*(2*t908 + 2*t909 + 2*t910) +
-                t927*(2*t922 + 2*t923 + 2*t924) + t941*(2*t936 + 2*t937 + 2*t938)) + t963*va_x -
-                t963*vb_x + t964*va_y - t964*vb_y + t965*va_z - t965*vb_z)
+            t900 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t901 = 2*t900
+            t902 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t903 = 2*t902
+            t904 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t905 = 2*t904
+            t906 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t907 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t908 = -Oma_x + Omb_x*t900 + Omb_y*t906 + Omb_z*t907
+            t909 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t910 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t911 = -Oma_y + Omb_x*t902 + Omb_y*t909 + Omb_z*t910
+            t912 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t913 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t914 = -Oma_z + Omb_x*t904 + Omb_y*t912 + Omb_z*t913
+            t915 = ct_x*(e1_x*t908 + e1_y*t911 + e1_z*t914)
+            t916 = (0.5)*t915
+            t917 = ct_y*(e2_x*t908 + e2_y*t911 + e2_z*t914)
+            t918 = (0.5)*t917
+            t919 = ct_z*(e3_x*t908 + e3_y*t911 + e3_z*t914)
+            t920 = (0.5)*t919
+            t921 = 2*t906
+            t922 = 2*t909
+            t923 = 2*t912
+            t924 = 2*t907
+            t925 = 2*t910
+            t926 = 2*t913
+            t927 = 2*Ra_xx
+            t928 = 2*Ra_xy
+            t929 = 2*Ra_xz
+            t930 = e1_x*t927 + e1_y*t928 + e1_z*t929
+            t931 = -va_x + vb_x
+            t932 = -va_y + vb_y
+            t933 = -va_z + vb_z
+            t934 = -xa_x + xb_x
+            t935 = -xa_y + xb_y
+            t936 = -xa_z + xb_z
+            t937 = Ra_xy*t934 + Ra_yy*t935 + Ra_zy*t936
+            t938 = Ra_xz*t934 + Ra_yz*t935 + Ra_zz*t936
+            t939 = -Oma_y*t938 + Oma_z*t937 + Ra_xx*t931 + Ra_yx*t932 + Ra_zx*t933
+            t940 = Ra_xx*t934 + Ra_yx*t935 + Ra_zx*t936
+            t941 = Oma_x*t938 - Oma_z*t940 + Ra_xy*t931 + Ra_yy*t932 + Ra_zy*t933
+            t942 = -Oma_x*t937 + Oma_y*t940 + Ra_xz*t931 + Ra_yz*t932 + Ra_zz*t933
+            t943 = (0.5)*c_x*(e1_x*t939 + e1_y*t941 + e1_z*t942)
+            t944 = e2_x*t927 + e2_y*t928 + e2_z*t929
+            t945 = (0.5)*c_y*(e2_x*t939 + e2_y*t941 + e2_z*t942)
+            t946 = e3_x*t927 + e3_y*t928 + e3_z*t929
+            t947 = (0.5)*c_z*(e3_x*t939 + e3_y*t941 + e3_z*t942)
+            t948 = 2*Ra_yx
+            t949 = 2*Ra_yy
+            t950 = 2*Ra_yz
+            t951 = e1_x*t948 + e1_y*t949 + e1_z*t950
+            t952 = e2_x*t948 + e2_y*t949 + e2_z*t950
+            t953 = e3_x*t948 + e3_y*t949 + e3_z*t950
+            t954 = 2*Ra_zx
+            t955 = 2*Ra_zy
+            t956 = 2*Ra_zz
+            t957 = e1_x*t954 + e1_y*t955 + e1_z*t956
+            t958 = e2_x*t954 + e2_y*t955 + e2_z*t956
+            t959 = e3_x*t954 + e3_y*t955 + e3_z*t956
+            t960 = 2*t938
+            t961 = -2*t937
+            t962 = 2*t940
+            t963 = -2*t938
+            t964 = 2*t937
+            t965 = -2*t940
+            energies[POWERS + index[first + AT_PORT]] = (-Oma_x*(-e1_x*t915 - e2_x*t917 -
+                e3_x*t919 + t943*(e1_y*t960 + e1_z*t961) + t945*(e2_y*t960 + e2_z*t961) +
+                t947*(e3_y*t960 + e3_z*t961)) - Oma_y*(-e1_y*t915 - e2_y*t917 - e3_y*t919 +
+                t943*(e1_x*t963 + e1_z*t962) + t945*(e2_x*t963 + e2_z*t962) + t947*(e3_x*t963 +
+                e3_z*t962)) - Oma_z*(-e1_z*t915 - e2_z*t917 - e3_z*t919 + t943*(e1_x*t964 +
+                e1_y*t965) + t945*(e2_x*t964 + e2_y*t965) + t947*(e3_x*t964 + e3_y*t965)) -
+                Omb_x*(t916*(e1_x*t901 + e1_y*t903 + e1_z*t905) + t918*(e2_x*t901 + e2_y*t903 +
+                e2_z*t905) + t920*(e3_x*t901 + e3_y*t903 + e3_z*t905)) - Omb_y*(t916*(e1_x*t921 +
+                e1_y*t922 + e1_z*t923) + t918*(e2_x*t921 + e2_y*t922 + e2_z*t923) +
+                t920*(e3_x*t921 + e3_y*t922 + e3_z*t923)) - Omb_z*(t916*(e1_x*t924 + e1_y*t925 +
+                e1_z*t926) + t918*(e2_x*t924 + e2_y*t925 + e2_z*t926) + t920*(e3_x*t924 +
+                e3_y*t925 + e3_z*t926)) - va_x*(-t930*t943 - t944*t945 - t946*t947) -
+                va_y*(-t943*t951 - t945*t952 - t947*t953) - va_z*(-t943*t957 - t945*t958 -
+                t947*t959) - vb_x*(t930*t943 + t944*t945 + t946*t947) - vb_y*(t943*t951 +
+                t945*t952 + t947*t953) - vb_z*(t943*t957 + t945*t958 + t947*t959))
+        if task == ENERGY:
+            t900 = 2*Ra_xx
+            t901 = 2*Ra_xy
+            t902 = 2*Ra_xz
+            t903 = e1_x*t900 + e1_y*t901 + e1_z*t902
+            t904 = -va_x + vb_x
+            t905 = -va_y + vb_y
+            t906 = -va_z + vb_z
+            t907 = -xa_x + xb_x
+            t908 = -xa_y + xb_y
+            t909 = -xa_z + xb_z
+            t910 = Ra_xy*t907 + Ra_yy*t908 + Ra_zy*t909
+            t911 = Ra_xz*t907 + Ra_yz*t908 + Ra_zz*t909
+            t912 = -Oma_y*t911 + Oma_z*t910 + Ra_xx*t904 + Ra_yx*t905 + Ra_zx*t906
+            t913 = Ra_xx*t907 + Ra_yx*t908 + Ra_zx*t909
+            t914 = Oma_x*t911 - Oma_z*t913 + Ra_xy*t904 + Ra_yy*t905 + Ra_zy*t906
+            t915 = -Oma_x*t910 + Oma_y*t913 + Ra_xz*t904 + Ra_yz*t905 + Ra_zz*t906
+            t916 = (0.5)*c_x*(e1_x*t912 + e1_y*t914 + e1_z*t915)
+            t917 = e2_x*t900 + e2_y*t901 + e2_z*t902
+            t918 = (0.5)*c_y*(e2_x*t912 + e2_y*t914 + e2_z*t915)
+            t919 = e3_x*t900 + e3_y*t901 + e3_z*t902
+            t920 = (0.5)*c_z*(e3_x*t912 + e3_y*t914 + e3_z*t915)
+            t921 = 2*Ra_yx
+            t922 = 2*Ra_yy
+            t923 = 2*Ra_yz
+            t924 = e1_x*t921 + e1_y*t922 + e1_z*t923
+            t925 = e2_x*t921 + e2_y*t922 + e2_z*t923
+            t926 = e3_x*t921 + e3_y*t922 + e3_z*t923
+            t927 = 2*Ra_zx
+            t928 = 2*Ra_zy
+            t929 = 2*Ra_zz
+            t930 = e1_x*t927 + e1_y*t928 + e1_z*t929
+            t931 = e2_x*t927 + e2_y*t928 + e2_z*t929
+            t932 = e3_x*t927 + e3_y*t928 + e3_z*t929
+            t933 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t934 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t935 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t936 = -Oma_x + Omb_x*t933 + Omb_y*t934 + Omb_z*t935
+            t937 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t938 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t939 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t940 = -Oma_y + Omb_x*t937 + Omb_y*t938 + Omb_z*t939
+            t941 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t942 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t943 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t944 = -Oma_z + Omb_x*t941 + Omb_y*t942 + Omb_z*t943
+            t945 = ct_x*(e1_x*t936 + e1_y*t940 + e1_z*t944)
+            t946 = ct_y*(e2_x*t936 + e2_y*t940 + e2_z*t944)
+            t947 = ct_z*(e3_x*t936 + e3_y*t940 + e3_z*t944)
+            t948 = 2*t911
+            t949 = -2*t910
+            t950 = 2*t913
+            t951 = -2*t911
+            t952 = 2*t910
+            t953 = -2*t913
+            t954 = 2*t933
+            t955 = 2*t937
+            t956 = 2*t941
+            t957 = (0.5)*t945
+            t958 = (0.5)*t946
+            t959 = (0.5)*t947
+            t960 = 2*t934
+            t961 = 2*t938
+            t962 = 2*t942
+            t963 = 2*t935
+            t964 = 2*t939
+            t965 = 2*t943
+            g[0] = -t903*t916 - t917*t918 - t919*t920
+            g[1] = -t916*t924 - t918*t925 - t920*t926
+            g[2] = -t916*t930 - t918*t931 - t920*t932
+            g[3] = t903*t916 + t917*t918 + t919*t920
+            g[4] = t916*t924 + t918*t925 + t920*t926
+            g[5] = t916*t930 + t918*t931 + t920*t932
+            g[6] = (-e1_x*t945 - e2_x*t946 - e3_x*t947 + t916*(e1_y*t948 + e1_z*t949) +
+                t918*(e2_y*t948 + e2_z*t949) + t920*(e3_y*t948 + e3_z*t949))
+            g[7] = (-e1_y*t945 - e2_y*t946 - e3_y*t947 + t916*(e1_x*t951 + e1_z*t950) +
+                t918*(e2_x*t951 + e2_z*t950) + t920*(e3_x*t951 + e3_z*t950))
+            g[8] = (-e1_z*t945 - e2_z*t946 - e3_z*t947 + t916*(e1_x*t952 + e1_y*t953) +
+                t918*(e2_x*t952 + e2_y*t953) + t920*(e3_x*t952 + e3_y*t953))
+            g[9] = (t957*(e1_x*t954 + e1_y*t955 + e1_z*t956) + t958*(e2_x*t954 + e2_y*t955 +
+                e2_z*t956) + t959*(e3_x*t954 + e3_y*t955 + e3_z*t956))
+            g[10] = (t957*(e1_x*t960 + e1_y*t961 + e1_z*t962) + t958*(e2_x*t960 + e2_y*t961 +
+                e2_z*t962) + t959*(e3_x*t960 + e3_y*t961 + e3_z*t962))
+            g[11] = (t957*(e1_x*t963 + e1_y*t964 + e1_z*t965) + t958*(e2_x*t963 + e2_y*t964 +
+                e2_z*t965) + t959*(e3_x*t963 + e3_y*t964 + e3_z*t965))
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]
@@ -355,322 +538,477 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[9]
                 uthb_y = du[10]
                 uthb_z = du[11]
-                t93 = -uxa_x + uxb_x
-                t94 = -uxa_y + uxb_y
-                t95 = -uxa_z + uxb_z
-                t96 = -xa_x + xb_x
-                t97 = Ra_xy*t96
-                t98 = -xa_y + xb_y
-                t99 = Ra_yy*t98
-                t100 = -xa_z + xb_z
-                t101 = Ra_zy*t100
-                t102 = t101 + t97 + t99
-                t103 = Ra_xz*t96
-                t104 = Ra_yz*t98
-                t105 = Ra_zz*t100
-                t106 = t103 + t104 + t105
-                t107 = Ra_xx*t93 + Ra_yx*t94 + Ra_zx*t95 + t102*utha_z - t106*utha_y
-                t108 = Ra_xx*c_x
-                t109 = Ra_xx*t96
-                t110 = Ra_yx*t98
-                t111 = Ra_zx*t100
-                t112 = t109 + t110 + t111
-                t113 = Ra_xy*t93 + Ra_yy*t94 + Ra_zy*t95 + t106*utha_x - t112*utha_z
-                t114 = Ra_xy*c_y
-                t115 = Ra_xz*t93 + Ra_yz*t94 + Ra_zz*t95 - t102*utha_x + t112*utha_y
-                t116 = Ra_xz*c_z
-                t117 = t107*t108 + t113*t114 + t115*t116
-                t118 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t119 = k_x*t112
-                t120 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t121 = k_y*t102
-                t122 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t123 = k_z*t106
-                t124 = -dxa_x + dxb_x
-                t125 = Ra_xx*t124
-                t126 = -dxa_y + dxb_y
-                t127 = Ra_yx*t126
-                t128 = -dxa_z + dxb_z
-                t129 = Ra_zx*t128
-                t130 = t118*t96
-                t131 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t132 = t131*t98
-                t133 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t134 = t100*t133
-                t135 = t125 + t127 + t129 + t130 + t132 + t134
-                t136 = k_x*t135
-                t137 = Ra_xy*t124
-                t138 = Ra_yy*t126
-                t139 = Ra_zy*t128
-                t140 = t120*t96
-                t141 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t142 = t141*t98
-                t143 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t144 = t100*t143
-                t145 = t137 + t138 + t139 + t140 + t142 + t144
-                t146 = k_y*t145
-                t147 = Ra_xz*t124
-                t148 = Ra_yz*t126
-                t149 = Ra_zz*t128
-                t150 = t122*t96
-                t151 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t152 = t151*t98
-                t153 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t154 = t100*t153
-                t155 = t147 + t148 + t149 + t150 + t152 + t154
-                t156 = k_z*t155
-                t157 = -va_x + vb_x
-                t158 = -va_y + vb_y
-                t159 = -va_z + vb_z
-                t160 = c_x*(-Oma_y*t106 + Oma_z*t102 + Ra_xx*t157 + Ra_yx*t158 + Ra_zx*t159)
-                t161 = c_y*(Oma_x*t106 - Oma_z*t112 + Ra_xy*t157 + Ra_yy*t158 + Ra_zy*t159)
-                t162 = c_z*(-Oma_x*t102 + Oma_y*t112 + Ra_xz*t157 + Ra_yz*t158 + Ra_zz*t159)
-                t163 = -Oma_y*t155 + Oma_z*t145 + t118*t157 + t131*t158 + t133*t159
-                t164 = Oma_x*t155 - Oma_z*t135 + t120*t157 + t141*t158 + t143*t159
-                t165 = -Oma_x*t145 + Oma_y*t135 + t122*t157 + t151*t158 + t153*t159
-                t166 = (Ra_xx*t136 + Ra_xy*t146 + Ra_xz*t156 + t108*t163 + t114*t164 + t116*t165 +
-                    t118*t119 + t118*t160 + t120*t121 + t120*t161 + t122*t123 + t122*t162)
-                t167 = Ra_yx*c_x
-                t168 = Ra_yy*c_y
-                t169 = Ra_yz*c_z
-                t170 = t107*t167 + t113*t168 + t115*t169
-                t171 = (Ra_yx*t136 + Ra_yy*t146 + Ra_yz*t156 + t119*t131 + t121*t141 + t123*t151 +
-                    t131*t160 + t141*t161 + t151*t162 + t163*t167 + t164*t168 + t165*t169)
-                t172 = Ra_zx*c_x
-                t173 = Ra_zy*c_y
-                t174 = Ra_zz*c_z
-                t175 = t107*t172 + t113*t173 + t115*t174
-                t176 = (Ra_zx*t136 + Ra_zy*t146 + Ra_zz*t156 + t119*t133 + t121*t143 + t123*t153 +
-                    t133*t160 + t143*t161 + t153*t162 + t163*t172 + t164*t173 + t165*t174)
-                t177 = Ra_xx*Rb_xx
-                t178 = Ra_yx*Rb_yx
-                t179 = Ra_zx*Rb_zx
-                t180 = t177 + t178 + t179
-                t181 = t180*uthb_x
-                t182 = Ra_xx*Rb_xy
-                t183 = Ra_yx*Rb_yy
-                t184 = Ra_zx*Rb_zy
-                t185 = t182 + t183 + t184
-                t186 = t185*uthb_y
-                t187 = Ra_xx*Rb_xz
-                t188 = Ra_yx*Rb_yz
-                t189 = Ra_zx*Rb_zz
-                t190 = t187 + t188 + t189
-                t191 = t190*uthb_z
-                t192 = (0.5)*ct_x
-                t193 = 2*t103 + 2*t104 + 2*t105
-                t194 = (0.5)*t193
-                t195 = c_y*t194
-                t196 = 2*t101 + 2*t97 + 2*t99
-                t197 = -0.5*t196
-                t198 = c_z*t197
-                t199 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t200 = Ra_xy*t199
-                t201 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t202 = Ra_yy*t201
-                t203 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t204 = Ra_zy*t203
-                t205 = Rb_xx*t120
-                t206 = Rb_yx*t141
-                t207 = Rb_zx*t143
-                t208 = t200 + t202 + t204 + t205 + t206 + t207
-                t209 = Ra_xz*Rb_xx
-                t210 = Ra_yz*Rb_yx
-                t211 = Ra_zz*Rb_zx
-                t212 = (0.5)*kt_y
-                t213 = t212*((0.5)*t187 + (0.5)*t188 + (0.5)*t189 - 0.5*t209 - 0.5*t210 - 0.5*t211)
-                t214 = Ra_xz*t199
-                t215 = Ra_yz*t201
-                t216 = Ra_zz*t203
-                t217 = Rb_xx*t122
-                t218 = Rb_yx*t151
-                t219 = Rb_zx*t153
-                t220 = t214 + t215 + t216 + t217 + t218 + t219
-                t221 = (0.5)*kt_z
-                t222 = (t221*((0.5)*Ra_xy*Rb_xx + (0.5)*Ra_yy*Rb_yx + (0.5)*Ra_zy*Rb_zx - 0.5*t182
-                    - 0.5*t183 - 0.5*t184))
-                t223 = 2*t147 + 2*t148 + 2*t149 + 2*t150 + 2*t152 + 2*t154
-                t224 = (0.5)*t223
-                t225 = 2*t137 + 2*t138 + 2*t139 + 2*t140 + 2*t142 + 2*t144
-                t226 = -0.5*t225
-                t227 = Ra_xy*Rb_xx
-                t228 = Ra_yy*Rb_yx
-                t229 = Ra_zy*Rb_zx
-                t230 = t227 + t228 + t229
-                t231 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t232 = Ra_xx*t231
-                t233 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t234 = Ra_yx*t233
-                t235 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t236 = Ra_zx*t235
-                t237 = Rb_xz*t118
-                t238 = Rb_yz*t131
-                t239 = Rb_zz*t133
-                t240 = (t212*(-0.5*t214 - 0.5*t215 - 0.5*t216 - 0.5*t217 - 0.5*t218 - 0.5*t219 +
-                    (0.5)*t232 + (0.5)*t234 + (0.5)*t236 + (0.5)*t237 + (0.5)*t238 + (0.5)*t239))
-                t241 = t209 + t210 + t211
-                t242 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t243 = Ra_xx*t242
-                t244 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t245 = Ra_yx*t244
-                t246 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t247 = Ra_zx*t246
-                t248 = Rb_xy*t118
-                t249 = Rb_yy*t131
-                t250 = Rb_zy*t133
-                t251 = (t221*((0.5)*Ra_xy*t199 + (0.5)*Ra_yy*t201 + (0.5)*Ra_zy*t203 +
-                    (0.5)*Rb_xx*t120 + (0.5)*Rb_yx*t141 + (0.5)*Rb_zx*t143 - 0.5*t243 - 0.5*t245 -
-                    0.5*t247 - 0.5*t248 - 0.5*t249 - 0.5*t250))
-                t252 = Ra_xy*Rb_xy
-                t253 = Ra_yy*Rb_yy
-                t254 = Ra_zy*Rb_zy
-                t255 = t252 + t253 + t254
-                t256 = Ra_xz*Rb_xz
-                t257 = Ra_yz*Rb_yz
-                t258 = Ra_zz*Rb_zz
-                t259 = t256 + t257 + t258
-                t260 = t255 + t259
-                t261 = Ra_xy*t231
-                t262 = Ra_yy*t233
-                t263 = Ra_zy*t235
-                t264 = Rb_xz*t120
-                t265 = Rb_yz*t141
-                t266 = Rb_zz*t143
-                t267 = (0.5)*kt_x
-                t268 = (t267*((0.5)*Ra_xz*t242 + (0.5)*Ra_yz*t244 + (0.5)*Ra_zz*t246 +
-                    (0.5)*Rb_xy*t122 + (0.5)*Rb_yy*t151 + (0.5)*Rb_zy*t153 - 0.5*t261 - 0.5*t262 -
-                    0.5*t263 - 0.5*t264 - 0.5*t265 - 0.5*t266))
-                t269 = Ra_xy*t242
-                t270 = Ra_yy*t244
-                t271 = Ra_zy*t246
-                t272 = Rb_xy*t120
-                t273 = Rb_yy*t141
-                t274 = Rb_zy*t143
-                t275 = t269 + t270 + t271 + t272 + t273 + t274
-                t276 = Ra_xz*t231
-                t277 = Ra_yz*t233
-                t278 = Ra_zz*t235
-                t279 = Rb_xz*t122
-                t280 = Rb_yz*t151
-                t281 = Rb_zz*t153
-                t282 = t276 + t277 + t278 + t279 + t280 + t281
-                t283 = t275 + t282
-                t284 = Ra_xy*Rb_xz
-                t285 = Ra_yy*Rb_yz
-                t286 = Ra_zy*Rb_zz
-                t287 = (t267*((0.5)*Ra_xz*Rb_xy + (0.5)*Ra_yz*Rb_yy + (0.5)*Ra_zz*Rb_zy - 0.5*t284
-                    - 0.5*t285 - 0.5*t286))
-                t288 = Ra_xx*t199
-                t289 = Ra_yx*t201
-                t290 = Ra_zx*t203
-                t291 = Rb_xx*t118
-                t292 = Rb_yx*t131
-                t293 = Rb_zx*t133
-                t294 = t288 + t289 + t290 + t291 + t292 + t293
-                t295 = Omb_x*t294
-                t296 = t243 + t245 + t247 + t248 + t249 + t250
-                t297 = Omb_y*t296
-                t298 = t232 + t234 + t236 + t237 + t238 + t239
-                t299 = Omb_z*t298
-                t300 = t230*uthb_x
-                t301 = t255*uthb_y
-                t302 = t284 + t285 + t286
-                t303 = t302*uthb_z
-                t304 = (0.5)*ct_y
-                t305 = -0.5*t193
-                t306 = c_x*t305
-                t307 = 2*t109 + 2*t110 + 2*t111
-                t308 = (0.5)*t307
-                t309 = c_z*t308
-                t310 = Ra_xz*t242
-                t311 = Ra_yz*t244
-                t312 = Ra_zz*t246
-                t313 = Rb_xy*t122
-                t314 = Rb_yy*t151
-                t315 = Rb_zy*t153
-                t316 = t310 + t311 + t312 + t313 + t314 + t315
-                t317 = -0.5*t223
-                t318 = 2*t125 + 2*t127 + 2*t129 + 2*t130 + 2*t132 + 2*t134
-                t319 = (0.5)*t318
-                t320 = Ra_xz*Rb_xy
-                t321 = Ra_yz*Rb_yy
-                t322 = Ra_zz*Rb_zy
-                t323 = t320 + t321 + t322
-                t324 = t180 + t259
-                t325 = t282 + t294
-                t326 = Omb_x*t208
-                t327 = Omb_y*t275
-                t328 = t261 + t262 + t263 + t264 + t265 + t266
-                t329 = Omb_z*t328
-                t330 = t241*uthb_x
-                t331 = t323*uthb_y
-                t332 = t259*uthb_z
-                t333 = (0.5)*ct_z
-                t334 = (0.5)*t196
-                t335 = c_x*t334
-                t336 = -0.5*t307
-                t337 = c_y*t336
-                t338 = (0.5)*t225
-                t339 = -0.5*t318
-                t340 = t180 + t255
-                t341 = t275 + t294
-                t342 = Omb_x*t220
-                t343 = Omb_y*t316
-                t344 = Omb_z*t282
-                t345 = t181 + t186 + t191 - utha_x
-                t346 = t192*(2*t177 + 2*t178 + 2*t179)
-                t347 = t300 + t301 + t303 - utha_y
-                t348 = t304*(2*t227 + 2*t228 + 2*t229)
-                t349 = t330 + t331 + t332 - utha_z
-                t350 = t333*(2*t209 + 2*t210 + 2*t211)
-                t351 = t192*(-Oma_x + Omb_x*t180 + Omb_y*t185 + Omb_z*t190)
-                t352 = t304*(-Oma_y + Omb_x*t230 + Omb_y*t255 + Omb_z*t302)
-                t353 = t333*(-Oma_z + Omb_x*t241 + Omb_y*t323 + Omb_z*t259)
-                t354 = t295 + t297 + t299
-                t355 = t326 + t327 + t329
-                t356 = t342 + t343 + t344
-                t357 = t192*(2*t182 + 2*t183 + 2*t184)
-                t358 = t304*(2*t252 + 2*t253 + 2*t254)
-                t359 = t333*(2*t320 + 2*t321 + 2*t322)
-                t360 = t192*(2*t187 + 2*t188 + 2*t189)
-                t361 = t304*(2*t284 + 2*t285 + 2*t286)
-                t362 = t333*(2*t256 + 2*t257 + 2*t258)
-                J[column] = -c_damping*t117 - c_stiffness*t166
-                J[12 + column] = -c_damping*t170 - c_stiffness*t171
-                J[24 + column] = -c_damping*t175 - c_stiffness*t176
-                J[36 + column] = c_damping*t117 + c_stiffness*t166
-                J[48 + column] = c_damping*t170 + c_stiffness*t171
-                J[60 + column] = c_damping*t175 + c_stiffness*t176
-                J[72 + column] = (c_damping*(t113*t195 + t115*t198 + t192*(-2*t181 - 2*t186 -
-                    2*t191 + 2*utha_x)) + c_stiffness*(t121*t224 + t123*t226 + t146*t194 +
-                    t156*t197 + t161*t224 + t162*t226 + t164*t195 + t165*t198 + t192*(-2*t295 -
-                    2*t297 - 2*t299) + t208*t213 + t220*t222 + t230*t240 + t241*t251 - t260*t268 -
-                    t283*t287))
-                J[84 + column] = (c_damping*(t107*t306 + t115*t309 + t304*(-2*t300 - 2*t301 -
-                    2*t303 + 2*utha_y)) + c_stiffness*(t119*t317 + t123*t319 + t136*t305 +
-                    t156*t308 + t160*t317 + t162*t319 + t163*t306 + t165*t309 + t185*t268 -
-                    t213*t325 + t222*t316 - t240*t324 + t251*t323 + t287*t296 + t304*(-2*t326 -
-                    2*t327 - 2*t329)))
-                J[96 + column] = (c_damping*(t107*t335 + t113*t337 + t333*(-2*t330 - 2*t331 -
-                    2*t332 + 2*utha_z)) + c_stiffness*(t119*t338 + t121*t339 + t136*t334 +
-                    t146*t336 + t160*t338 + t161*t339 + t163*t335 + t164*t337 + t190*t268 +
-                    t213*t328 - t222*t341 + t240*t302 - t251*t340 + t287*t298 + t333*(-2*t342 -
-                    2*t343 - 2*t344)))
-                J[108 + column] = (c_damping*(t345*t346 + t347*t348 + t349*t350) +
-                    c_stiffness*(-t185*t240 - t190*t251 - t213*t296 - t222*t298 + t260*t268 +
-                    t283*t287 + t346*t354 + t348*t355 + t350*t356 + t351*(2*t288 + 2*t289 + 2*t290
-                    + 2*t291 + 2*t292 + 2*t293) + t352*(2*t200 + 2*t202 + 2*t204 + 2*t205 + 2*t206
-                    + 2*t207) + t353*(2*t214 + 2*t215 + 2*t216 + 2*t217 + 2*t218 + 2*t219)))
-                J[120 + column] = (c_damping*(t345*t357 + t347*t358 + t349*t359) +
-                    c_stiffness*(-t208*t287 + t213*t325 - t222*t328 - t230*t268 + t240*t324 -
-                    t251*t302 + t351*(2*t243 + 2*t245 + 2*t247 + 2*t248 + 2*t249 + 2*t250) +
-                    t352*(2*t269 + 2*t270 + 2*t271 + 2*t272 + 2*t273 + 2*t274) + t353*(2*t310 +
-                    2*t311 + 2*t312 + 2*t313 + 2*t314 + 2*t315) + t354*t357 + t355*t358 +
-                    t356*t359))
-                J[132 + column] = (c_damping*(t345*t360 + t347*t361 + t349*t362) +
-                    c_stiffness*(-t213*t316 - t220*t287 + t222*t341 - t240*t323 - t241*t268 +
-                    t251*t340 + t351*(2*t232 + 2*t234 + 2*t236 + 2*t237 + 2*t238 + 2*t239) +
-                    t352*(2*t261 + 2*t262 + 2*t263 + 2*t264 + 2*t265 + 2*t266) + t353*(2*t276 +
-                    2*t277 + 2*t278 + 2*t279 + 2*t280 + 2*t281) + t354*t360 + t355*t361 +
-                    t356*t362))
+                t168 = -uxa_x + uxb_x
+                t169 = -uxa_y + uxb_y
+                t170 = -uxa_z + uxb_z
+                t171 = -xa_x + xb_x
+                t172 = -xa_y + xb_y
+                t173 = -xa_z + xb_z
+                t174 = Ra_xy*t171 + Ra_yy*t172 + Ra_zy*t173
+                t175 = Ra_xz*t171 + Ra_yz*t172 + Ra_zz*t173
+                t176 = Ra_xx*t168 + Ra_yx*t169 + Ra_zx*t170 + t174*utha_z - t175*utha_y
+                t177 = Ra_xx*t171 + Ra_yx*t172 + Ra_zx*t173
+                t178 = Ra_xy*t168 + Ra_yy*t169 + Ra_zy*t170 + t175*utha_x - t177*utha_z
+                t179 = Ra_xz*t168 + Ra_yz*t169 + Ra_zz*t170 - t174*utha_x + t177*utha_y
+                t180 = e1_x*t176 + e1_y*t178 + e1_z*t179
+                t181 = 2*Ra_xx
+                t182 = 2*Ra_xy
+                t183 = 2*Ra_xz
+                t184 = e1_x*t181 + e1_y*t182 + e1_z*t183
+                t185 = -t184
+                t186 = (0.5)*c_x
+                t187 = t185*t186
+                t188 = e2_x*t176 + e2_y*t178 + e2_z*t179
+                t189 = e2_x*t181 + e2_y*t182 + e2_z*t183
+                t190 = -t189
+                t191 = (0.5)*c_y
+                t192 = t190*t191
+                t193 = e3_x*t176 + e3_y*t178 + e3_z*t179
+                t194 = e3_x*t181 + e3_y*t182 + e3_z*t183
+                t195 = -t194
+                t196 = (0.5)*c_z
+                t197 = t195*t196
+                t198 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t199 = 2*t198
+                t200 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t201 = 2*t200
+                t202 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t203 = 2*t202
+                t204 = e1_x*t199 + e1_y*t201 + e1_z*t203
+                t205 = -t204
+                t206 = (0.5)*k_x
+                t207 = t206*(e1_x*t177 + e1_y*t174 + e1_z*t175)
+                t208 = e2_x*t199 + e2_y*t201 + e2_z*t203
+                t209 = -t208
+                t210 = (0.5)*k_y
+                t211 = t210*(e2_x*t177 + e2_y*t174 + e2_z*t175)
+                t212 = e3_x*t199 + e3_y*t201 + e3_z*t203
+                t213 = -t212
+                t214 = (0.5)*k_z
+                t215 = t214*(e3_x*t177 + e3_y*t174 + e3_z*t175)
+                t216 = -dxa_x + dxb_x
+                t217 = -dxa_y + dxb_y
+                t218 = -dxa_z + dxb_z
+                t219 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t220 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t221 = Ra_xx*t216 + Ra_yx*t217 + Ra_zx*t218 + t171*t198 + t172*t219 + t173*t220
+                t222 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t223 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t224 = Ra_xy*t216 + Ra_yy*t217 + Ra_zy*t218 + t171*t200 + t172*t222 + t173*t223
+                t225 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t226 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t227 = Ra_xz*t216 + Ra_yz*t217 + Ra_zz*t218 + t171*t202 + t172*t225 + t173*t226
+                t228 = t206*(e1_x*t221 + e1_y*t224 + e1_z*t227)
+                t229 = t210*(e2_x*t221 + e2_y*t224 + e2_z*t227)
+                t230 = t214*(e3_x*t221 + e3_y*t224 + e3_z*t227)
+                t231 = -va_x + vb_x
+                t232 = -va_y + vb_y
+                t233 = -va_z + vb_z
+                t234 = -Oma_y*t175 + Oma_z*t174 + Ra_xx*t231 + Ra_yx*t232 + Ra_zx*t233
+                t235 = Oma_x*t175 - Oma_z*t177 + Ra_xy*t231 + Ra_yy*t232 + Ra_zy*t233
+                t236 = -Oma_x*t174 + Oma_y*t177 + Ra_xz*t231 + Ra_yz*t232 + Ra_zz*t233
+                t237 = t186*(e1_x*t234 + e1_y*t235 + e1_z*t236)
+                t238 = t191*(e2_x*t234 + e2_y*t235 + e2_z*t236)
+                t239 = t196*(e3_x*t234 + e3_y*t235 + e3_z*t236)
+                t240 = -Oma_y*t227 + Oma_z*t224 + t198*t231 + t219*t232 + t220*t233
+                t241 = Oma_x*t227 - Oma_z*t221 + t200*t231 + t222*t232 + t223*t233
+                t242 = -Oma_x*t224 + Oma_y*t221 + t202*t231 + t225*t232 + t226*t233
+                t243 = e1_x*t240 + e1_y*t241 + e1_z*t242
+                t244 = e2_x*t240 + e2_y*t241 + e2_z*t242
+                t245 = e3_x*t240 + e3_y*t241 + e3_z*t242
+                t246 = 2*Ra_yx
+                t247 = 2*Ra_yy
+                t248 = 2*Ra_yz
+                t249 = e1_x*t246 + e1_y*t247 + e1_z*t248
+                t250 = -t249
+                t251 = t186*t250
+                t252 = e2_x*t246 + e2_y*t247 + e2_z*t248
+                t253 = -t252
+                t254 = t191*t253
+                t255 = e3_x*t246 + e3_y*t247 + e3_z*t248
+                t256 = -t255
+                t257 = t196*t256
+                t258 = 2*t219
+                t259 = 2*t222
+                t260 = 2*t225
+                t261 = e1_x*t258 + e1_y*t259 + e1_z*t260
+                t262 = -t261
+                t263 = e2_x*t258 + e2_y*t259 + e2_z*t260
+                t264 = -t263
+                t265 = e3_x*t258 + e3_y*t259 + e3_z*t260
+                t266 = -t265
+                t267 = 2*Ra_zx
+                t268 = 2*Ra_zy
+                t269 = 2*Ra_zz
+                t270 = e1_x*t267 + e1_y*t268 + e1_z*t269
+                t271 = -t270
+                t272 = t186*t271
+                t273 = e2_x*t267 + e2_y*t268 + e2_z*t269
+                t274 = -t273
+                t275 = t191*t274
+                t276 = e3_x*t267 + e3_y*t268 + e3_z*t269
+                t277 = -t276
+                t278 = t196*t277
+                t279 = 2*t220
+                t280 = 2*t223
+                t281 = 2*t226
+                t282 = e1_x*t279 + e1_y*t280 + e1_z*t281
+                t283 = -t282
+                t284 = e2_x*t279 + e2_y*t280 + e2_z*t281
+                t285 = -t284
+                t286 = e3_x*t279 + e3_y*t280 + e3_z*t281
+                t287 = -t286
+                t288 = t184*t186
+                t289 = t189*t191
+                t290 = t194*t196
+                t291 = t186*t249
+                t292 = t191*t252
+                t293 = t196*t255
+                t294 = t186*t270
+                t295 = t191*t273
+                t296 = t196*t276
+                t297 = Ra_xx*Rb_xx
+                t298 = Ra_yx*Rb_yx
+                t299 = Ra_zx*Rb_zx
+                t300 = t297 + t298 + t299
+                t301 = Ra_xx*Rb_xy
+                t302 = Ra_yx*Rb_yy
+                t303 = Ra_zx*Rb_zy
+                t304 = t301 + t302 + t303
+                t305 = Ra_xx*Rb_xz
+                t306 = Ra_yx*Rb_yz
+                t307 = Ra_zx*Rb_zz
+                t308 = t305 + t306 + t307
+                t309 = t300*uthb_x + t304*uthb_y + t308*uthb_z - utha_x
+                t310 = Ra_xy*Rb_xx
+                t311 = Ra_yy*Rb_yx
+                t312 = Ra_zy*Rb_zx
+                t313 = t310 + t311 + t312
+                t314 = Ra_xy*Rb_xy
+                t315 = Ra_yy*Rb_yy
+                t316 = Ra_zy*Rb_zy
+                t317 = t314 + t315 + t316
+                t318 = Ra_xy*Rb_xz
+                t319 = Ra_yy*Rb_yz
+                t320 = Ra_zy*Rb_zz
+                t321 = t318 + t319 + t320
+                t322 = t313*uthb_x + t317*uthb_y + t321*uthb_z - utha_y
+                t323 = Ra_xz*Rb_xx
+                t324 = Ra_yz*Rb_yx
+                t325 = Ra_zz*Rb_zx
+                t326 = t323 + t324 + t325
+                t327 = Ra_xz*Rb_xy
+                t328 = Ra_yz*Rb_yy
+                t329 = Ra_zz*Rb_zy
+                t330 = t327 + t328 + t329
+                t331 = Ra_xz*Rb_xz
+                t332 = Ra_yz*Rb_yz
+                t333 = Ra_zz*Rb_zz
+                t334 = t331 + t332 + t333
+                t335 = t326*uthb_x + t330*uthb_y + t334*uthb_z - utha_z
+                t336 = e1_x*t309 + e1_y*t322 + e1_z*t335
+                t337 = ct_x*e1_x
+                t338 = e2_x*t309 + e2_y*t322 + e2_z*t335
+                t339 = ct_y*e2_x
+                t340 = e3_x*t309 + e3_y*t322 + e3_z*t335
+                t341 = ct_z*e3_x
+                t342 = 2*t175
+                t343 = -2*t174
+                t344 = e1_y*t342 + e1_z*t343
+                t345 = t186*t344
+                t346 = e2_y*t342 + e2_z*t343
+                t347 = t191*t346
+                t348 = e3_y*t342 + e3_z*t343
+                t349 = t196*t348
+                t350 = 2*t227
+                t351 = -2*t224
+                t352 = e1_y*t350 + e1_z*t351
+                t353 = e2_y*t350 + e2_z*t351
+                t354 = e3_y*t350 + e3_z*t351
+                t355 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t356 = Ra_xy*t355
+                t357 = (0.5)*t356
+                t358 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t359 = Ra_yy*t358
+                t360 = (0.5)*t359
+                t361 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t362 = Ra_zy*t361
+                t363 = (0.5)*t362
+                t364 = Rb_xx*t200
+                t365 = (0.5)*t364
+                t366 = Rb_yx*t222
+                t367 = (0.5)*t366
+                t368 = Rb_zx*t223
+                t369 = (0.5)*t368
+                t370 = t357 + t360 + t363 + t365 + t367 + t369
+                t371 = 2*e1_y
+                t372 = Ra_xz*t355
+                t373 = (0.5)*t372
+                t374 = Ra_yz*t358
+                t375 = (0.5)*t374
+                t376 = Ra_zz*t361
+                t377 = (0.5)*t376
+                t378 = Rb_xx*t202
+                t379 = (0.5)*t378
+                t380 = Rb_yx*t225
+                t381 = (0.5)*t380
+                t382 = Rb_zx*t226
+                t383 = (0.5)*t382
+                t384 = t373 + t375 + t377 + t379 + t381 + t383
+                t385 = 2*e1_z
+                t386 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t387 = Ra_xz*t386
+                t388 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t389 = Ra_yz*t388
+                t390 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t391 = Ra_zz*t390
+                t392 = Rb_xz*t202
+                t393 = Rb_yz*t225
+                t394 = Rb_zz*t226
+                t395 = (0.5)*t387 + (0.5)*t389 + (0.5)*t391 + (0.5)*t392 + (0.5)*t393 + (0.5)*t394
+                t396 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t397 = Ra_xy*t396
+                t398 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t399 = Ra_yy*t398
+                t400 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t401 = Ra_zy*t400
+                t402 = Rb_xy*t200
+                t403 = Rb_yy*t222
+                t404 = Rb_zy*t223
+                t405 = (0.5)*t397 + (0.5)*t399 + (0.5)*t401 + (0.5)*t402 + (0.5)*t403 + (0.5)*t404
+                t406 = t395 + t405
+                t407 = -t406
+                t408 = 2*e1_x
+                t409 = (0.5)*t327
+                t410 = (0.5)*t328
+                t411 = (0.5)*t329
+                t412 = (0.5)*t318 + (0.5)*t319 + (0.5)*t320
+                t413 = t409 + t410 + t411 - t412
+                t414 = (0.5)*t323
+                t415 = (0.5)*t324
+                t416 = (0.5)*t325
+                t417 = (0.5)*t305 + (0.5)*t306 + (0.5)*t307
+                t418 = -t414 - t415 - t416 + t417
+                t419 = (0.5)*t310
+                t420 = (0.5)*t311
+                t421 = (0.5)*t312
+                t422 = (0.5)*t301 + (0.5)*t302 + (0.5)*t303
+                t423 = t419 + t420 + t421 - t422
+                t424 = (0.5)*kt_x
+                t425 = t424*(e1_x*t413 + e1_y*t418 + e1_z*t423)
+                t426 = 2*e2_y
+                t427 = 2*e2_z
+                t428 = 2*e2_x
+                t429 = (0.5)*kt_y
+                t430 = t429*(e2_x*t413 + e2_y*t418 + e2_z*t423)
+                t431 = 2*e3_y
+                t432 = 2*e3_z
+                t433 = 2*e3_x
+                t434 = (0.5)*kt_z
+                t435 = t434*(e3_x*t413 + e3_y*t418 + e3_z*t423)
+                t436 = t419 + t420 + t421
+                t437 = t414 + t415 + t416
+                t438 = (0.5)*t331 + (0.5)*t332 + (0.5)*t333
+                t439 = (0.5)*t314 + (0.5)*t315 + (0.5)*t316
+                t440 = t438 + t439
+                t441 = -t440
+                t442 = Ra_xz*t396
+                t443 = (0.5)*t442
+                t444 = Ra_yz*t398
+                t445 = (0.5)*t444
+                t446 = Ra_zz*t400
+                t447 = (0.5)*t446
+                t448 = Rb_xy*t202
+                t449 = (0.5)*t448
+                t450 = Rb_yy*t225
+                t451 = (0.5)*t450
+                t452 = Rb_zy*t226
+                t453 = (0.5)*t452
+                t454 = Ra_xy*t386
+                t455 = Ra_yy*t388
+                t456 = Ra_zy*t390
+                t457 = Rb_xz*t200
+                t458 = Rb_yz*t222
+                t459 = Rb_zz*t223
+                t460 = (0.5)*t454 + (0.5)*t455 + (0.5)*t456 + (0.5)*t457 + (0.5)*t458 + (0.5)*t459
+                t461 = t443 + t445 + t447 + t449 + t451 + t453 - t460
+                t462 = Ra_xx*t386
+                t463 = Ra_yx*t388
+                t464 = Ra_zx*t390
+                t465 = Rb_xz*t198
+                t466 = Rb_yz*t219
+                t467 = Rb_zz*t220
+                t468 = (0.5)*t462 + (0.5)*t463 + (0.5)*t464 + (0.5)*t465 + (0.5)*t466 + (0.5)*t467
+                t469 = -t373 - t375 - t377 - t379 - t381 - t383 + t468
+                t470 = Ra_xx*t396
+                t471 = Ra_yx*t398
+                t472 = Ra_zx*t400
+                t473 = Rb_xy*t198
+                t474 = Rb_yy*t219
+                t475 = Rb_zy*t220
+                t476 = (0.5)*t470 + (0.5)*t471 + (0.5)*t472 + (0.5)*t473 + (0.5)*t474 + (0.5)*t475
+                t477 = t357 + t360 + t363 + t365 + t367 + t369 - t476
+                t478 = t424*(e1_x*t461 + e1_y*t469 + e1_z*t477)
+                t479 = t429*(e2_x*t461 + e2_y*t469 + e2_z*t477)
+                t480 = t434*(e3_x*t461 + e3_y*t469 + e3_z*t477)
+                t481 = Ra_xx*t355
+                t482 = Ra_yx*t358
+                t483 = Ra_zx*t361
+                t484 = Rb_xx*t198
+                t485 = Rb_yx*t219
+                t486 = Rb_zx*t220
+                t487 = t481 + t482 + t483 + t484 + t485 + t486
+                t488 = t470 + t471 + t472 + t473 + t474 + t475
+                t489 = t462 + t463 + t464 + t465 + t466 + t467
+                t490 = Omb_x*t487 + Omb_y*t488 + Omb_z*t489
+                t491 = t356 + t359 + t362 + t364 + t366 + t368
+                t492 = t397 + t399 + t401 + t402 + t403 + t404
+                t493 = t454 + t455 + t456 + t457 + t458 + t459
+                t494 = Omb_x*t491 + Omb_y*t492 + Omb_z*t493
+                t495 = t372 + t374 + t376 + t378 + t380 + t382
+                t496 = t442 + t444 + t446 + t448 + t450 + t452
+                t497 = t387 + t389 + t391 + t392 + t393 + t394
+                t498 = Omb_x*t495 + Omb_y*t496 + Omb_z*t497
+                t499 = e1_x*t490 + e1_y*t494 + e1_z*t498
+                t500 = e2_x*t490 + e2_y*t494 + e2_z*t498
+                t501 = e3_x*t490 + e3_y*t494 + e3_z*t498
+                t502 = ct_x*e1_y
+                t503 = ct_y*e2_y
+                t504 = ct_z*e3_y
+                t505 = -t175
+                t506 = t177*t385 + t408*t505
+                t507 = t186*t506
+                t508 = t177*t427 + t428*t505
+                t509 = t191*t508
+                t510 = t177*t432 + t433*t505
+                t511 = t196*t510
+                t512 = -t227
+                t513 = t221*t385 + t408*t512
+                t514 = t221*t427 + t428*t512
+                t515 = t221*t432 + t433*t512
+                t516 = t443 + t445 + t447 + t449 + t451 + t453
+                t517 = (0.5)*t481 + (0.5)*t482 + (0.5)*t483 + (0.5)*t484 + (0.5)*t485 + (0.5)*t486
+                t518 = t395 + t517
+                t519 = -t518
+                t520 = t409 + t410 + t411
+                t521 = (0.5)*t297 + (0.5)*t298 + (0.5)*t299
+                t522 = t438 + t521
+                t523 = -t522
+                t524 = ct_x*e1_z
+                t525 = ct_y*e2_z
+                t526 = ct_z*e3_z
+                t527 = -t177
+                t528 = t174*t408 + t371*t527
+                t529 = t186*t528
+                t530 = t174*t428 + t426*t527
+                t531 = t191*t530
+                t532 = t174*t433 + t431*t527
+                t533 = t196*t532
+                t534 = -t221
+                t535 = t224*t408 + t371*t534
+                t536 = t224*t428 + t426*t534
+                t537 = t224*t433 + t431*t534
+                t538 = t405 + t517
+                t539 = -t538
+                t540 = t439 + t521
+                t541 = -t540
+                t542 = (0.5)*ct_x
+                t543 = t542*(t300*t408 + t313*t371 + t326*t385)
+                t544 = (0.5)*ct_y
+                t545 = t544*(t300*t428 + t313*t426 + t326*t427)
+                t546 = (0.5)*ct_z
+                t547 = t546*(t300*t433 + t313*t431 + t326*t432)
+                t548 = -Oma_x + Omb_x*t300 + Omb_y*t304 + Omb_z*t308
+                t549 = -Oma_y + Omb_x*t313 + Omb_y*t317 + Omb_z*t321
+                t550 = -Oma_z + Omb_x*t326 + Omb_y*t330 + Omb_z*t334
+                t551 = t542*(e1_x*t548 + e1_y*t549 + e1_z*t550)
+                t552 = t544*(e2_x*t548 + e2_y*t549 + e2_z*t550)
+                t553 = t546*(e3_x*t548 + e3_y*t549 + e3_z*t550)
+                t554 = -t476
+                t555 = -t468
+                t556 = -t422
+                t557 = -t417
+                t558 = t542*(t304*t408 + t317*t371 + t330*t385)
+                t559 = t544*(t304*t428 + t317*t426 + t330*t427)
+                t560 = t546*(t304*t433 + t317*t431 + t330*t432)
+                t561 = -t370
+                t562 = -t460
+                t563 = -t436
+                t564 = -t412
+                t565 = t542*(t308*t408 + t321*t371 + t334*t385)
+                t566 = t544*(t308*t428 + t321*t426 + t334*t427)
+                t567 = t546*(t308*t433 + t321*t431 + t334*t432)
+                t568 = -t384
+                t569 = -t516
+                t570 = -t437
+                t571 = -t520
+                J[column] = (c_damping*(t180*t187 + t188*t192 + t193*t197) +
+                    c_stiffness*(t185*t228 + t187*t243 + t190*t229 + t192*t244 + t195*t230 +
+                    t197*t245 + t205*t207 + t205*t237 + t209*t211 + t209*t238 + t213*t215 +
+                    t213*t239))
+                J[12 + column] = (c_damping*(t180*t251 + t188*t254 + t193*t257) +
+                    c_stiffness*(t207*t262 + t211*t264 + t215*t266 + t228*t250 + t229*t253 +
+                    t230*t256 + t237*t262 + t238*t264 + t239*t266 + t243*t251 + t244*t254 +
+                    t245*t257))
+                J[24 + column] = (c_damping*(t180*t272 + t188*t275 + t193*t278) +
+                    c_stiffness*(t207*t283 + t211*t285 + t215*t287 + t228*t271 + t229*t274 +
+                    t230*t277 + t237*t283 + t238*t285 + t239*t287 + t243*t272 + t244*t275 +
+                    t245*t278))
+                J[36 + column] = (c_damping*(t180*t288 + t188*t289 + t193*t290) +
+                    c_stiffness*(t184*t228 + t189*t229 + t194*t230 + t204*t207 + t204*t237 +
+                    t208*t211 + t208*t238 + t212*t215 + t212*t239 + t243*t288 + t244*t289 +
+                    t245*t290))
+                J[48 + column] = (c_damping*(t180*t291 + t188*t292 + t193*t293) +
+                    c_stiffness*(t207*t261 + t211*t263 + t215*t265 + t228*t249 + t229*t252 +
+                    t230*t255 + t237*t261 + t238*t263 + t239*t265 + t243*t291 + t244*t292 +
+                    t245*t293))
+                J[60 + column] = (c_damping*(t180*t294 + t188*t295 + t193*t296) +
+                    c_stiffness*(t207*t282 + t211*t284 + t215*t286 + t228*t270 + t229*t273 +
+                    t230*t276 + t237*t282 + t238*t284 + t239*t286 + t243*t294 + t244*t295 +
+                    t245*t296))
+                J[72 + column] = (c_damping*(t180*t345 + t188*t347 + t193*t349 - t336*t337 -
+                    t338*t339 - t340*t341) + c_stiffness*(t207*t352 + t211*t353 + t215*t354 +
+                    t228*t344 + t229*t346 + t230*t348 + t237*t352 + t238*t353 + t239*t354 +
+                    t243*t345 + t244*t347 + t245*t349 - t337*t499 - t339*t500 - t341*t501 +
+                    t425*(t370*t371 + t384*t385 + t407*t408) + t430*(t370*t426 + t384*t427 +
+                    t407*t428) + t435*(t370*t431 + t384*t432 + t407*t433) + t478*(t371*t436 +
+                    t385*t437 + t408*t441) + t479*(t426*t436 + t427*t437 + t428*t441) +
+                    t480*(t431*t436 + t432*t437 + t433*t441)))
+                J[84 + column] = (c_damping*(t180*t507 + t188*t509 + t193*t511 - t336*t502 -
+                    t338*t503 - t340*t504) + c_stiffness*(t207*t513 + t211*t514 + t215*t515 +
+                    t228*t506 + t229*t508 + t230*t510 + t237*t513 + t238*t514 + t239*t515 +
+                    t243*t507 + t244*t509 + t245*t511 + t425*(t371*t519 + t385*t516 + t408*t476) +
+                    t430*(t426*t519 + t427*t516 + t428*t476) + t435*(t431*t519 + t432*t516 +
+                    t433*t476) + t478*(t371*t523 + t385*t520 + t408*t422) + t479*(t422*t428 +
+                    t426*t523 + t427*t520) + t480*(t422*t433 + t431*t523 + t432*t520) - t499*t502
+                    - t500*t503 - t501*t504))
+                J[96 + column] = (c_damping*(t180*t529 + t188*t531 + t193*t533 - t336*t524 -
+                    t338*t525 - t340*t526) + c_stiffness*(t207*t535 + t211*t536 + t215*t537 +
+                    t228*t528 + t229*t530 + t230*t532 + t237*t535 + t238*t536 + t239*t537 +
+                    t243*t529 + t244*t531 + t245*t533 + t425*(t371*t460 + t385*t539 + t408*t468) +
+                    t430*(t426*t460 + t427*t539 + t428*t468) + t435*(t431*t460 + t432*t539 +
+                    t433*t468) + t478*(t371*t412 + t385*t541 + t408*t417) + t479*(t412*t426 +
+                    t417*t428 + t427*t541) + t480*(t412*t431 + t417*t433 + t432*t541) - t499*t524
+                    - t500*t525 - t501*t526))
+                J[108 + column] = (c_damping*(t336*t543 + t338*t545 + t340*t547) +
+                    c_stiffness*(t425*(t371*t554 + t385*t555 + t406*t408) + t430*(t406*t428 +
+                    t426*t554 + t427*t555) + t435*(t406*t433 + t431*t554 + t432*t555) +
+                    t478*(t371*t556 + t385*t557 + t408*t440) + t479*(t426*t556 + t427*t557 +
+                    t428*t440) + t480*(t431*t556 + t432*t557 + t433*t440) + t499*t543 + t500*t545
+                    + t501*t547 + t551*(t371*t491 + t385*t495 + t408*t487) + t552*(t426*t491 +
+                    t427*t495 + t428*t487) + t553*(t431*t491 + t432*t495 + t433*t487)))
+                J[120 + column] = (c_damping*(t336*t558 + t338*t559 + t340*t560) +
+                    c_stiffness*(t425*(t371*t518 + t385*t562 + t408*t561) + t430*(t426*t518 +
+                    t427*t562 + t428*t561) + t435*(t431*t518 + t432*t562 + t433*t561) +
+                    t478*(t371*t522 + t385*t564 + t408*t563) + t479*(t426*t522 + t427*t564 +
+                    t428*t563) + t480*(t431*t522 + t432*t564 + t433*t563) + t499*t558 + t500*t559
+                    + t501*t560 + t551*(t371*t492 + t385*t496 + t408*t488) + t552*(t426*t492 +
+                    t427*t496 + t428*t488) + t553*(t431*t492 + t432*t496 + t433*t488)))
+                J[132 + column] = (c_damping*(t336*t565 + t338*t566 + t340*t567) +
+                    c_stiffness*(t425*(t371*t569 + t385*t538 + t408*t568) + t430*(t426*t569 +
+                    t427*t538 + t428*t568) + t435*(t431*t569 + t432*t538 + t433*t568) +
+                    t478*(t371*t571 + t385*t540 + t408*t570) + t479*(t426*t571 + t427*t540 +
+                    t428*t570) + t480*(t431*t571 + t432*t540 + t433*t570) + t499*t565 + t500*t566
+                    + t501*t567 + t551*(t371*t493 + t385*t497 + t408*t489) + t552*(t426*t493 +
+                    t427*t497 + t428*t489) + t553*(t431*t493 + t432*t497 + t433*t489)))
     return OK

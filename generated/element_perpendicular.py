@@ -30,6 +30,7 @@ CONSTANTS = (
 )
 MULTIPLIERS = 1
 WIDTH = 7
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time

@@ -33,15 +33,18 @@ CONSTANTS = (
     Part("c", (2,), "damping along each axis"),
     Part("kt", (1,), "stiffness about each axis"),
     Part("ct", (1,), "damping about each axis"),
+    Part("e1", (2,), "direction of an axis, in axes of body a"),
+    Part("e2", (2,), "direction of an axis, in axes of body a"),
 )
 MULTIPLIERS = 0
 WIDTH = 6
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (63, 0, 0, 0),
-              "column": (194, 0, 0, 0)}
+OPERATIONS = {"residual": (123, 0, 0, 0),
+              "column": (286, 0, 0, 0)}
 
 
 @kernel_function
@@ -59,6 +62,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c_y = constant[3]
         kt_z = constant[4]
         ct_z = constant[5]
+        e1_x = constant[6]
+        e1_y = constant[7]
+        e2_x = constant[8]
+        e2_y = constant[9]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -73,59 +80,105 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Oma_z = v[unknowns[4]]
         thb = q[unknowns[5]]
         Omb_z = v[unknowns[5]]
-        t0 = -xa_x + xb_x
-        t1 = Ra_cos*t0
-        t2 = -xa_y + xb_y
-        t3 = Ra_sin*t2
-        t4 = t1 + t3
-        t5 = k_x*t4
-        t6 = Ra_cos*t2
-        t7 = Ra_sin*t0
-        t8 = t6 - t7
-        t9 = -va_x + vb_x
-        t10 = -va_y + vb_y
-        t11 = c_x*(Oma_z*t8 + Ra_cos*t9 + Ra_sin*t10)
-        t12 = -Oma_z*t4 + Ra_cos*t10 - Ra_sin*t9
-        t13 = Ra_cos*t11 + Ra_cos*t5 - Ra_sin*c_y*t12 - Ra_sin*k_y*t8
-        t14 = k_y*t8
-        t15 = c_y*t12
-        t16 = Ra_cos*t14 + Ra_cos*t15 + Ra_sin*t11 + Ra_sin*t5
-        t17 = kt_z*(-tha + thb)
-        t18 = 2*Oma_z - 2*Omb_z
-        t19 = (0.5)*ct_z
-        t20 = t6 - t7
-        t21 = -t1 - t3
-        g[0] = -t13
-        g[1] = -t16
-        g[2] = t13
-        g[3] = t16
-        g[4] = t11*t20 + t14*t21 + t15*t21 - t17 + t18*t19 + t20*t5
-        g[5] = t17 - t18*t19
+        t0 = 2*Ra_cos
+        t1 = -2*Ra_sin*e1_y + e1_x*t0
+        t2 = -0.5*t1
+        t3 = -xa_x + xb_x
+        t4 = -xa_y + xb_y
+        t5 = Ra_cos*t3 + Ra_sin*t4
+        t6 = Ra_cos*t4 - Ra_sin*t3
+        t7 = k_x*(e1_x*t5 + e1_y*t6)
+        t8 = -2*Ra_sin*e2_y + e2_x*t0
+        t9 = -0.5*t8
+        t10 = k_y*(e2_x*t5 + e2_y*t6)
+        t11 = -va_x + vb_x
+        t12 = -va_y + vb_y
+        t13 = Oma_z*t6 + Ra_cos*t11 + Ra_sin*t12
+        t14 = -Oma_z*t5 + Ra_cos*t12 - Ra_sin*t11
+        t15 = c_x*(e1_x*t13 + e1_y*t14)
+        t16 = c_y*(e2_x*t13 + e2_y*t14)
+        t17 = 2*Ra_sin
+        t18 = e1_x*t17 + e1_y*t0
+        t19 = -0.5*t18
+        t20 = e2_x*t17 + e2_y*t0
+        t21 = -0.5*t20
+        t22 = (0.5)*t1
+        t23 = (0.5)*t8
+        t24 = (0.5)*t18
+        t25 = (0.5)*t20
+        t26 = kt_z*(-tha + thb)
+        t27 = 2*Oma_z - 2*Omb_z
+        t28 = (0.5)*ct_z
+        t29 = 2*t6
+        t30 = -2*t5
+        t31 = (0.5)*e1_x*t29 + (0.5)*e1_y*t30
+        t32 = (0.5)*e2_x*t29 + (0.5)*e2_y*t30
+        g[0] = t10*t9 + t15*t2 + t16*t9 + t2*t7
+        g[1] = t10*t21 + t15*t19 + t16*t21 + t19*t7
+        g[2] = t10*t23 + t15*t22 + t16*t23 + t22*t7
+        g[3] = t10*t25 + t15*t24 + t16*t25 + t24*t7
+        g[4] = t10*t32 + t15*t31 + t16*t32 - t26 + t27*t28 + t31*t7
+        g[5] = t26 - t27*t28
         if task == ENERGY:
             t900 = -xa_x + xb_x
             t901 = -xa_y + xb_y
-            energies[STRAIN] += ((0.5)*k_x*(Ra_cos*t900 + Ra_sin*t901)*(Ra_cos*t900 + Ra_sin*t901)
-                + (0.5)*k_y*(Ra_cos*t901 - Ra_sin*t900)*(Ra_cos*t901 - Ra_sin*t900) +
-                (0.5)*kt_z*(-tha + thb)*(-tha + thb))
+            t902 = Ra_cos*t900 + Ra_sin*t901
+            t903 = Ra_cos*t901 - Ra_sin*t900
+            energies[STRAIN] += ((0.5)*k_x*(e1_x*t902 + e1_y*t903)*(e1_x*t902 + e1_y*t903) +
+                (0.5)*k_y*(e2_x*t902 + e2_y*t903)*(e2_x*t902 + e2_y*t903) + (0.5)*kt_z*(-tha +
+                thb)*(-tha + thb))
         if task == ENERGY:
             t900 = 2*Oma_z - 2*Omb_z
             t901 = (0.5)*ct_z
+            t902 = 2*Ra_cos
+            t903 = -2*Ra_sin*e1_y + e1_x*t902
+            t904 = -va_x + vb_x
+            t905 = -va_y + vb_y
+            t906 = -xa_y + xb_y
+            t907 = -xa_x + xb_x
+            t908 = Ra_cos*t906 - Ra_sin*t907
+            t909 = Oma_z*t908 + Ra_cos*t904 + Ra_sin*t905
+            t910 = Ra_cos*t907 + Ra_sin*t906
+            t911 = -Oma_z*t910 + Ra_cos*t905 - Ra_sin*t904
+            t912 = (0.5)*c_x*(e1_x*t909 + e1_y*t911)
+            t913 = -2*Ra_sin*e2_y + e2_x*t902
+            t914 = (0.5)*c_y*(e2_x*t909 + e2_y*t911)
+            t915 = 2*Ra_sin
+            t916 = e1_x*t915 + e1_y*t902
+            t917 = e2_x*t915 + e2_y*t902
+            t918 = 2*t908
+            t919 = -2*t910
+            energies[POWERS + index[first + AT_PORT]] = (-Oma_z*(t900*t901 + t912*(e1_x*t918 +
+                e1_y*t919) + t914*(e2_x*t918 + e2_y*t919)) + Omb_z*t900*t901 - va_x*(-t903*t912 -
+                t913*t914) - va_y*(-t912*t916 - t914*t917) - vb_x*(t903*t912 + t913*t914) -
+                vb_y*(t912*t916 + t914*t917))
+        if task == ENERGY:
+            t900 = 2*Ra_cos
+            t901 = -2*Ra_sin*e1_y + e1_x*t900
             t902 = -va_x + vb_x
             t903 = -va_y + vb_y
             t904 = -xa_y + xb_y
-            t905 = Ra_cos*t904
-            t906 = -xa_x + xb_x
-            t907 = Ra_sin*t906
-            t908 = c_x*(Oma_z*(t905 - t907) + Ra_cos*t902 + Ra_sin*t903)
-            t909 = Ra_cos*t906
-            t910 = Ra_sin*t904
-            t911 = -Oma_z*(t909 + t910) + Ra_cos*t903 - Ra_sin*t902
-            t912 = c_y*t911
-            t913 = Ra_cos*t912 + Ra_sin*t908
-            t914 = Ra_cos*t908 - Ra_sin*c_y*t911
-            energies[POWERS + index[first + AT_PORT]] = (-Oma_z*(t900*t901 + (0.5)*t908*(2*t905 -
-                2*t907) + (0.5)*t912*(-2*t909 - 2*t910)) + Omb_z*t900*t901 + t913*va_y - t913*vb_y
-                + t914*va_x - t914*vb_x)
+            t905 = -xa_x + xb_x
+            t906 = Ra_cos*t904 - Ra_sin*t905
+            t907 = Oma_z*t906 + Ra_cos*t902 + Ra_sin*t903
+            t908 = Ra_cos*t905 + Ra_sin*t904
+            t909 = -Oma_z*t908 + Ra_cos*t903 - Ra_sin*t902
+            t910 = (0.5)*c_x*(e1_x*t907 + e1_y*t909)
+            t911 = -2*Ra_sin*e2_y + e2_x*t900
+            t912 = (0.5)*c_y*(e2_x*t907 + e2_y*t909)
+            t913 = 2*Ra_sin
+            t914 = e1_x*t913 + e1_y*t900
+            t915 = e2_x*t913 + e2_y*t900
+            t916 = 2*Oma_z - 2*Omb_z
+            t917 = (0.5)*ct_z
+            t918 = 2*t906
+            t919 = -2*t908
+            g[0] = -t901*t910 - t911*t912
+            g[1] = -t910*t914 - t912*t915
+            g[2] = t901*t910 + t911*t912
+            g[3] = t910*t914 + t912*t915
+            g[4] = t910*(e1_x*t918 + e1_y*t919) + t912*(e2_x*t918 + e2_y*t919) + t916*t917
+            g[5] = -t916*t917
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]
@@ -150,69 +203,100 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_y = du[3]
                 utha_z = du[4]
                 uthb_z = du[5]
-                t22 = -uxa_x + uxb_x
-                t23 = -uxa_y + uxb_y
-                t24 = -xa_y + xb_y
-                t25 = Ra_cos*t24
-                t26 = -xa_x + xb_x
-                t27 = Ra_sin*t26
-                t28 = t25 - t27
-                t29 = Ra_cos*t22 + Ra_sin*t23 + t28*utha_z
-                t30 = Ra_cos*c_x
-                t31 = Ra_cos*t26
-                t32 = Ra_sin*t24
-                t33 = t31 + t32
-                t34 = Ra_cos*t23 - Ra_sin*t22 - t33*utha_z
-                t35 = -Ra_sin*c_y*t34 + t29*t30
-                t36 = k_x*t33
-                t37 = Ra_cos*dtha_z
-                t38 = k_y*t28
-                t39 = -dxa_x + dxb_x
-                t40 = Ra_cos*t39
-                t41 = -dxa_y + dxb_y
-                t42 = Ra_sin*t41
-                t43 = dtha_z*t25
-                t44 = -dtha_z*t27 + t40 + t42 + t43
-                t45 = k_x*t44
-                t46 = Ra_sin*t39
-                t47 = dtha_z*t31
-                t48 = dtha_z*t32
-                t49 = Ra_cos*t41 - t46 - t47 - t48
-                t50 = k_y*t49
-                t51 = Ra_sin*c_x
-                t52 = -va_x + vb_x
-                t53 = Ra_cos*t52
-                t54 = -va_y + vb_y
-                t55 = Ra_sin*t54
-                t56 = Oma_z*t28 + t53 + t55
-                t57 = dtha_z*t56
-                t58 = Ra_cos*c_y
-                t59 = Ra_sin*t52
-                t60 = -Oma_z*t33 + Ra_cos*t54 - t59
-                t61 = -Oma_z*t44 - dtha_z*t53 - dtha_z*t55
-                t62 = Oma_z*t49 + Ra_cos*dtha_z*t54 - dtha_z*t59
-                t63 = (-Ra_cos*t45 + Ra_sin*c_y*t61 + Ra_sin*dtha_z*t36 + Ra_sin*t50 +
-                    dtha_z*t58*t60 - t30*t62 + t37*t38 + t51*t57)
-                t64 = t29*t51 + t34*t58
-                t65 = (Ra_cos*t50 - Ra_sin*c_y*dtha_z*t60 - Ra_sin*dtha_z*k_y*t28 + Ra_sin*t45 +
-                    t30*t57 + t36*t37 + t51*t62 + t58*t61)
-                t66 = 2*utha_z - 2*uthb_z
-                t67 = (0.5)*ct_z
-                t68 = 2*t25 - 2*t27
-                t69 = (0.5)*c_x
-                t70 = t68*t69
-                t71 = -2*t31 - 2*t32
-                t72 = (0.5)*c_y
-                t73 = t71*t72
-                t74 = kt_z*(-dtha_z + dthb_z)
-                t75 = 2*Ra_cos*t41 - 2*t46 - 2*t47 - 2*t48
-                t76 = 2*Ra_sin*dtha_z*t26 - 2*t40 - 2*t42 - 2*t43
-                J[column] = -c_damping*t35 + c_stiffness*t63
-                J[6 + column] = -c_damping*t64 - c_stiffness*t65
-                J[12 + column] = c_damping*t35 - c_stiffness*t63
-                J[18 + column] = c_damping*t64 + c_stiffness*t65
-                J[24 + column] = (c_damping*(t29*t70 + t34*t73 + t66*t67) +
-                    c_stiffness*((0.5)*t36*t75 + (0.5)*t38*t76 + (0.5)*t45*t68 + (0.5)*t50*t71 +
-                    t56*t69*t75 + t60*t72*t76 + t61*t73 + t62*t70 - t74))
-                J[30 + column] = -c_damping*t66*t67 + c_stiffness*t74
+                t33 = -uxa_x + uxb_x
+                t34 = -uxa_y + uxb_y
+                t35 = -xa_y + xb_y
+                t36 = Ra_cos*t35
+                t37 = -xa_x + xb_x
+                t38 = Ra_sin*t37
+                t39 = t36 - t38
+                t40 = Ra_cos*t33 + Ra_sin*t34 + t39*utha_z
+                t41 = Ra_cos*t37
+                t42 = Ra_sin*t35
+                t43 = t41 + t42
+                t44 = Ra_cos*t34 - Ra_sin*t33 - t43*utha_z
+                t45 = e1_x*t40 + e1_y*t44
+                t46 = 2*Ra_cos
+                t47 = e1_x*t46
+                t48 = -2*Ra_sin*e1_y + t47
+                t49 = -t48
+                t50 = (0.5)*c_x
+                t51 = t49*t50
+                t52 = e2_x*t40 + e2_y*t44
+                t53 = e2_x*t46
+                t54 = -2*Ra_sin*e2_y + t53
+                t55 = -t54
+                t56 = (0.5)*c_y
+                t57 = t55*t56
+                t58 = e1_y*t46
+                t59 = 2*Ra_sin
+                t60 = e1_x*t59
+                t61 = dtha_z*t58 + dtha_z*t60
+                t62 = (0.5)*k_x
+                t63 = t62*(e1_x*t43 + e1_y*t39)
+                t64 = e2_y*t46
+                t65 = e2_x*t59
+                t66 = dtha_z*t64 + dtha_z*t65
+                t67 = (0.5)*k_y
+                t68 = t67*(e2_x*t43 + e2_y*t39)
+                t69 = -dxa_x + dxb_x
+                t70 = -dxa_y + dxb_y
+                t71 = Ra_cos*t69 + Ra_sin*t70 + dtha_z*t36 - dtha_z*t38
+                t72 = Ra_cos*t70 - Ra_sin*t69 - dtha_z*t41 - dtha_z*t42
+                t73 = t62*(e1_x*t71 + e1_y*t72)
+                t74 = t67*(e2_x*t71 + e2_y*t72)
+                t75 = -va_x + vb_x
+                t76 = Ra_cos*t75
+                t77 = -va_y + vb_y
+                t78 = Ra_sin*t77
+                t79 = Oma_z*t39 + t76 + t78
+                t80 = Ra_sin*t75
+                t81 = -Oma_z*t43 + Ra_cos*t77 - t80
+                t82 = t50*(e1_x*t79 + e1_y*t81)
+                t83 = t56*(e2_x*t79 + e2_y*t81)
+                t84 = Oma_z*t72 + Ra_cos*dtha_z*t77 - dtha_z*t80
+                t85 = -Oma_z*t71 - dtha_z*t76 - dtha_z*t78
+                t86 = e1_x*t84 + e1_y*t85
+                t87 = e2_x*t84 + e2_y*t85
+                t88 = t58 + t60
+                t89 = -t88
+                t90 = t50*t89
+                t91 = t64 + t65
+                t92 = -t91
+                t93 = t56*t92
+                t94 = -2*Ra_sin*dtha_z*e1_y + dtha_z*t47
+                t95 = -t94
+                t96 = -2*Ra_sin*dtha_z*e2_y + dtha_z*t53
+                t97 = -t96
+                t98 = t48*t50
+                t99 = t54*t56
+                t100 = -t61
+                t101 = -t66
+                t102 = t50*t88
+                t103 = t56*t91
+                t104 = 2*utha_z - 2*uthb_z
+                t105 = (0.5)*ct_z
+                t106 = 2*t39
+                t107 = -2*t43
+                t108 = e1_x*t106 + e1_y*t107
+                t109 = t108*t50
+                t110 = e2_x*t106 + e2_y*t107
+                t111 = t110*t56
+                t112 = kt_z*(-dtha_z + dthb_z)
+                t113 = 2*t72
+                t114 = -2*t71
+                t115 = e1_x*t113 + e1_y*t114
+                t116 = e2_x*t113 + e2_y*t114
+                J[column] = (c_damping*(t45*t51 + t52*t57) + c_stiffness*(t49*t73 + t51*t86 +
+                    t55*t74 + t57*t87 + t61*t63 + t61*t82 + t66*t68 + t66*t83))
+                J[6 + column] = (c_damping*(t45*t90 + t52*t93) + c_stiffness*(t63*t95 + t68*t97 +
+                    t73*t89 + t74*t92 + t82*t95 + t83*t97 + t86*t90 + t87*t93))
+                J[12 + column] = (c_damping*(t45*t98 + t52*t99) + c_stiffness*(t100*t63 + t100*t82
+                    + t101*t68 + t101*t83 + t48*t73 + t54*t74 + t86*t98 + t87*t99))
+                J[18 + column] = (c_damping*(t102*t45 + t103*t52) + c_stiffness*(t102*t86 +
+                    t103*t87 + t63*t94 + t68*t96 + t73*t88 + t74*t91 + t82*t94 + t83*t96))
+                J[24 + column] = (c_damping*(t104*t105 + t109*t45 + t111*t52) +
+                    c_stiffness*(t108*t73 + t109*t86 + t110*t74 + t111*t87 - t112 + t115*t63 +
+                    t115*t82 + t116*t68 + t116*t83))
+                J[30 + column] = -c_damping*t104*t105 + c_stiffness*t112
     return OK

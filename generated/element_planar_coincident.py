@@ -17,6 +17,7 @@ ROTATIONS = 4      # first rotation among the local coordinates
 CONSTANTS = ()
 MULTIPLIERS = 2
 WIDTH = 6
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time

@@ -32,6 +32,7 @@ CONSTANTS = (
 )
 MULTIPLIERS = 0
 WIDTH = 2
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = True        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time

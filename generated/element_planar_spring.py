@@ -36,6 +36,7 @@ CONSTANTS = (
 )
 MULTIPLIERS = 0
 WIDTH = 4
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
@@ -97,6 +98,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t904 = 2*xa_y - 2*xb_y
             energies[POWERS + index[first + AT_PORT]] = (-t900*t903*va_x + t900*t903*vb_x -
                 t903*t904*va_y + t903*t904*vb_y)
+        if task == ENERGY:
+            t900 = 2*xa_x - 2*xb_x
+            t901 = -xa_x + xb_x
+            t902 = -xa_y + xb_y
+            t903 = (0.5)*c*(t901*(-va_x + vb_x) + t902*(-va_y + vb_y))/(t901*t901 + t902*t902)
+            t904 = 2*xa_y - 2*xb_y
+            g[0] = t900*t903
+            g[1] = t903*t904
+            g[2] = -t900*t903
+            g[3] = -t903*t904
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]

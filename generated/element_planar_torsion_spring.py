@@ -34,6 +34,7 @@ CONSTANTS = (
 )
 MULTIPLIERS = 0
 WIDTH = 2
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
@@ -71,6 +72,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t900 = 2*Oma_z - 2*Omb_z
             t901 = (0.5)*c
             energies[POWERS + index[first + AT_PORT]] = -Oma_z*t900*t901 + Omb_z*t900*t901
+        if task == ENERGY:
+            t900 = 2*Oma_z - 2*Omb_z
+            t901 = (0.5)*c
+            g[0] = t900*t901
+            g[1] = -t900*t901
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]

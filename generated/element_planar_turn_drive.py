@@ -27,6 +27,7 @@ ROTATIONS = 0      # first rotation among the local coordinates
 CONSTANTS = ()
 MULTIPLIERS = 1
 WIDTH = 3
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = True        # a constraint that depends on time

@@ -33,6 +33,7 @@ CONSTANTS = (
 )
 MULTIPLIERS = 1
 WIDTH = 10
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = True        # a constraint that depends on time

@@ -36,6 +36,7 @@ CONSTANTS = (
 )
 MULTIPLIERS = 0
 WIDTH = 6
+MEMORY = 0      # numbers it keeps from step to step
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
@@ -112,6 +113,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t906 = 2*xa_z - 2*xb_z
             energies[POWERS + index[first + AT_PORT]] = (-t900*t904*va_x + t900*t904*vb_x -
                 t904*t905*va_y + t904*t905*vb_y - t904*t906*va_z + t904*t906*vb_z)
+        if task == ENERGY:
+            t900 = 2*xa_x - 2*xb_x
+            t901 = -xa_x + xb_x
+            t902 = -xa_y + xb_y
+            t903 = -xa_z + xb_z
+            t904 = ((0.5)*c*(t901*(-va_x + vb_x) + t902*(-va_y + vb_y) + t903*(-va_z +
+                vb_z))/(t901*t901 + t902*t902 + t903*t903))
+            t905 = 2*xa_y - 2*xb_y
+            t906 = 2*xa_z - 2*xb_z
+            g[0] = t900*t904
+            g[1] = t904*t905
+            g[2] = t904*t906
+            g[3] = -t900*t904
+            g[4] = -t904*t905
+            g[5] = -t904*t906
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]

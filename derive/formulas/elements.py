@@ -10,6 +10,7 @@ with Hamel's term ``Omega x dT/dOmega`` on rotations, whose variations do not co
 """
 
 from collections.abc import Sequence
+from math import pi
 from typing import NamedTuple
 
 import sympy as sp
@@ -20,6 +21,25 @@ from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 AMPLITUDE = sp.symbols("amplitude amplitude_rate amplitude_acceleration")
+KEPT_ANGLE = sp.Symbol("kept_angle")    # of the last accepted step
+
+
+class near_angle(sp.Function):  # noqa: N801  (as functions of SymPy)
+    """An angle plus as many whole turns as bring it nearest to another one."""
+
+    nargs = 2
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Whole turns do not change."""
+        return sp.Integer(argindex == 1)
+
+
+def whole_turns(expr: sp.Expr) -> sp.Expr:
+    """An expression that is not differentiated any more, with all `near_angle` written out."""
+    expr, turn = sp.sympify(expr), sp.Float(2.0 * pi)
+    return expr.xreplace({
+        near: near.args[0] + turn * sp.floor((near.args[1] - near.args[0]) / turn + 0.5)
+        for near in expr.atoms(near_angle)})
 
 
 class Block(NamedTuple):
@@ -64,6 +84,8 @@ class Element(NamedTuple):
     second: tuple[sp.Expr, ...]         # and twice
     sums: dict[str, sp.Expr]            # what it adds to the energies, by name
     power: sp.Expr | None               # of loads, dampers and drives on the system
+    losses: tuple[sp.Expr, ...]         # force of the dampers, where that is not the whole force
+    kept: sp.Expr | None = None         # angle that is `KEPT_ANGLE` in the next step
     linear: tuple[sp.Expr, ...] = ()    # a column of the matrix
     on_multipliers: sp.Matrix = sp.zeros(0, 0)  # derivative of the force by the multipliers
 
@@ -76,7 +98,7 @@ class Element(NamedTuple):
     def printed(self) -> list[sp.Expr]:
         """Every expression the kernel evaluates, the multipliers' columns apart."""
         return [*self.residual, *self.linear, *self.velocity, *self.second, *self.sums.values(),
-                *([] if self.power is None else [self.power])]
+                *([] if self.power is None else [self.power]), *self.losses]
 
 
 def constant(space: Space, name: str, kind: str, meaning: str) -> Constant:
@@ -134,8 +156,11 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
             constants: Sequence[Constant] = (), *, constraints: Sequence[sp.Expr] = (),
             kinetic: sp.Expr = sp.S.Zero, strain: sp.Expr = sp.S.Zero,
             potential: sp.Expr = sp.S.Zero, dissipation: sp.Expr = sp.S.Zero,
-            load: sp.Expr = sp.S.Zero) -> Element:
-    """Derive an element from its scalars; `load` is virtual work, linear in the directions."""
+            load: sp.Expr = sp.S.Zero, kept: sp.Expr | None = None) -> Element:
+    """Derive an element from its scalars; `load` is virtual work, linear in the directions.
+
+    An element may keep an angle from step to step, to count its turns: see `near_angle`.
+    """
     lam = sp.symbols(f"lam_1:{len(constraints) + 1}")
     vary, time = varied(blocks), in_time(blocks)
     work = sum(f * differential(phi, vary) for f, phi in zip(lam, constraints, strict=True))
@@ -149,7 +174,9 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
         tuple(blocks), lam, (*force, *constraints), tuple(velocity),
         tuple(differential(v, time) for v in velocity),
         _sums(blocks, kinetic, strain, potential),
-        _power(blocks, lam, constraints, dissipation, load))
+        _power(blocks, lam, constraints, dissipation, load),
+        _losses(blocks, space, dissipation) if kinetic + strain + potential != 0 else (),
+        kept)
 
 
 def linearized(given: Element) -> Element:
@@ -203,6 +230,14 @@ def _sums(blocks, kinetic, strain, potential) -> dict[str, sp.Expr]:
         sums |= {f"P_{a}": linear[k] for k, a in enumerate("xyz")}
         sums |= {f"H_{a}": moment[k] for k, a in enumerate("xyz")}
     return {name: value for name, value in sums.items() if value != 0}
+
+
+def _losses(blocks, space, dissipation) -> tuple[sp.Expr, ...]:
+    """Forces of the dampers alone."""
+    if dissipation == 0:
+        return ()
+    return tuple(entry for block in blocks for entry in space.components(
+        block.direction.kind, conjugate_to(dissipation, block.rate.symbols)))
 
 
 def _power(blocks, lam, constraints, dissipation, load) -> sp.Expr | None:

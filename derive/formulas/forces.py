@@ -5,11 +5,13 @@ import sympy as sp
 from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.elements import (
     AMPLITUDE,
+    KEPT_ANGLE,
     Constant,
     Element,
     amplitude,
     constant,
     element,
+    near_angle,
     position,
     rotation,
 )
@@ -72,13 +74,14 @@ def spring(planar: bool) -> Element:
 def torsion_spring(planar: bool) -> Element:
     """Spring and damper about the axis two bodies share: ``M = k u + k3 u^3 + c u'``.
 
-    In space the angle is read from two directions, ``atan2(m_b . R n, n_b . R n)``: less than half
-    a turn from the rest angle. In a plane any angle.
+    In space the angle is read from two directions, ``atan2(m_b . R n, n_b . R n)``, with as many
+    whole turns as bring it nearest to that of the last accepted step.
     """
     space = Space(planar)
     constants = [*_stiffness(space), constant(space, "rest", "scalar", "angle at rest [rad]")]
     k, k3, c, rest = (q.symbols[0] for q in constants)
     a, b = rotation(space, "a"), rotation(space, "b")
+    kept = None
     if planar:
         angle, rate = a.angle - b.angle - rest, a.rate.symbols[2] - b.rate.symbols[2]
         vectors = []
@@ -87,28 +90,32 @@ def torsion_spring(planar: bool) -> Element:
                    constant(space, "m", "vector", "direction normal to both, body b")]
         n, m = (v.symbols for v in vectors)
         seen = b.state.symbols.T * a.state.symbols * n      # n and m: rest angle off the start
-        angle = sp.atan2(m.dot(seen), n.dot(seen))
+        kept = angle = near_angle(sp.atan2(m.dot(seen), n.dot(seen)), KEPT_ANGLE)
         e = cross(n, m)
         rate = (a.state.symbols * e).dot(a.state.symbols * a.rate.symbols
                                          - b.state.symbols * b.rate.symbols)
         angle = angle - rest
     return element("planar_" * planar + "torsion_spring", "spring and damper about an axis", space,
                    (a, b), (*constants, *vectors), strain=k * angle**2 / 2 + k3 * angle**4 / 4,
-                   dissipation=c * rate**2 / 2)
+                   dissipation=c * rate**2 / 2, kept=kept)
 
 
 def bushing(planar: bool) -> Element:
-    """Springs and dampers along and about the axes of body a.
+    """Springs and dampers along and about axes that turn with body a.
 
-    Stretch ``u = R_a^T (x_b - x_a)``, turn ``w``: the sine of the angle along its axis, from the
-    antisymmetric part of ``R_a^T R_b`` (in a plane the angle); each axis has its own coefficients.
+    Stretch ``u = E^T R_a^T (x_b - x_a)``, turn ``w``: the sine of the angle along its axis, from
+    the antisymmetric part of ``R_a^T R_b`` (in a plane the angle), along the axes E, too; each axis
+    has its own coefficients.
     """
     space = Space(planar)
+    own = [constant(space, f"e{k}", "vector", "direction of an axis, in axes of body a")
+           for k in range(1, 3 if planar else 4)]
     constants = [constant(space, "k", "vector", "stiffness along each axis"),
                  constant(space, "c", "vector", "damping along each axis"),
                  constant(space, "kt", "axial", "stiffness about each axis"),
                  constant(space, "ct", "axial", "damping about each axis")]
     k, c, kt, ct = (q.symbols for q in constants)
+    axes = [*(q.symbols for q in own), *[sp.Matrix([0, 0, 1])] * planar]
     xa, xb = position(space, "a"), position(space, "b")
     ra, rb = rotation(space, "a"), rotation(space, "b")
     Ra, Rb = ra.state.symbols, rb.state.symbols
@@ -120,9 +127,10 @@ def bushing(planar: bool) -> Element:
             sp.Matrix([Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1]]) / 2)
     spin = Q * rb.rate.symbols - ra.rate.symbols
 
-    def quadratic(coefficients, values):
-        return sum(a * b**2 for a, b in zip(coefficients, values, strict=True)) / 2
+    def quadratic(coefficients, vector):
+        return sum(a * axis.dot(vector)**2
+                   for a, axis in zip(coefficients, axes, strict=True)) / 2
     return element("planar_" * planar + "bushing", "springs and dampers along and about axes",
-                   space, (xa, xb, ra, rb), constants,
+                   space, (xa, xb, ra, rb), (*constants, *own),
                    strain=quadratic(k, stretch) + quadratic(kt, turn),
                    dissipation=quadratic(c, speed) + quadratic(ct, spin))

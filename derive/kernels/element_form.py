@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 import sympy as sp
 
 from sebody.derive.form import counts
-from sebody.derive.form.arrays import Array, pointed, scratch
+from sebody.derive.form.arrays import pointed, scratch
 from sebody.derive.form.counts import agreed
 from sebody.derive.form.kernel import Kernel, Operations
 from sebody.derive.form.statements import (
@@ -21,9 +21,9 @@ from sebody.derive.form.statements import (
     Update,
     compared,
 )
-from sebody.derive.form.whole import Number, Quotient, whole
+from sebody.derive.form.whole import Number, Quotient, Whole, whole
 from sebody.derive.formulas import arrays
-from sebody.derive.formulas.elements import AMPLITUDE, Block, Element
+from sebody.derive.formulas.elements import AMPLITUDE, KEPT_ANGLE, Block, Element, whole_turns
 from sebody.derive.kernels.arguments import ARGUMENTS
 from sebody.derive.kernels.bodies import MATRIX, port
 from sebody.kernels.names import element_name
@@ -44,7 +44,11 @@ OF_TASKS, OF_MULTIPLIERS = 900, 700
 
 def element_form(element: Element) -> Kernel:
     """The kernel as statements."""
-    residual, count = _assigned(element.residual, arrays.g)
+    kept = [] if element.kept is None else [element.kept]
+    residual, count = stored(
+        [*element.residual, *kept],
+        [*(arrays.g[k] for k in range(len(element.residual))),
+         *[ARGUMENTS["frames"][_memory()]] * len(kept)], 0)
     of_element = (
         *places(element), Point(arrays.g, ARGUMENTS["forces"].at(counts.element * counts.WIDTH)),
         *loads(element), *residual, *_tasks(element),
@@ -83,15 +87,16 @@ def _counted(expressions: Iterable[sp.Expr]) -> Operations:
                           + list(reduced)), 0, 0, 0)
 
 
-def _assigned(expressions: Sequence[sp.Expr], out: Array, start: int = 0
-              ) -> tuple[list[Statement], int]:
-    """Expressions in an array, and the number of the next temporary."""
-    return stored(expressions, [out[k] for k in range(len(expressions))], start)
+def _memory() -> Whole:
+    """Place of the number that an element keeps from step to step."""
+    return ARGUMENTS["index"][counts.first + agreed("AT_FRAME")]
 
 
 def stored(expressions: Iterable[sp.Expr], targets: Sequence[Target], start: int,
-            change: Change | None = None) -> tuple[list[Statement], int]:
-    temporaries, reduced = sp.cse(list(expressions), sp.numbered_symbols("t", start=start),
+           change: Change | None = None) -> tuple[list[Statement], int]:
+    """Values in targets, and the number of the next temporary."""
+    temporaries, reduced = sp.cse(map(whole_turns, expressions),
+                                  sp.numbered_symbols("t", start=start),
                                   order="canonical")
     found: list[Statement] = [Set((name,), (value,)) for name, value in temporaries]
     found += [Update(target, change, value) if change else Set((target,), (value,))
@@ -109,7 +114,7 @@ def _task(name: str, expressions: Sequence[sp.Expr], targets: Sequence[Target],
 
 
 def _tasks(element: Element) -> list[If]:
-    """Constraints differentiated in time, energies, power."""
+    """Constraints differentiated in time; energies, power, and the forces that have this power."""
     energies = ARGUMENTS["energies"]
     constraints = [arrays.g[element.coordinates + k] for k in range(len(element.multipliers))]
     sums = [energies[agreed(place) + k] for place, k in (SUMS[name] for name in element.sums)]
@@ -117,7 +122,8 @@ def _tasks(element: Element) -> list[If]:
     return [*_task("VELOCITY", element.velocity, constraints),
             *_task("ACCELERATION", element.second, constraints),
             *_task("ENERGY", list(element.sums.values()), sums, Change.ADD),
-            *_task("ENERGY", power, [energies[port()]])]
+            *_task("ENERGY", power, [energies[port()]]),
+            *_task("ENERGY", element.losses, [arrays.g[k] for k in range(len(element.losses))])]
 
 
 def used_symbols(expressions: Iterable[sp.Expr]) -> set[sp.Symbol]:
@@ -144,6 +150,7 @@ def loads(element: Element) -> list[Statement]:
         matrix += block.rotational
     found += [(s, q[arrays.unknowns[element.coordinates + k]])
               for k, s in enumerate(element.multipliers)]
+    found += [(KEPT_ANGLE, ARGUMENTS["references"][_memory()])] * (KEPT_ANGLE in used)
     amplitudes = 3 * ARGUMENTS["index"][counts.first + agreed("AT_PORT")]
     found += [(s, ARGUMENTS["loads"][amplitudes + k]) for k, s in enumerate(AMPLITUDE) if s in used]
     return [Set((s,), (value,)) for s, value in found]

@@ -9,9 +9,10 @@ from sebody import inputs
 from sebody.analysis.progress import showing
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance, given
-from sebody.assembly.numbering import rotational
+from sebody.assembly.numbering import placed, rotational
 from sebody.engine.state import Scheme
 from sebody.errors import Interrupted, LimitWarning, SimulationError
+from sebody.model.extent import extent
 from sebody.model.model import Model
 from sebody.results.result import Result
 
@@ -25,7 +26,8 @@ HOPELESS = 0.5      # two refinements must reduce the difference of runs by this
 
 def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance | None = None,
                     scheme: Scheme | None = None,
-                    progress: Callable[[float], None] | bool | None = None) -> Result:
+                    progress: Callable[[float], None] | bool | None = None,
+                    start: Result | None = None) -> Result:
     """Run a model so that its error in time is within a tolerance; steps are chosen.
 
     The run is repeated with a finer local tolerance until the difference of the last two runs shows
@@ -39,7 +41,7 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
         Output grid [time].
     tolerance : Tolerance
         Allowed error of the run, by default 1e-3 of the extent and 1e-3 rad.
-    scheme, progress
+    scheme, progress, start
         As for `Simulation` and its `run_to`; a bar counts the runs.
 
     Returns
@@ -57,14 +59,13 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     """
     inputs.instance(model, "model", Model, "give a sebody.Model")
     wanted = given(tolerance) or Tolerance()
-    points = [np.abs(node.point).max() for node in model.nodes.values()]
-    wanted.check_reachable(max(points, default=0.0))
+    wanted.check_reachable(extent(model))
     with showing(progress, t_end) as show:
-        return _refined(model, h, t_end, wanted, scheme, show)
+        return _refined(model, h, t_end, wanted, scheme, show, start)
 
 
 def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Scheme | None,
-             progress: Callable[[float], None] | None) -> Result:
+             progress: Callable[[float], None] | None, start: Result | None) -> Result:
     """The run that is within the tolerance `wanted`, after coarser ones."""
     share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
     before: Result | None = None
@@ -74,7 +75,8 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
         try:
             with warnings.catch_warnings():     # what is wrong with a coarse run need not stay
                 warnings.simplefilter("ignore", LimitWarning)
-                now = Simulation(model, h, scheme, tolerance=local).run_to(t_end, progress).result()
+                run = Simulation(model, h, scheme, tolerance=local, start=start)
+                now = run.run_to(t_end, progress).result()
         except KeyboardInterrupt as stop:
             if before is None:
                 raise
@@ -103,11 +105,13 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
 
 def difference(one: Result, other: Result, allowed: Tolerance) -> float:
     """Largest root mean square difference of two runs on one grid, relative to the allowed one."""
-    size, rotations = one.system.magnitude, rotational(one.model, one.numbering)
+    own, rotations = placed(one.model, one.numbering), rotational(one.model, one.numbering)
     if not one.model.planar:
-        size = np.where(rotations, 0.0, size)       # rotations are compared by their matrices
-    q = one.recorded("q") - other.recorded("q")
-    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(size, rotations)
+        own &= ~rotations       # these are compared by their matrices
+    q = (one.recorded("q") - other.recorded("q"))[:, own]
+    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(one.system.magnitude[own],
+                                                           rotations[own])
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
-    return float(max(found.max(), (angles / allowed.allowed(1.0, True)).max(initial=0.0)))
+    found = np.append(found, angles / allowed.allowed(1.0, True))
+    return float(found.max(initial=0.0))

@@ -40,6 +40,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     q, v = _start(model, numbering)
     R = _rotations(model, numbering)
     zeros = np.zeros
+    acting = int(system.at_g[-1] - system.at_g[system.first_power[0]]) + len(system.prescribed)
     clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
     clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
     clock[CONTRACTION] = SLOWEST
@@ -51,8 +52,10 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         aux=zeros(total), aux_change=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
         v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total),
         T=_identities(len(R)),
-        loads=zeros(3 * ports), loads_old=zeros(3 * ports), powers=zeros(ports),
-        powers_old=zeros(ports), coefficients=coefficients,
+        loads=zeros(3 * ports), loads_old=zeros(3 * ports), acting=zeros(acting),
+        acting_old=zeros(acting), works_old=zeros(ports), powers=zeros(ports),
+        powers_old=zeros(ports),
+        coefficients=coefficients,
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
         rotated_matrix=zeros(int(system.width.max()) ** 2), residual=zeros(total),
         forces=zeros(total), constraint_residuals=zeros(total), shift=zeros(total),
@@ -67,7 +70,8 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
-    state.frames[:] = state.frames_old[:] = _identities(len(state.frames))
+    of_bodies = 9 * len(numbering.modes)
+    state.frames[:of_bodies] = state.frames_old[:of_bodies] = _identities(of_bodies)
     return state
 
 

@@ -21,7 +21,7 @@ from sebody.analysis.schemes import generalized_alpha
 from sebody.analysis.workers import Task
 from sebody.assembly.build import build
 from sebody.assembly.motions import motion_kernel
-from sebody.engine import evaluate, links, loop, matrix, newton, step, step_control
+from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, step_control
 from sebody.engine.state import Record
 from sebody.kernels import loader, store
 from sebody.kernels.loader import USER_FORCE, element_kernel_name, find
@@ -61,11 +61,11 @@ PARTS = LOOP | {
     "loop": Part(loop.advance, "system state record scheme whole whole flag", 3.6, tuple(LOOP)),
     "sums": Part(matrix.sum_matrices, "system state vector", 1.4),
     "matrix": Part(matrix.refactorize, "system state whole flag", 3.4, ("sums",)),
+    "restart": Part(restart.restart, "system state number flag", 2.0, ("solution",)),
     "forces": Part(evaluate.assemble, "whole whole system state vector", 0.3,
                    ("forces in the loop",)),
     "constraints": Part(postprocessing._evaluate_constraints, "system state table table", 0.6,
                         ("forces in the loop",)),
-    "powers": Part(evaluate.set_powers, "system state", 0.3, ("forces in the loop",)),
     "energies": Part(postprocessing._evaluate_energies, "system state table table", 0.3,
                      ("forces in the loop",)),
     "reactions": Part(postprocessing._evaluate_forces, "system state table table table", 0.4,

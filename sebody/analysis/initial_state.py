@@ -1,4 +1,4 @@
-"""A consistent start: velocities that fit the joints, accelerations and multipliers at t = 0."""
+"""A consistent start: positions and velocities that fit the joints."""
 
 from copy import copy
 
@@ -11,15 +11,9 @@ from sebody.analysis.redundancy import Solver, least, part_sizes
 from sebody.analysis.rigid_start import follow_drives
 from sebody.analysis.user_faults import fault
 from sebody.assembly.numbering import Numbering, coordinates
-from sebody.engine.evaluate import (
-    move_prescribed,
-    set_loads,
-    set_powers,
-    to_body_axes,
-    update_rotations,
-)
+from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
 from sebody.engine.links import place_dependent
-from sebody.engine.state import State
+from sebody.engine.state import ASKED, RESTART, State
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.kernels.layout import ACCELERATION, RESIDUAL, VELOCITY
@@ -31,8 +25,10 @@ SMALL = 1e-8            # largest residual of constraints, relative to positions
 HEAVY = 1e10            # added mass, relative, that keeps velocities the user gave
 
 
-def start(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
-    """Fit the velocities to the constraints, then solve for accelerations and multipliers.
+def begin(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
+    """Fit the velocities to the constraints, and ask for accelerations and multipliers.
+
+    The time loop solves for these before its first step, see `sebody.engine.restart`.
 
     Raises
     ------
@@ -49,52 +45,31 @@ def start(model: Mechanism, system: System, numbering: Numbering, state: State) 
     if did := fault(model, 0.0):
         raise InputError(f"{WHAT} cannot be evaluated: {did}")
     residuals = state.residual[multipliers]
-    _check(residuals, np.abs(state.q).max(), "position", multipliers, numbering,
-           "start from a state the joints allow")
+    _check(residuals, _lengths(model, system, numbering, state)[multipliers], "position",
+           multipliers, numbering, "start from a state the joints allow")
     system.inertias[:numbering.free] = part_sizes(masses, system)
     solver = Solver(masses, system, numbering)
     changed = follow_drives(model, system, numbering, state, masses,
                             _rates(system, state, multipliers))
     changed |= _fit_velocities(model, system, numbering, state, masses, solver, multipliers)
-    _accelerate(system, numbering, state, solver)
-    state.aux[:numbering.free] = state.a[:numbering.free]
+    if solver.redundant:
+        _check_accelerations(system, numbering, state, solver)
     state.frames_old[:] = state.frames
-    system.relaxed[0] = int(bool(solver.redundant))
-    set_powers(system, state)
-    return Start(changed, solver.redundant)
+    system.relaxed[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
+    state.control[RESTART] = ASKED
+    return Start(changed, solver.redundant, solver.shared)
 
 
-def _accelerate(system: System, numbering: Numbering, state: State, solver: Solver) -> None:
-    """Solve for accelerations and multipliers of a state."""
+def _check_accelerations(system: System, numbering: Numbering, state: State,
+                         solver: Solver) -> None:
+    """Refuse redundant constraints that demand different accelerations of the same thing."""
     moving = system.is_multiplier[:numbering.total] == 0
     solved = np.arange(numbering.total) < numbering.free
     state.a[solved & moving], state.q[~moving] = 0.0, 0.0
     place_dependent(system.links, state.q, state.v, state.a, state.R)
     evaluate(system, state, RESIDUAL, ACCELERATION, WHAT)
     to_body_axes(system, state.frames, state.residual, False)
-    answer = np.zeros(numbering.total)
-    answer[:numbering.free] = -solver(state.residual[:numbering.free].copy())
-    to_body_axes(system, state.frames, answer, True)
-    state.a[solved & moving], state.q[~moving] = answer[solved & moving], answer[~moving]
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
-
-
-def acceleration_rates(system: System, numbering: Numbering, state: State, dt: float) -> NDArray:
-    """Rates of the accelerations at the start, by a difference over a short time."""
-    kept, loads = state.now.copy(), state.loads.copy()
-    state.R_old[:] = state.R
-    state.dq[:] = dt * state.v + 0.5 * dt * dt * state.a
-    state.q[:] += state.dq
-    state.v[:] += dt * state.a
-    set_loads(system, state.loads, dt)
-    move_prescribed(system, state)
-    update_rotations(system, state)
-    _accelerate(system, numbering, state, Solver(_masses(system, state), system, numbering))
-    later = state.a.copy()
-    state.now[:], state.loads[:] = kept, loads
-    rates = (later - state.a) / dt
-    rates[numbering.free:] = 0.0
-    return rates
+    solver.check(state.residual[:numbering.free].copy())
 
 
 def _masses(system: System, state: State) -> csc_matrix:
@@ -102,11 +77,22 @@ def _masses(system: System, state: State) -> csc_matrix:
     return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0)
 
 
-def _check(values: NDArray, size: float, what: str, multipliers: NDArray, numbering: Numbering,
-           remedy: str) -> None:
+def _lengths(model: Mechanism, system: System, numbering: Numbering, state: State) -> NDArray:
+    """What residuals of constraints are compared with: sizes of positions, or one radian."""
+    found = np.full(numbering.total, max(np.abs(state.q).max(), system.magnitude.max()))
+    for equation in model.constraints:
+        if all(triplet.rotational for triplet in equation.triplets):
+            first = numbering.multipliers[id(equation)]
+            found[first:first + equation.multipliers] = 1.0
+    return found
+
+
+def _check(values: NDArray, size: NDArray | float, what: str, multipliers: NDArray,
+           numbering: Numbering, remedy: str) -> None:
     if values.size:
-        worst = int(np.argmax(np.abs(values)))
-        if not abs(values[worst]) <= SMALL * max(size, 1e-300):
+        excess = np.abs(values) / np.maximum(size, 1e-300)
+        worst = int(np.argmax(excess))
+        if not excess[worst] <= SMALL:
             of = numbering.names[multipliers[worst]].partition(" of ")[2]
             raise InputError(f"the initial {what} violates {of!r} by {abs(values[worst]):.3g}: "
                              f"{remedy}")

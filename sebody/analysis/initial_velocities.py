@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.analysis.rigid_start import deformation
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.engine.state import State
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement, Triplet
+from sebody.reduction import ReducedBody
 
 SMALL = 1e-6        # difference of velocities, of the largest one
 STRAINED = 1e-4     # share of the kinetic energy in deformation: speeds off by a hundredth
@@ -102,7 +102,17 @@ def _share(body: Superelement, numbering: Numbering, state: State) -> float:
     """Share of the kinetic energy of the nodes of a body that is in its deformation."""
     own = [c for t in (*body.positions, *body.rotations) for c in coordinates(numbering, t)]
     v = np.concatenate([state.v[own], np.zeros(body.body.modes)])
-    return float(v @ deformation(body.body) @ v / max(v @ body.body.mass @ v, 1e-300))
+    return float(v @ _deformation(body.body) @ v / max(v @ body.body.mass @ v, 1e-300))
+
+
+def _deformation(reduced: ReducedBody) -> NDArray:
+    """Matrix D of a body, ``v^T D v / 2`` being the kinetic energy of its deformation.
+
+    That of the velocities v less that of the rigid motion with the same momenta.
+    """
+    r = reduced.rigid_modes_about(reduced.centre_of_mass)
+    momentum = reduced.mass @ r
+    return reduced.mass - momentum @ np.linalg.pinv(r.T @ momentum) @ momentum.T
 
 
 def _is_given(triplet: Triplet) -> bool:

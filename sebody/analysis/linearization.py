@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import LinAlgError, eig, eigh, null_space
+from scipy.linalg import LinAlgError, eigh, null_space
 from scipy.sparse import csc_matrix
 
 from sebody import inputs
 from sebody.analysis import mode_tables, user_faults
+from sebody.analysis.eigenvalues import eigenvalues
 from sebody.analysis.evaluation import matrix
 from sebody.analysis.limits import Watch
 from sebody.analysis.shapes import Shapes
@@ -37,17 +38,9 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
                   stiffness=stiffness, constraint=stiffness)
 
 
-def rotating(run: Simulation | Result, spin: Spin,
-             resistance: float = 0.0) -> tuple[csc_matrix, NDArray]:
-    """Tangent stiffness in axes that rotate with the spin, and the residual.
-
-    With a `resistance` so many times the mass times the squared spin is added.
-    """
-    if spin.rotates:
-        mass, _, stiffness = _turning(run, spin)
-        stiffness = stiffness + resistance * spin.squared * mass
-    else:
-        stiffness = derivative(run, 0.0, 0.0, 1.0)
+def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
+    """Tangent stiffness in axes that rotate with the spin, and the residual."""
+    stiffness = _turning(run, spin)[2] if spin.rotates else derivative(run, 0.0, 0.0, 1.0)
     residual = run.state.residual.copy()
     to_body_axes(run.system, run.state.frames, residual, False)
     return csc_matrix(stiffness), residual[:run.numbering.free]
@@ -197,6 +190,7 @@ class Modes(NamedTuple):
     values: NDArray     # (m,) complex, by ascending frequency [1/time]
     shapes: NDArray     # (unknowns, m) complex, of unit length
     of_names: Shapes
+    rounding: NDArray   # (m,) how far rounding may move the values [1/time]
 
     def __repr__(self) -> str:
         return mode_tables.text(f"{len(self.values)} modes of small motion", self.values)
@@ -231,14 +225,13 @@ class Modes(NamedTuple):
 
 
 def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
-    """Eigenvalues and shapes about a state, from the exact tangents; see `linearize`."""
+    """Eigenvalues and shapes about a state, from the exact tangents; see `linearize`.
+
+    Where nothing takes or gives energy, as in undamped gyroscopic motion, and the stiffness is
+    positive, growth is zero by construction. Otherwise a growth below `Modes.rounding` is none.
+    """
     M, C, K, free = linearize(run, spin)
-    m = len(M)
-    identity, zero = np.eye(m), np.zeros((m, m))
-    values, vectors = eig(np.block([[zero, identity], [-K, -C]]),
-                          np.block([[identity, zero], [zero, M]]))
-    kept = np.flatnonzero(values.imag >= 0.0)
-    order = kept[np.lexsort((values[kept].real, values[kept].imag))]
-    shapes = free @ vectors[:m, order]
-    return Modes(values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
-                 Shapes(run))
+    found = eigenvalues(M, C, K)
+    shapes = free @ found.shapes
+    return Modes(found.values, shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
+                 Shapes(run), found.rounding)

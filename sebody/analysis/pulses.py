@@ -1,6 +1,6 @@
-"""Peaks of load histories that fall between the steps of a run, so that no step sees them."""
+"""What steps do not see of load histories: peaks between them, jumps nobody told them of."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,10 @@ from sebody.model.histories import History
 
 MISSED = 0.2            # share of the largest value by which a peak may exceed what steps see
 ON_GRID = 1e-6          # of a step: nearer times are those of the step
+SAMPLES = 200           # times at which a function is looked at for jumps
+SUSPECTS = 10           # largest changes from one to the next that are looked into
+HALVINGS = 40           # of the time between: to rounding
+ABRUPT = 0.1            # share of the change that is left of a jump, and no more of what is steep
 
 
 def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator[tuple[str, str]]:
@@ -41,6 +45,48 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
             yield name, (f"{name} is {values[k]:.4g} at t = {times[k]:.6g}, between two steps of "
                          f"{h:g} that see {seen[0, k]:.4g} and {seen[1, k]:.4g}: take steps that "
                          "meet or resolve the peak, or variable ones with a tolerance")
+
+
+def untold(numbering: Numbering, h: float, begin: float, end: float) -> Iterator[tuple[str, str]]:
+    """Functions of time that jump where no corner says so, and a warning for each.
+
+    Parameters
+    ----------
+    h : float
+        Step [time].
+    begin, end : float
+        Of the run [time].
+    """
+    times = np.linspace(begin, end, min(SAMPLES, max(2, round((end - begin) / h) + 1)))
+    for name, history in zip(numbering.port_names, numbering.histories, strict=True):
+        if history.functions and not history.corners:
+            found = _jump(history.functions[-1].ctypes, times)
+            if found:
+                yield name, (f"the function of {name} jumps from {found[1]:.4g} to {found[2]:.4g} "
+                             f"at t = {found[0]:.9g}, and steps are not told: give it as "
+                             "with_corners(function, times), so that steps end at its jumps; "
+                             "without, errors fall with the step only, not with its square")
+
+
+def _jump(function: Callable[[float], float],
+          times: NDArray) -> tuple[float, float, float] | None:
+    """The first time at which a function jumps, and the values before and after it."""
+    values = np.array([function(t) for t in times])
+    changes = np.abs(np.diff(values))
+    for k in sorted(np.argsort(changes)[::-1][:SUSPECTS]):
+        a, b, before, after = times[k], times[k + 1], values[k], values[k + 1]
+        if not changes[k] > 0.0:
+            continue
+        for _ in range(HALVINGS):
+            t = (a + b) / 2
+            value = function(t)
+            if abs(value - before) > abs(after - value):
+                b, after = t, value
+            else:
+                a, before = t, value
+        if abs(after - before) > ABRUPT * changes[k]:
+            return b, before, after
+    return None
 
 
 def _known(history: History) -> NDArray:

@@ -17,6 +17,8 @@ WEAK = 1e-6             # pivot of a redundant constraint; of another one, its s
 CONTRADICTION = 1e-7    # residual that contradicting constraints leave, relative to the largest
 MASSLESS = 1e-13        # inertia of a motion that has none, relative to that of its body
 SHARED = 0.1            # residual of a constraint that has part in a contradiction, of the largest
+SHARPENED = 3           # times that `Relaxed.unmoved` leaves RELAXATION of what exerts a force
+UNSHARED = 1e-6         # part in what exerts no force that is rounding, of the largest
 PROBES = 8              # iterations after which the motion with the least inertia is left
 HALF = 0.5              # of such a motion, `Relaxed.unmoved` leaves all; of others little
 
@@ -56,7 +58,7 @@ def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
 
 
 class Solver:
-    """Solves for accelerations and multipliers; finds redundant constraints and missing mass.
+    """Masses and constraints at the start; finds redundant constraints and missing mass.
 
     Parameters
     ----------
@@ -67,6 +69,8 @@ class Solver:
     ----------
     redundant : tuple of str
         Joints with constraints that those numbered before them contain.
+    shared : tuple of str
+        Joints whose multipliers are not unique.
 
     Raises
     ------
@@ -77,6 +81,7 @@ class Solver:
     def __init__(self, matrix: csc_matrix, system: System, numbering: Numbering):
         self.system, self.names = Scaled(matrix), numbering.names
         self.redundant: tuple[str, ...] = ()
+        self.shared: tuple[str, ...] = ()
         self.relaxed: Relaxed | None = None
         if self.system.suspicious:
             system.thin[:matrix.shape[0]] = thin_parts(matrix, system)
@@ -84,32 +89,41 @@ class Solver:
             self._check_mass(system)
             self._find_redundant(system)
 
-    def __call__(self, residual: NDArray) -> NDArray:
-        """Accelerations and multipliers, of least norm where these are not unique.
+    @property
+    def massless(self) -> bool:
+        """Whether a motion has stiffness and no mass, as of MacNeal's bodies."""
+        return not self.redundant and not self.system.regular
+
+    def check(self, residual: NDArray) -> None:
+        """Refuse redundant constraints that demand what no accelerations give.
+
+        Parameters
+        ----------
+        residual : (n,)
+            Without accelerations and multipliers.
 
         Raises
         ------
         InputError
             Constraints that contradict each other.
         """
-        if not self.redundant:
-            if self.system.regular:
-                return self.system.solve(residual)
-            # Some motions have stiffness and no mass, as of MacNeal's bodies. They are combinations
-            # of coordinates, so what a factor divides by is rounding. They start without
-            # acceleration, and stiffness alone places them from the first step on.
-            return self.system.least(residual)[0]
-        answer, left = self.relaxed.least(residual)
+        _, left = self.relaxed.least(residual)
         if left.max() > CONTRADICTION * max(np.abs(self.relaxed.scale * residual).max(), 1e-300):
             raise InputError(f"the constraints contradict each other at "
                              f"{self.names[int(np.argmax(left))]}: they demand different "
                              "accelerations of the same thing; remove a joint or a drive")
-        return answer
 
     def _find_redundant(self, system: System) -> None:
         """Joints with constraints whose pivots are those of the regularization."""
-        weak = np.flatnonzero((self.relaxed.pivots < WEAK) & multiplying(system))
-        self.redundant = tuple(dict.fromkeys(self.names[k].partition(" of ")[2] for k in weak))
+        multipliers = multiplying(system)
+        weak = (self.relaxed.pivots < WEAK) & multipliers
+        self.redundant = joints(self.names, weak)
+        if not self.redundant:
+            return
+        part = np.where(multipliers, np.random.default_rng(0).normal(size=weak.size), 0.0)
+        for _ in range(SHARPENED):      # one without force has, at random, part of every such one
+            part = np.where(multipliers, self.relaxed.unmoved(part), 0.0)
+        self.shared = joints(self.names, np.abs(part) > UNSHARED * np.abs(part).max())
 
     def _check_mass(self, system: System) -> None:
         """Refuse a motion that the constraints leave free and that has no mass."""
@@ -135,10 +149,14 @@ def contradiction(system: System, state: State, numbering: Numbering) -> str:
     if not multiplying(system)[worst]:
         return (f"a force acts on {numbering.names[worst]}, with which nothing that has mass "
                 "moves: give it a mass or fix it")
-    parties = np.flatnonzero((left > SHARED * left.max()) & multiplying(system))
-    joints = dict.fromkeys(numbering.names[k].partition(" of ")[2] for k in parties)
-    return (f"the constraints of {', '.join(joints)} contradict each other: no motion meets them "
-            "all; remove one, or give the drives motions that fit")
+    parties = (left > SHARED * left.max()) & multiplying(system)
+    return (f"the constraints of {', '.join(joints(numbering.names, parties))} contradict each "
+            "other: no motion meets them all; remove one, or give the drives motions that fit")
+
+
+def joints(names: list[str], chosen: NDArray) -> tuple[str, ...]:
+    """Names of the joints of some multipliers, (unknowns,) of bool, by the names of these."""
+    return tuple(dict.fromkeys(names[k].partition(" of ")[2] for k in np.flatnonzero(chosen)))
 
 
 def thin_parts(matrix: csc_matrix, system: System) -> NDArray:

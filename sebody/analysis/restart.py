@@ -15,19 +15,26 @@ from sebody.analysis.simulation import MOST_STEPS, Simulation
 from sebody.analysis.tolerance import Tolerance
 from sebody.engine.state import (
     ADAPTIVE,
+    AHEAD,
     CORNER,
     CURRENT_STEP,
+    DUE,
     EVALUATED,
     FINEST,
     GRID,
+    INSIDE,
+    JUMP,
     LEVEL,
+    MEETS,
     PHASE,
     PIVOTED,
     REASON,
     REASONS,
     RELAXED,
+    RESTART,
     SECANT,
     SOLVED,
+    SPLIT,
     STEP,
     TIME,
     UNIT,
@@ -43,14 +50,16 @@ from sebody.files.members import Header, Member, Table
 from sebody.kernels.layout import RECORD_T
 from sebody.model.model import Model
 
-VERSION = 2
+VERSION = 3
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
+OF_START = "relaxed", "massless", "inertias", "thin"    # of the system, found at the start
 REMEDY, REPEAT = "give one that was saved by sebody.analysis.save_state", "run the model again"
 OFF = 1e-6          # of a step, by which rounding may put a time off
 # largest values of counters; others count steps, of which no run has more than MOST_STEPS
 MOST = {PHASE: SOLVED, UNIT: FINEST, LEVEL: FINEST.bit_length(), WANTED: EVALUATED,
-        REASON: max(REASONS), PIVOTED: 1, ADAPTIVE: 1, SECANT: 1, RELAXED: 1}
+        REASON: max(REASONS), PIVOTED: 1, ADAPTIVE: 1, SECANT: 1, RELAXED: 1,
+        MEETS: JUMP, SPLIT: 1, INSIDE: 1, RESTART: AHEAD, DUE: 1}
 FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old")
 
 
@@ -67,7 +76,8 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     path = check_target(path, *TARGET)
     inputs.instance(run, "run", Simulation, "give a Simulation")
     arrays = {field.name: getattr(run.state, field.name) for field in fields(State)}
-    arrays |= {"relaxed": run.system.relaxed, "rows": np.concatenate(run.rows)}
+    arrays |= {name: getattr(run.system, name) for name in OF_START}
+    arrays["rows"] = np.concatenate(run.rows)
     settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
                 "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
                 "model": fingerprint(run), "checksums": checksums(arrays)}
@@ -101,7 +111,8 @@ def resume(model: Model, path: str | Path) -> Simulation:
         raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
     for field in fields(State):
         getattr(run.state, field.name)[...] = arrays[field.name]
-    run.system.relaxed[:] = arrays["relaxed"]
+    for name in OF_START:
+        getattr(run.system, name)[:] = arrays[name]
     run.rows = [arrays["rows"]]
     run.seconds = settings["seconds"]
     if run.state.control[PIVOTED]:
@@ -114,7 +125,7 @@ def _settings(file: str, settings: Any, headers: Mapping[str, Header]) -> dict:
     if settings["version"] != VERSION:
         raise InputError(f"{file} is of version {settings['version']}, this program writes "
                          f"{VERSION}: {REPEAT}")
-    wanted = {"settings", "relaxed", "rows", *(field.name for field in fields(State))}
+    wanted = {"settings", *OF_START, "rows", *(field.name for field in fields(State))}
     differing = SETTINGS - set(settings) | set(headers) ^ wanted
     if differing:
         raise InputError(f"{file} was written by another version of sebody (it differs in "
@@ -148,7 +159,10 @@ def _other_model(file: str) -> InputError:
 
 def _members(run: Simulation) -> dict[str, Member]:
     """What the members of a file of this run are; scratch memory may hold anything."""
-    found = {"rows": Member((None, "width")), "relaxed": Member((1,), "i", least=0)}
+    found = {"rows": Member((None, "width")), "relaxed": Member((1,), "i", least=0),
+             "massless": Member((1,), "i", least=0)}
+    for name in ("inertias", "thin"):
+        found[name] = Member(getattr(run.system, name).shape, least=0)
     for field in fields(State):
         array = getattr(run.state, field.name)
         found[field.name] = Member(array.shape, array.dtype.kind, finite=field.name in FINITE)

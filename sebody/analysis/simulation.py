@@ -12,39 +12,35 @@ from numpy.typing import NDArray
 from sebody import inputs, memory
 from sebody.analysis import user_faults
 from sebody.analysis.allocation import allocate
+from sebody.analysis.failures import explained
 from sebody.analysis.first_run import prepare
-from sebody.analysis.initial_state import acceleration_rates, start
+from sebody.analysis.given_start import take
+from sebody.analysis.initial_state import begin
 from sebody.analysis.initial_velocities import refuse_contradicted
 from sebody.analysis.limits import Watch
 from sebody.analysis.progress import showing
-from sebody.analysis.pulses import unseen
-from sebody.analysis.redundancy import contradiction
+from sebody.analysis.pulses import unseen, untold
 from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.schemes import checked, generalized_alpha
 from sebody.analysis.start_remarks import start_remarks
-from sebody.analysis.tolerance import Tolerance, given
+from sebody.analysis.tolerance import UNSIZED, Tolerance, given
 from sebody.assembly.build import build
-from sebody.assembly.numbering import rotational
+from sebody.assembly.numbering import placed, rotational
 from sebody.engine.loop import advance
-from sebody.engine.routines import refactorize_address
+from sebody.engine.routines import addresses
 from sebody.engine.state import (
     ADAPTIVE,
-    AUX_STEP,
     CHOSEN,
     CHUNK,
+    CURRENT_STEP,
     DONE,
-    FACTORED,
     FAILED,
-    FINEST,
-    GAP,
     GRID,
     LARGEST_ERROR,
-    PHASE,
-    PROJECTED,
+    MATRICES,
     REASON,
     REASONS,
     RECORDED,
-    SOLVED,
     TIME,
     Record,
     Scheme,
@@ -80,9 +76,14 @@ class Simulation:
         Allowed error of a step. With a tolerance, step lengths are chosen, steps end at corners of
         load tables, and `h` is only the output grid, on which the state is interpolated. Errors of
         many steps add up: see `simulate_within` for the error of the whole run.
+    start : Result, optional
+        State to start from in place of the model as built: of an `equilibrium`, at which nothing
+        rings, or the end of a run. Initial velocities that the model gives stay.
 
     Attributes
     ----------
+    begun : Result or None
+        The state that was given to start from.
     start : Start
         Initial velocities that were solved for, redundant constraints.
 
@@ -95,7 +96,8 @@ class Simulation:
     """
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
-                 output_every: int = 1, tolerance: Tolerance | None = None):
+                 output_every: int = 1, tolerance: Tolerance | None = None,
+                 start: Result | None = None):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
         self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
@@ -116,23 +118,22 @@ class Simulation:
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
         user_faults.forget(model)
-        self.start: Start = start(model, self.system, self.numbering, self.state)
+        self.begun = start
+        if start is not None:
+            take(model, self.numbering, self.state, start)
+        self.start: Start = begin(model, self.system, self.numbering, self.state)
         refuse_contradicted(model, self.numbering, self.state)
-        for key, message in start_remarks(model, self.numbering, self.state).items():
-            self.watch.say(key, message)
+        if start is None:
+            for key, message in start_remarks(model, self.numbering, self.state).items():
+                self.watch.say(key, message)
         self.tolerance = tolerance
+        self._accelerate()
         if tolerance is not None:
             self._choose_steps(tolerance)
-        if self.scheme.stabilized:
-            self._offset_accelerations()
-        self.state.aux_old[:] = self.state.aux
-        self.system.routines[0] = refactorize_address(self.system, self.state)
         first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
         write_record(self.state, first)
         self.rows.append(first.rows)
-        # no steps yet: the loop is compiled, or read from the cache, before time is measured
-        advance(self.system, self.state, first, self.scheme, 0, 0, self.dense)
 
     def __repr__(self) -> str:
         return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
@@ -173,6 +174,8 @@ class Simulation:
         if self.state.control[ADAPTIVE] == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)
+            for name, message in untold(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"jump {name}", message)
         record = self._room(last)
         self.state.control[RECORDED] = 0
         code = CHUNK
@@ -185,7 +188,7 @@ class Simulation:
             self.rows.append(record.rows[:self.state.control[RECORDED]])
         self.watch.look(self.model, self.numbering, self.rows[-1])
         if code == FAILED:
-            self.failure = self._explain()
+            self.failure = explained(self.model, self.system, self.state, self.numbering)
             raise SimulationError(self.failure, self.result())
         if code != DONE:
             result = self.result()
@@ -229,7 +232,7 @@ class Simulation:
         code, chunk, looked = CHUNK, FIRST_CHUNK, time.perf_counter()
         while code not in (DONE, FAILED):
             began = time.perf_counter()
-            self._serve()
+            self.exchanges.serve()
             code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
             now = time.perf_counter()
             self.seconds += now - began
@@ -242,14 +245,6 @@ class Simulation:
             elif waited > LOOK:         # steps that Python helps with are not counted: stop at
                 chunk = 0               # the beginning of the next one
         return code
-
-    def _serve(self) -> None:
-        """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
-        phase = self.state.control[PHASE]
-        if phase == FACTORED:
-            self.exchanges.factorize()
-        elif phase in (PROJECTED, SOLVED):
-            self.exchanges.solve()
 
     def result(self) -> Result:
         """The results computed so far."""
@@ -272,37 +267,36 @@ class Simulation:
     def _choose_steps(self, tolerance: Tolerance) -> None:
         """Switch on variable steps; the first step is short against the accelerations."""
         n, state = self.numbering.free, self.state
-        rotations = rotational(self.model, self.numbering)[:n]
-        state.error_weights[:n] = 1.0 / tolerance.allowed(self.system.magnitude[:n], rotations)
+        own = np.flatnonzero(placed(self.model, self.numbering)[:n])
+        sizes = self.system.magnitude[own]
+        if tolerance.position == 0.0 and not np.all(sizes):
+            self.watch.say("unsized", UNSIZED)
+        state.error_weights[own] = 1.0 / tolerance.allowed(
+            sizes, rotational(self.model, self.numbering)[own])
         bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
         state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock[LARGEST_ERROR] = 0.0
         state.control[ADAPTIVE] = 1
 
-    def _offset_accelerations(self) -> None:
-        """Set auxiliary accelerations to those of the later time they belong to.
+    def _accelerate(self) -> None:
+        """Solve for the accelerations and multipliers of the start, by the loop without a step.
 
-        Multipliers of the first steps would show the difference.
+        So the loop is compiled, or read from the cache, before time is measured.
         """
-        scheme, state = self.scheme, self.state
-        h = state.clock[CHOSEN] if self.tolerance else self.h
-        state.clock[AUX_STEP] = h
-        state.aux[:] += (scheme.alpha_m - scheme.alpha_f) * h * acceleration_rates(
-            self.system, self.numbering, state, 1e-3 * h)
-
-    def _explain(self) -> str:
-        if fault := user_faults.fault(self.model, self.time):
-            return f"stopped at t = {self.time:.6g}: {fault}; results up to there are kept"
-        if self.state.control[REASON] == GAP:
-            return (f"stopped at t = {self.time:.6g}: "
-                    f"{contradiction(self.system, self.state, self.numbering)}; results up to "
-                    "there are kept")
-        reason = REASONS[int(self.state.control[REASON])]
-        shortest = (self.state.clock[CHOSEN] if self.tolerance else self.h / FINEST)
-        remedy = "a larger tolerance" if self.tolerance else "a smaller step"
-        return (f"stopped at t = {self.time:.6g}: {reason}, even with the step cut to "
-                f"{shortest:.3g}; results up to there are kept. Use {remedy}, "
-                "check the loads, or split the body into more superelements")
+        state, code = self.state, CHUNK
+        self.system.routines[:] = addresses(self.system, state)
+        if self.tolerance is not None:
+            state.clock[CURRENT_STEP] = FIRST_STEP * self.h     # so far ahead it looks
+        none = Record.of(state, 0, self.every)
+        while code not in (DONE, FAILED):
+            self.exchanges.serve()
+            code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
+        if code == FAILED:
+            raise InputError("the initial state has no accelerations: "
+                             f"{REASONS[int(state.control[REASON])]}; check the loads and the "
+                             "joints at t = 0")
+        state.control[MATRICES] = 0
+        state.aux_old[:] = state.aux
 
 
 @cache
@@ -313,6 +307,7 @@ def _default(index: int) -> Scheme:
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
-             tolerance: Tolerance | None = None) -> Result:
+             tolerance: Tolerance | None = None, start: Result | None = None) -> Result:
     """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
-    return Simulation(model, h, scheme, output_every, tolerance).run_to(t_end, progress).result()
+    run = Simulation(model, h, scheme, output_every, tolerance, start)
+    return run.run_to(t_end, progress).result()

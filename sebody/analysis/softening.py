@@ -243,20 +243,20 @@ def _of_carriers(carriers: Carriers, axis: NDArray, turn: NDArray) -> NDArray:
     Velocities are ``n' x (X + u)`` and ``exp(-psi) n'`` with ``n' = exp(t) n`` for a body that
     turns by -t.
     """
-    across = _skew(axis)
+    across = skew(axis)
     places, angles = len(carriers.arms), len(carriers.rotated)
     rest = np.concatenate([np.cross(axis, carriers.arms).ravel(), np.tile(axis, angles)])
     tilt = -across @ turn                                   # t x n
     first = np.vstack([
-        *(across @ u - _skew(X) @ tilt for X, u in zip(carriers.arms, carriers.moved, strict=True)),
+        *(across @ u - skew(X) @ tilt for X, u in zip(carriers.arms, carriers.moved, strict=True)),
         *(across @ (psi - turn) for psi in carriers.rotated)])
     D = first.T @ carriers.mass @ first
     momenta = (carriers.mass @ rest).reshape(-1, 3)
     for X, u, p in zip(carriers.arms, carriers.moved, momenta[:places], strict=True):
-        mixed = tilt.T @ (-_skew(p) @ u)                    # p . ((t x n) x u)
+        mixed = tilt.T @ (-skew(p) @ u)                    # p . ((t x n) x u)
         D += mixed + mixed.T + turn.T @ _twice(np.cross(X, p), axis) @ turn
     for psi, p in zip(carriers.rotated, momenta[places:], strict=True):
-        mixed = tilt.T @ (-_skew(p) @ psi)                  # -p . (psi x (t x n))
+        mixed = tilt.T @ (-skew(p) @ psi)                  # -p . (psi x (t x n))
         D += mixed + mixed.T + psi.T @ _twice(p, axis) @ psi + turn.T @ _twice(p, axis) @ turn
     return D
 
@@ -275,7 +275,7 @@ def _of_field(part: Superelement, axis: NDArray, held: Held) -> NDArray:
         D = D - np.tensordot(i.E.T @ pulled, i.Ghat, 1)
     if body.planar:
         return D            # the spin of a plane body stays where it is
-    tilt = -_skew(axis) @ held.turn
+    tilt = -skew(axis) @ held.turn
     linear = np.einsum("kln,l->kn", i.h + i.h.transpose(1, 0, 2), axis)[:, :n]
     mixed = tilt.T @ linear
     return (D + mixed + mixed.T + tilt.T @ i.J0 @ tilt
@@ -292,13 +292,13 @@ def _turn(body: ReducedBody, moved: NDArray, rotated: NDArray) -> NDArray:
     points = body.coordinates[list(body.position_nodes)]
     on_line = np.linalg.matrix_rank(points - points.mean(axis=0), tol=1e-6 * np.abs(
         points - points.mean(axis=0)).max()) < 2
-    return rotated.mean(axis=0) if on_line and len(rotated) else _fit(body, moved)
+    return rotated.mean(axis=0) if on_line and len(rotated) else fit(body, moved)
 
 
-def _fit(body: ReducedBody, moved: NDArray) -> NDArray:
+def fit(body: ReducedBody, moved: NDArray) -> NDArray:
     """Rotation of the frame of best fit by small deflections, rows of ``sum X_j x u_j``."""
     points = _in_space(body.coordinates[list(body.position_nodes)])
-    return np.einsum("jik,jkn->in", [_skew(X) for X in points - points.mean(axis=0)], moved)
+    return np.einsum("jik,jkn->in", [skew(X) for X in points - points.mean(axis=0)], moved)
 
 
 def _in_space(points: NDArray) -> NDArray:
@@ -306,5 +306,5 @@ def _in_space(points: NDArray) -> NDArray:
     return np.hstack([points, np.zeros((len(points), 3 - points.shape[1]))])
 
 
-def _skew(a: NDArray) -> NDArray:
+def skew(a: NDArray) -> NDArray:
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])

@@ -10,13 +10,17 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.errors import InputError
 
+UNSIZED = ("nothing in the model has a length: errors of positions are relative to one unit of "
+           "length; give an absolute one, such as Tolerance(1e-3, position=1e-6)")
 FINEST = 1e-9       # relative error of a run below which Newton's tolerance and rounding decide
 
 
 class Tolerance(NamedTuple):
     """Allowed errors of positions and rotations, relative ones added to absolute ones.
 
-    Relative means of the model's extent for positions and of one radian for rotations.
+    Relative means of the model's extent for positions and of one radian for rotations. Where
+    nothing in the model has a length, as in a single mass without a moment of inertia, it means one
+    unit of length, and a run warns.
     """
 
     relative: float = 1e-3
@@ -52,17 +56,22 @@ class Tolerance(NamedTuple):
             Positions or rotations are allowed less than `FINEST`.
         """
         sizes, rotational = np.array([extent, 1.0]), np.array([False, True])
-        found = (self.allowed(sizes, rotational) / np.maximum(sizes, 1e-300)).min()
+        found = (self.allowed(sizes, rotational) / sizes)[sizes > 0.0].min()
         if found < FINEST:
             raise InputError(f"the tolerance allows errors of {found:.3g}, relative to the model's "
                              f"extent or in radians: give at least {FINEST:g}, below which shorter "
                              "steps do not help")
 
     def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
-        """Allowed error of coordinates of a magnitude; infinite where that is zero."""
+        """Allowed error of positions and rotations of a magnitude.
+
+        Where nothing in a model has a length, which is a magnitude of 0, a relative error alone is
+        relative to one unit of length (`UNSIZED`).
+        """
         absolute = np.where(rotational, self.rotation, self.position)
-        size = np.asarray(magnitude)
-        return np.where(size > 0.0, absolute + self.relative * size, np.inf)
+        found = absolute + self.relative * np.asarray(magnitude)
+        found = np.where(found == 0.0, self.relative, found)
+        return found
 
 
 def given(tolerance: Tolerance | None) -> Tolerance | None:

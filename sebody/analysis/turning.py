@@ -58,6 +58,8 @@ class Spin:
         """Set velocities and accelerations to those of the rotation, of fixed nodes, too."""
         state = run.state
         state.v[:], state.a[:] = 0.0, 0.0
+        if not self.rotates:
+            return
         for triplet, at in _triplets(run):
             if triplet.rotational:
                 state.v[at] = self.velocity if self.planar else _material(run, triplet, self)

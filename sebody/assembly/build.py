@@ -14,6 +14,7 @@ from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.kernels.layout import scratch_size
 from sebody.kernels.loader import element_kernel, load
+from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
 
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
@@ -41,12 +42,12 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
         index=np.array([i for batch in batches.all for row in batch.rows for i in row]),
         constants=batches.constants, rotation_at=_rotation_starts(numbering),
-        routines=np.zeros(1, dtype=np.int64),
+        routines=np.zeros(2, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
-        **port_arrays(numbering.histories, numbering.prescribed),
-        relaxed=np.zeros(1, dtype=np.int64),
+        **port_arrays(numbering.histories, numbering.prescribed, numbering.jumps),
+        relaxed=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
         damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
@@ -101,10 +102,10 @@ def _rotation_starts(numbering: Numbering) -> NDArray:
 
 def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
     """Magnitudes of coordinates: the model's extent for positions, one radian for rotations."""
-    extent = np.abs([n.point for n in model.nodes.values()]).max()
+    length = extent(model)
     size = np.zeros(numbering.total)
     for node in model.nodes.values():
-        for triplet, magnitude in ((node.position, extent), (node.rotation, 1.0)):
+        for triplet, magnitude in ((node.position, length), (node.rotation, 1.0)):
             if triplet is not None and id(triplet) in numbering.triplets:
                 size[stretch(numbering, triplet)] = magnitude
     return size

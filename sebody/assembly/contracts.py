@@ -42,6 +42,7 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
     matrices = sum(id(t) in numbering.rotations for t in element.triplets)
     wrong = _different((("unknowns", unknowns, kernel.WIDTH),
                         ("multipliers", element.multipliers, kernel.MULTIPLIERS),
+                        ("numbers kept", int(element.keeps_angle), kernel.MEMORY),
                         ("positions", positions_of(element), kernel.N_POSITIONS),
                         ("rotation matrices", matrices, kernel.N_ROTATIONS)))
     if kernel.DRIVEN and element.history is None:

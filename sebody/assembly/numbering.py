@@ -31,6 +31,8 @@ class Numbering(NamedTuple):
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
+    memories: dict[int, int] = {}       # id(element) -> first number it keeps, in State.frames
+    jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
 
 
 def coordinates(numbering: Numbering, triplet: Triplet) -> list[int]:
@@ -45,12 +47,28 @@ def stretch(numbering: Numbering, triplet: Triplet) -> slice:
     return slice(first, first + triplet.start.size)
 
 
+def kept_frames(numbering: Numbering) -> int:
+    """Length of `State.frames`: frames of the superelements, and one number of each element."""
+    return 9 * len(numbering.modes) + len(numbering.memories)
+
+
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates belong to rotations, (total,) of bool."""
     found = np.zeros(numbering.total, dtype=bool)
     for node in model.nodes.values():
         if node.rotation is not None and id(node.rotation) in numbering.triplets:
             found[coordinates(numbering, node.rotation)] = True
+    return found
+
+
+def placed(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Which coordinates belong to positions or rotations, (total,) of bool: no modes, multipliers.
+    """
+    found = np.zeros(numbering.total, dtype=bool)
+    for node in model.nodes.values():
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                found[coordinates(numbering, triplet)] = True
     return found
 
 
@@ -90,8 +108,11 @@ def number(model: Mechanism) -> Numbering:
         order.place(triplet)
     matrices = [] if model.planar else [t for t in used if t.rotational]
     rotations = {id(t): k for k, t in enumerate(matrices)}
+    ports = number_ports(model, order.at)
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
-                     order.names, dependent, *number_ports(model, order.at), np.array(groups))
+                     order.names, dependent, ports.of, ports.names, ports.histories,
+                     ports.prescribed, np.array(groups), jumps=ports.jumps,
+                     memories=_memories(model))
 
 
 class _Order:
@@ -124,6 +145,12 @@ class _Order:
         self.multipliers[id(constraint)] = len(self.names)
         self.names.extend(f"multiplier {j} of {constraint.name}"
                           for j in range(constraint.multipliers))
+
+
+def _memories(model: Mechanism) -> dict[int, int]:
+    """Places, behind the frames of all superelements, of what elements keep."""
+    return {id(element): 9 * len(model.bodies) + k for k, element in enumerate(
+        load for load in model.loads if load.keeps_angle)}
 
 
 def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:

@@ -10,6 +10,7 @@ from sebody.engine.tables import AMPLITUDE, PIECE, POLYNOMIAL
 from sebody.kernels.loader import element_kernel
 from sebody.model.histories import History, same_waves
 from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element
 
 
 class Ports(NamedTuple):
@@ -19,39 +20,53 @@ class Ports(NamedTuple):
     names: list[str]
     histories: list[History]
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
+    jumps: list[list[float]]        # times at which accelerations jump with the port's history
 
 
 def number_ports(model: Mechanism, at: dict[int, int]) -> Ports:
     """Power ports of a model; `at` is the first coordinate of each triplet, by id."""
-    found = Ports({}, [], [], [])
+    found = Ports({}, [], [], [], [])
 
-    def add(name: str, history: History | None) -> int:
+    def add(name: str, history: History | None, jumps: list[float]) -> int:
         found.names.append(name)
         found.histories.append(history or History())
+        found.jumps.append(jumps)
         return len(found.names) - 1
 
     for element in (*model.constraints, *model.loads):
         if element_kernel(element.kind).POWER:
-            found.of[id(element)] = add(element.name, element.history)
+            found.of[id(element)] = add(element.name, element.history, _jumps(element))
     for body in model.bodies.values():
         if body.body.damping is not None:
-            found.of[id(body)] = add(f"damping of {body.name}", None)
+            found.of[id(body)] = add(f"damping of {body.name}", None, [])
     for triplet in model.triplets():
         rotational = int(triplet.rotational and not model.planar)
         for motion in triplet.motions:
-            port = add(motion.name, motion.history)
+            port = add(motion.name, motion.history, motion.history.abrupt(2))
             found.prescribed.extend((at[id(triplet)] + k, port, rotational, d)
                                     for k, d in enumerate(motion.direction) if d != 0.0)
     return found
 
 
-def port_arrays(histories: list[History],
-                prescribed: list[tuple[int, int, int, float]]) -> dict[str, NDArray]:
+def _jumps(element: Element) -> list[float]:
+    """Times at which an element makes accelerations jump."""
+    if element.history is None:
+        return []
+    if element.function is not None:        # of its corners: what it does there is not known
+        return list(element.history.corners)
+    return element.history.abrupt(2 if element.multipliers else 0)
+
+
+def port_arrays(histories: list[History], prescribed: list[tuple[int, int, int, float]],
+                jumps: list[list[float]]) -> dict[str, NDArray]:
     """The members of `System` for histories of ports and for prescribed coordinates."""
+    jumping = {t for times in jumps for t in times}
+    corners = sorted(jumping.union(*(h.corners for h in histories)))
     return {"table_at": np.array([0, *accumulate(len(h.times) for h in histories)], dtype=np.int64),
             "table_times": np.array([t for h in histories for t in h.times], dtype=float),
             "table_pieces": _pieces(histories),
-            "corners": np.array(sorted({t for h in histories for t in h.corners}), dtype=float),
+            "corners": np.array(corners, dtype=float),
+            "jumps": np.array([int(t in jumping) for t in corners], dtype=np.int64),
             "functions": np.array([h.addresses for h in histories],
                                   dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in prescribed], dtype=np.int64).reshape(-1, 3),

@@ -34,6 +34,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--index", type=int, default=None, metavar="I",
                         help="2: constraints hold for velocities, too (default 3, with "
                              "--accuracy 2)")
+    parser.add_argument("--equilibrium", action="store_true",
+                        help="start at the equilibrium under gravity and the loads of t = 0")
     parser.add_argument("--save", type=Path, metavar="FILE.npz",
                         help="save the state to go on from")
     parser.add_argument("--resume", type=Path, metavar="FILE.npz",
@@ -79,7 +81,8 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
     warnings.simplefilter("ignore", LimitWarning)   # they are printed after the summary
     t_end = _t_end(scene, options)
-    simulation = None if options.accuracy is not None else _simulation(scene, options)
+    start = _start(scene, options)
+    simulation = None if options.accuracy is not None else _simulation(scene, options, start)
     bar, errors = Progress(t_end), []
 
     def progress(fraction: float) -> None:
@@ -89,7 +92,7 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
     with interrupts.held():
         try:
             result = (simulation.run_to(t_end, progress).result() if simulation else
-                      _within(scene, options, t_end, progress))
+                      _within(scene, options, t_end, progress, start))
         except (SimulationError, Interrupted) as stop:
             result = stop.result
             errors.append(str(stop))
@@ -98,7 +101,8 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
         return Outcome(result, *_written(options, scene, simulation, result, errors))
 
 
-def _simulation(scene: "Scene", options: argparse.Namespace) -> "Simulation":
+def _simulation(scene: "Scene", options: argparse.Namespace,
+                start: "Result | None") -> "Simulation":
     from sebody.analysis.restart import resume
     from sebody.analysis.schemes import generalized_alpha
     from sebody.analysis.simulation import Simulation
@@ -108,18 +112,26 @@ def _simulation(scene: "Scene", options: argparse.Namespace) -> "Simulation":
     index = 3 if options.index is None else options.index
     return Simulation(scene.model, _step(scene, options),
                       generalized_alpha(_rho(options), index=index),
-                      1 if options.every is None else options.every)
+                      1 if options.every is None else options.every,
+                      start=start)
 
 
 def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
-            progress: Callable[[float], None]) -> "Result":
+            progress: Callable[[float], None], start: "Result | None") -> "Result":
     from sebody.analysis.accuracy import simulate_within
     from sebody.analysis.schemes import generalized_alpha
     from sebody.analysis.tolerance import Tolerance
 
     index = 2 if options.index is None else options.index
     return simulate_within(scene.model, _step(scene, options), t_end, Tolerance(options.accuracy),
-                           generalized_alpha(_rho(options), index=index), progress)
+                           generalized_alpha(_rho(options), index=index), progress, start)
+
+
+def _start(scene: "Scene", options: argparse.Namespace) -> "Result | None":
+    """The state to start from, if it is not the scene's own."""
+    from sebody.analysis.statics import equilibrium
+
+    return equilibrium(scene.model) if options.equilibrium else None
 
 
 def _step(scene: "Scene", options: argparse.Namespace) -> float:
@@ -183,7 +195,7 @@ def _check(options: argparse.Namespace, scene: "Scene") -> None:
             raise InputError("with --accuracy --step is the grid of the output: give a longer "
                              "one in place of --every")
     if options.resume:
-        for name in ("step", "rho", "index", "every"):
-            if getattr(options, name) is not None:
+        for name in ("step", "rho", "index", "every", "equilibrium"):
+            if getattr(options, name) not in (None, False):
                 raise InputError(f"--resume goes on with the {name} that was saved: leave out "
                                  f"--{name}")

@@ -7,7 +7,7 @@ from numba.extending import intrinsic
 from sebody.engine.links import place_dependent, pull_back
 from sebody.engine.tables import history_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
-from sebody.kernels.layout import C_DAMPING, ENERGY, OK, POWERS, RESIDUAL, VELOCITY
+from sebody.kernels.layout import C_DAMPING, CLOCK, OK, RESIDUAL, VELOCITY
 from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import rotate, tangent_operator
 
@@ -48,19 +48,29 @@ def _run_part(task, b, first, count, system, state):
 @compiled(forceinline=True)
 def set_loads(system, loads, t):
     """Amplitudes of the power ports at a time, and their first two derivatives."""
+    set_loads_beside(system, loads, t, 0.0)
+
+
+@compiled
+def set_loads_beside(system, loads, t, beside):
+    """The same before a jump at t, with a short negative time `beside`, or after it."""
     for k in range(system.functions.shape[0]):
         if system.functions[k, 0] == 0:
             history_at(system.table_times, system.table_pieces, system.table_at[k],
-                       system.table_at[k + 1] - 1, t, loads, 3 * k)
+                       system.table_at[k + 1] - 1, t, beside, loads, 3 * k)
+            continue
+        if system.functions[k, 0] == CLOCK:     # what is read at this time may jump
+            loads[3 * k], loads[3 * k + 1], loads[3 * k + 2] = t + beside, 1.0, 0.0
             continue
         for i in range(3):
-            loads[3 * k + i] = (_call_function(system.functions[k, i], t)
+            loads[3 * k + i] = (_call_function(system.functions[k, i], t + beside)
                                 if system.functions[k, i] != 0 else 0.0)
+        loads[3 * k] -= beside * loads[3 * k + 1]       # of a motion, which does not jump
 
 
 @compiled(forceinline=True)
 def move_prescribed(system, state):
-    """Set prescribed coordinates and their rates; of rotations, the increment of the step."""
+    """Set prescribed coordinates, their rates, and the increments of the step."""
     loads, old = state.loads, state.loads_old
     for k in range(system.prescribed.shape[0]):
         i = system.prescribed[k, 0]
@@ -68,9 +78,8 @@ def move_prescribed(system, state):
     for k in range(system.prescribed.shape[0]):
         i, port, factor = (system.prescribed[k, 0], 3 * system.prescribed[k, 1],
                            system.prescribed_factor[k])
-        if system.prescribed[k, 2] == 1:
-            state.dq[i] += factor * (loads[port] - old[port])
-        else:
+        state.dq[i] += factor * (loads[port] - old[port])
+        if system.prescribed[k, 2] == 0:
             state.q[i] += factor * loads[port]
         state.v[i] += factor * loads[port + 1]
         state.a[i] += factor * loads[port + 2]
@@ -220,30 +229,3 @@ def to_body_axes(system, frames, vector, back):
             p[0] = R[0] * x + R[3] * y + R[6] * z
             p[1] = R[1] * x + R[4] * y + R[7] * z
             p[2] = R[2] * x + R[5] * y + R[8] * z
-
-
-@compiled(forceinline=True)
-def set_powers(system, state):
-    """Power of every power port in the current state."""
-    if state.powers.size == 0:
-        return
-    if system.damped[0] == 1:
-        run_kernels(ENERGY, 0, system.first_joint[0], system, state)
-    run_kernels(ENERGY, system.first_power[0], system.address.size, system, state)
-    for k in range(state.powers.size):
-        state.powers[k] = state.energy[POWERS + k]
-    if system.prescribed.shape[0] > 0:
-        add_prescribed_powers(system, state)
-
-
-@compiled
-def add_prescribed_powers(system, state):
-    """Power of prescribed motions: the forces on their coordinates times the velocities."""
-    run_kernels(RESIDUAL, 0, system.address.size, system, state)
-    sum_forces(system, state, state.residual)
-    for k in range(system.prescribed.shape[0]):
-        state.powers[system.prescribed[k, 1]] = 0.0
-    for k in range(system.prescribed.shape[0]):
-        port = system.prescribed[k, 1]
-        state.powers[port] += (state.residual[system.prescribed[k, 0]]
-                               * system.prescribed_factor[k] * state.loads[3 * port + 1])

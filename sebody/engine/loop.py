@@ -7,6 +7,7 @@ and calls it again.
 
 import numpy as np
 
+from sebody.engine.calls import call_refactorize, call_restart
 from sebody.engine.evaluate import (
     assemble,
     assemble_moved,
@@ -16,7 +17,6 @@ from sebody.engine.evaluate import (
 )
 from sebody.engine.matrix import solve
 from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
-from sebody.engine.routines import call_refactorize
 from sebody.engine.state import (
     ADAPTIVE,
     BEGIN,
@@ -24,6 +24,7 @@ from sebody.engine.state import (
     CHUNK,
     CONVERGED,
     DONE,
+    DUE,
     EVALUATED,
     FACTOR,
     FACTORED,
@@ -47,6 +48,7 @@ from sebody.engine.state import (
     PROJECTED,
     READY,
     REASON,
+    RESTART,
     SLOW,
     SOLVE,
     SOLVED,
@@ -54,8 +56,14 @@ from sebody.engine.state import (
     TARGET,
     WANTED,
 )
-from sebody.engine.step import accept, back, begin_step, cut_step
-from sebody.engine.step_control import SHORTEST, accurate, choose_step, write_between
+from sebody.engine.step import accept, back, begin_step, cut_step, write_record
+from sebody.engine.step_control import (
+    SHORTEST,
+    accurate,
+    choose_part,
+    choose_step,
+    write_between,
+)
 from sebody.engine.vectors import swap
 from sebody.kernels.layout import OK, RESIDUAL, TANGENT
 from sebody.kernels.pipeline import compiled
@@ -71,6 +79,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
     """
     control = state.control
     mixed = not dense and not scheme.stabilized
+    lead = scheme.alpha_m - scheme.alpha_f if scheme.stabilized else 0.0
     steps = 0
     reason = np.int64(NO_REASON)
     while True:
@@ -80,9 +89,16 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             if reason == INACCURATE or not cut_step(state):     # an inaccurate step is cut already
                 return FAILED
             reason = np.int64(NO_REASON)
+        if control[PHASE] == BEGIN and control[ADAPTIVE] == 1:
+            write_between(system, state, record, last_grid)
+        if control[RESTART] != 0:
+            code = call_restart(system.routines[1], system, state, lead, dense)
+            if code != DONE:
+                return code
+            if control[DUE] == 1:
+                write_record(state, record)
+            continue
         if control[PHASE] == BEGIN:
-            if control[ADAPTIVE] == 1:
-                write_between(system, state, record, last_grid)
             if control[GRID] >= last_grid:
                 return DONE
             if steps >= chunk:
@@ -90,6 +106,8 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             steps += 1
             if control[ADAPTIVE] == 1:
                 choose_step(system, state)
+            elif system.corners.size > 0:
+                choose_part(system, state)
             begin_step(system, state, scheme)
             begin_with_matrix(state)
             control[PHASE] = ITERATE

@@ -27,19 +27,25 @@ THIN = 1e-6             # smallest moment of inertia that scales its axis, relat
 @compiled
 def sum_matrices(system, state, forces):
     """Sum the element matrices, which are not changed; links need the forces, too."""
-    for k in range(state.matrix.size):
-        state.matrix[k] = 0.0
-    for k in range(system.padding.size):
-        state.matrix[system.padding[k]] = 1.0
+    clear_matrix(system, state)
     for element in range(system.summands.shape[0]):
-        _sum_element(system, state, element)
+        sum_element(system, state, element)
     if system.links.elements.shape[0] > 0:
         add_second_order(system.links, state.coefficients[C_STIFFNESS], state.q, state.R, state.T,
                          forces, state.matrix)
 
 
 @compiled
-def _sum_element(system, state, element):
+def clear_matrix(system, state):
+    """Zeros, but ones on the diagonal of free slots."""
+    for k in range(state.matrix.size):
+        state.matrix[k] = 0.0
+    for k in range(system.padding.size):
+        state.matrix[system.padding[k]] = 1.0
+
+
+@compiled
+def sum_element(system, state, element):
     """Add an element matrix, its positions rotated to the axes they are solved for in."""
     summand = at(pointer_to(system.summands), SUMMAND * element)
     start, width, first_rotated, end_rotated, linked, first, end = (
@@ -114,8 +120,8 @@ def equilibrate(system, state):
     floor = 0.0
     for i in range(n):
         state.weight[i] = 1.0 / state.scale[i]
-        size = system.magnitude[i] * state.weight[i]
-        floor += size * size
+        size = max(system.magnitude[i], abs(state.q[i])) * state.weight[i]
+        floor += size * size * (1.0 if system.magnitude[i] > 0.0 else 0.0)
     state.clock[FLOOR] = ROUNDING * np.sqrt(floor)      # left by rounding of positions
 
 

@@ -1,36 +1,31 @@
-"""Functions that the loop calls through their addresses, as it calls kernels.
-
-What a compiled function calls by name is compiled again as a part of it. Factorizations are called
-seldom and are long: by address the loop is compiled without them, and beside them.
-"""
+"""Addresses of the functions that the loop calls by address, see `sebody.engine.calls`."""
 
 from functools import cache
 
-from llvmlite import ir
+import numpy as np
 from numba import typeof, types
-from numba.extending import intrinsic
+from numpy.typing import NDArray
 
 from sebody.engine.matrix import refactorize
+from sebody.engine.restart import restart
+from sebody.kernels.callees import Function
+
+RESTARTED = types.float64, types.boolean        # what `restart` is given beside system and state
+REFACTORIZED = types.int64, types.boolean
 
 
-@intrinsic
-def call_refactorize(typingctx, address, system, state, wanted, dense):
-    """Call `sebody.engine.matrix.refactorize` at its address."""
-    def codegen(context, builder, sig, args):
-        kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
-        function = ir.FunctionType(context.get_value_type(sig.return_type), kinds)
-        return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
+def addresses(system, state) -> NDArray:
+    """Addresses of `refactorize` and `restart` for a system and a state of these types, (2,).
 
-    return types.boolean(types.int64, system, state, types.int64, types.boolean), codegen
-
-
-def refactorize_address(system, state) -> int:
-    """The address, for a system and a state of these types: the function is compiled if needed."""
-    return _address(typeof(system), typeof(state), types.int64, types.boolean)
+    The functions are compiled if needed.
+    """
+    kinds = typeof(system), typeof(state)
+    return np.array([_address(refactorize, *kinds, *REFACTORIZED),
+                     _address(restart, *kinds, *RESTARTED)])
 
 
 @cache
-def _address(*kinds: types.Type) -> int:
-    refactorize.compile(kinds)
-    compiled = refactorize.overloads[kinds]
+def _address(function: Function, *kinds: types.Type) -> int:
+    function.compile(kinds)
+    compiled = function.overloads[kinds]
     return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)

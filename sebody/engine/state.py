@@ -21,6 +21,7 @@ CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after
 NO_REASON = OK
 NOT_FINITE, SLOW, INACCURATE, GAP = range(max(HALF_TURN, NO_FRAME) + 1,
                                           max(HALF_TURN, NO_FRAME) + 5)
+NO_START = GAP + 1
 REASONS = {
     HALF_TURN: "a node is rotated by nearly half a turn against its body's frame",
     NO_FRAME: "the search for a body's frame did not end",
@@ -28,7 +29,10 @@ REASONS = {
     SLOW: "Newton's iteration did not converge",
     INACCURATE: "the error of a step is above the tolerance",
     GAP: "what the constraints demand cannot be met",
+    NO_START: "no accelerations were found that fit forces and constraints",
 }
+NOTHING, BEND, JUMP = range(3)  # what a step ends at; at a jump of accelerations is a restart
+ASKED, AHEAD = 1, 2     # of a restart: to be done; looking ahead, see `engine.restart`
 FINEST = 4096           # largest number of equal parts that a grid step is cut into
 
 
@@ -46,12 +50,14 @@ class State(Arrays):
     ------------------------------------------------------------------------------------------------
     now                   the whole row of the present state; the members down to `frames_old` are
                           views of its parts
+    kept                  a copy of it, while something is evaluated in another state
     works                 (p,) work of every power port since the start
     q                     (N,) positions, modes, multipliers; of rotations increments of the step
     R                     (9 r,) rotation matrices, row by row
     v, a                  (N,) velocities and accelerations; zeros at multipliers
-    frames                (9 b,) frames of the superelements, row by row, in the current iterate
-    frames_old            (9 b,) the same at the last accepted step
+    frames                (9 b + m,) frames of the superelements, row by row, in the current
+                          iterate, then what elements keep from step to step, m numbers
+    frames_old            (9 b + m,) the same at the last accepted step
     --------------------  --------------------------------------------------------------------------
     integrator
     ------------------------------------------------------------------------------------------------
@@ -69,8 +75,11 @@ class State(Arrays):
     ------------------------------------------------------------------------------------------------
     loads                 (3 p,) amplitude of every port and its first two rates
     loads_old             (3 p,) the same
-    powers                (p,) power of every port at the last accepted step
-    powers_old            (p,) the same one step earlier
+    acting                forces of the ports, as residuals: of elements in the order of `g`, then
+                          on prescribed coordinates
+    acting_old            the same
+    works_old             (p,) work of every port
+    powers, powers_old    (p,) power of every port at both ends of the last step, for output within
     --------------------  --------------------------------------------------------------------------
     elements
     ------------------------------------------------------------------------------------------------
@@ -115,6 +124,7 @@ class State(Arrays):
     """
 
     now: NDArray
+    kept: NDArray
     works: NDArray
     q: NDArray
     R: NDArray
@@ -134,6 +144,9 @@ class State(Arrays):
     T: NDArray
     loads: NDArray
     loads_old: NDArray
+    acting: NDArray
+    acting_old: NDArray
+    works_old: NDArray
     powers: NDArray
     powers_old: NDArray
     coefficients: NDArray
@@ -179,13 +192,13 @@ class State(Arrays):
         now = np.zeros(RECORD.size(counts))
         parts = {name: now[part] for name, part in RECORD.slices(counts).items()
                  if name in cls.__annotations__}
-        return cls(now=now, **parts, **others)
+        return cls(now=now, kept=now.copy(), **parts, **others)
 
     @property
     def recorded_parts(self) -> dict[str, slice]:
         """Where the parts of `RECORD` are in `now` and in the rows of a record."""
         return RECORD.slices({"ports": self.works.size, "coordinates": self.q.size,
-                              "rotations": self.R.size // 9, "bodies": self.frames.size // 9})
+                              "rotations": self.R.size // 9, "kept": self.frames.size})
 
     def set_coefficients(self, **values: float) -> None:
         """Set some of the coefficients of the matrix, by their names in `COEFFICIENTS`."""
@@ -210,8 +223,10 @@ class State(Arrays):
  CHOSEN,                # step length that the error allows (variable steps)
  LARGEST_ERROR,         # of a step with that length, slowly forgotten; 1 is allowed
  TARGET,                # norm below which a correction counts as converged
- ) = range(15)
-CLOCKS = TARGET + 1
+ END,                   # time at the end of the step under way
+ BESIDE,                # time from there at which its loads are read: before a jump, or 0
+ ) = range(17)
+CLOCKS = BESIDE + 1
 # State.control: indices of integers
 (PHASE,                 # where the loop continues: BEGIN to SOLVED
  GRID,                  # output steps completed
@@ -236,8 +251,13 @@ CLOCKS = TARGET + 1
  REJECTED,              # steps repeated because of their error
  SECANT,                # 1 where the last correction belongs to this step and its matrix
  RELAXED,               # 1 where the matrix is regularized
- ) = range(23)
-CONTROLS = RELAXED + 1
+ MEETS,                 # what the step under way ends at: NOTHING, BEND or JUMP
+ SPLIT,                 # 1 where it ends at a jump within a part of an output step
+ INSIDE,                # 1 where it began at such a jump
+ RESTART,               # ASKED or AHEAD where accelerations are to be solved for, else 0
+ DUE,                   # 1 where the state is recorded after that
+ ) = range(28)
+CONTROLS = DUE + 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,38 +3,51 @@
 The unknowns of a step are the increments dq (rotations: R exp(dTheta)) and the multipliers.
 """
 
-from sebody.engine.evaluate import move_prescribed, set_loads, set_powers, update_rotations
+import numpy as np
+
+from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
 from sebody.engine.newton import SLOWEST, watch_age
 from sebody.engine.state import (
     ACCELERATION_NORM,
     ADAPTIVE,
+    ASKED,
     AUX_STEP,
     BACK_OFF,
     BEGIN,
+    BESIDE,
     CHOSEN,
     CONTRACTION,
     CURRENT_STEP,
     CUTS,
+    DUE,
+    END,
     EVALUATED,
     FINEST,
     FRESH,
     GRID,
     HELD,
+    INSIDE,
     ITERATION,
     ITERATIONS,
+    JUMP,
     KEPT,
     LAST_NORM,
     LEVEL,
+    MEETS,
     PHASE,
     RECORDED,
+    RESTART,
     SECANT,
+    SPLIT,
     STEP,
     STEPS,
     TIME,
     UNIT,
     WANTED,
 )
-from sebody.engine.step_control import SHORTEST, go_on
+from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, go_on, set_end
+from sebody.engine.vectors import copy
+from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.layout import (
     C_CONSTRAINT,
@@ -54,8 +67,9 @@ MEMORY = 0.99           # factor of the largest norm of accelerations, in every 
 
 @compiled(forceinline=True)
 def begin_step(system, state, scheme):
-    """Remember the accepted state, predict the next one."""
+    """Remember the accepted state, predict the next one at the end of the step."""
     h = state.clock[CURRENT_STEP]
+    set_end(system, state)
     for i in range(state.R.size):
         state.R_old[i] = state.R[i]
     for i in range(state.frames.size):
@@ -78,7 +92,8 @@ def begin_step(system, state, scheme):
         state.v[i] = v + h * (aux + gamma * change)
         state.a[i] = to_a * (aux + (1.0 - alpha_m) * change - scheme.alpha_f * a)
         state.aux[i] = aux + change
-    set_loads(system, state.loads, state.clock[TIME] + h)
+    copy(state.loads, state.loads_old)
+    set_loads_beside(system, state.loads, state.clock[END], state.clock[BESIDE])
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     update_rotations(system, state)
@@ -130,40 +145,40 @@ def accept(system, state, record):
     clock[ACCELERATION_NORM] *= MEMORY
     control[STEPS] += 1
     if control[ADAPTIVE] == 1:
-        go_on(system, state)
+        go_on(state)
     else:
         go_on_grid(state, record)
 
 
 @compiled(forceinline=True)
 def go_on_grid(state, record):
-    """Write output, set time and length of the next step; steps are parts of grid steps."""
+    """Write output, set time and length of the next step; steps are parts of grid steps.
+
+    What a jump leaves of a step may be very short: accelerations of constraints of index 3 that
+    have not settled in it would spoil the next step.
+    """
     clock, control = state.clock, state.control
-    control[UNIT] += FINEST >> control[LEVEL]
+    short = clock[STEP] / (1 << control[LEVEL]) > LONGEST * clock[CURRENT_STEP]
+    if control[MEETS] == JUMP or (control[INSIDE] == 1 and short):
+        control[RESTART] = ASKED
+    if control[SPLIT] == 1:
+        clock[TIME], control[INSIDE] = clock[END], 1
+        control[UNIT] = np.int64(FINEST * (clock[TIME] / clock[STEP] - control[GRID]) + NEAR)
+        return
+    size = FINEST >> control[LEVEL]
+    control[UNIT], control[INSIDE] = (control[UNIT] // size + 1) * size, 0
     if control[UNIT] >= FINEST:             # back on the output grid
         control[UNIT] = 0
         control[GRID] += 1
-        clock[TIME] = control[GRID] * clock[STEP]
-        if control[GRID] % record.every[0] == 0:
-            write_record(state, record)
-    else:
-        clock[TIME] = (control[GRID] + control[UNIT] / FINEST) * clock[STEP]
+        control[DUE] = np.int64(control[GRID] % record.every[0] == 0)
+    clock[TIME] = (control[GRID] + control[UNIT] / FINEST) * clock[STEP]
+    if control[MEETS] == JUMP:
+        clock[TIME] = clock[END]
+    if control[DUE] == 1 and control[RESTART] == 0:
+        write_record(state, record)
     while control[LEVEL] > 0 and control[UNIT] % (FINEST >> (control[LEVEL] - 1)) == 0:
         control[LEVEL] -= 1                 # try the longer step again
     clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
-
-
-@compiled(forceinline=True)
-def add_work(system, state, h):
-    """Add the work of the power ports over a step, by the trapezoidal rule."""
-    for k in range(state.powers.size):
-        state.powers_old[k] = state.powers[k]
-        state.works[k] += 0.5 * h * state.powers[k]
-    set_powers(system, state)
-    for k in range(state.powers.size):
-        state.works[k] += 0.5 * h * state.powers[k]
-    for k in range(state.loads.size):
-        state.loads_old[k] = state.loads[k]
 
 
 @compiled(forceinline=True)
@@ -192,7 +207,7 @@ def write_record(state, record):
     state.now[RECORD_ITERATIONS] = state.control[ITERATIONS]
     for i in range(state.now.size):     # one block: nine separate copies cost as much as a step
         record.rows[k, i] = state.now[i]
-    state.control[RECORDED] = k + 1
+    state.control[RECORDED], state.control[DUE] = k + 1, 0
 
 
 @compiled
@@ -207,6 +222,7 @@ def back(state):
         state.R[i] = state.R_old[i]
     for i in range(state.frames.size):
         state.frames[i] = state.frames_old[i]
+    copy(state.loads_old, state.loads)
     state.control[PHASE] = BEGIN
     state.control[WANTED] = EVALUATED
     state.clock[CONTRACTION] = SLOWEST      # nothing is known of the next attempt
@@ -221,6 +237,8 @@ def cut_step(state):
         clock[CHOSEN] = 0.5 * clock[CURRENT_STEP]
         control[HELD] = 0
         return clock[CHOSEN] > SHORTEST * clock[STEP]
-    control[LEVEL] += 1
-    clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
+    tried = clock[CURRENT_STEP]
+    while clock[CURRENT_STEP] >= tried and (1 << control[LEVEL]) <= FINEST:
+        control[LEVEL] += 1
+        clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
     return (1 << control[LEVEL]) <= FINEST

@@ -9,20 +9,35 @@ import numpy as np
 
 from sebody.engine.links import place_dependent
 from sebody.engine.state import (
+    ADAPTIVE,
+    ASKED,
     AUX_STEP,
+    BEND,
+    BESIDE,
     CHOSEN,
     CORNER,
     CURRENT_STEP,
+    END,
+    FINEST,
     GRID,
     HELD,
+    INSIDE,
     ITERATIONS,
+    JUMP,
     LARGEST_ERROR,
+    LEVEL,
+    MEETS,
+    NOTHING,
     RECORDED,
     REJECTED,
+    RESTART,
+    SPLIT,
     STEP,
     TIME,
+    UNIT,
 )
 from sebody.engine.vectors import copy
+from sebody.engine.work import set_powers
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.layout import (
     A_PART,
@@ -43,6 +58,8 @@ SHORT = 0.2             # smallest factor by which a rejected step is shortened
 PATIENCE = 10           # steps before the next lengthening, unless by the largest factor
 MEMORY = 0.99           # factor of the largest error, in every step
 FAR = 1e3               # steps before a corner from which on they are made to meet it
+NEAR = 1e-6             # of a step: nearer times are one
+BEFORE = 3.0            # times this: how far before a jump loads are read
 SHORTEST = 1e-9         # shortest step, relative to an output interval
 
 
@@ -85,13 +102,10 @@ def accurate(system, state, scheme):
 @compiled
 def choose_step(system, state):
     """Set the length of a step: as the error allows, but so that it meets corners of loads."""
-    clock, control = state.clock, state.control
-    corners = system.corners
-    while control[CORNER] < corners.size and corners[control[CORNER]] <= clock[TIME]:
-        control[CORNER] += 1
+    clock = state.clock
     last, h = clock[CURRENT_STEP], clock[CHOSEN]
-    if control[CORNER] < corners.size:
-        left = corners[control[CORNER]] - clock[TIME]
+    left = next_corner(system, state) - clock[TIME]
+    if left < np.inf:
         parts = np.ceil(left / h - 1e-6)
         if parts < FAR:         # equal steps share a matrix, so rounding must not change h
             h = last if abs(parts * last - left) < 1e-9 * left else left / parts
@@ -99,7 +113,50 @@ def choose_step(system, state):
 
 
 @compiled
-def go_on(system, state):
+def choose_part(system, state):
+    """Set the length of a fixed step: a part of an output step, or what a jump leaves of it."""
+    clock, control = state.clock, state.control
+    corner, size = next_corner(system, state), FINEST >> control[LEVEL]
+    h = clock[STEP] / (1 << control[LEVEL])
+    end, near = clock[TIME] + h, NEAR * h
+    if control[INSIDE] == 1:
+        end = (control[GRID] + (control[UNIT] // size + 1) * size / FINEST) * clock[STEP]
+        h = end - clock[TIME]
+    control[SPLIT] = np.int64(corner < end - near)
+    clock[CURRENT_STEP] = corner - clock[TIME] if control[SPLIT] == 1 else h
+
+
+@compiled
+def next_corner(system, state):
+    """The next time at which steps end, fixed ones where accelerations jump; if none, infinity."""
+    control, corners = state.control, system.corners
+    fixed = control[ADAPTIVE] == 0
+    while control[CORNER] < corners.size and (corners[control[CORNER]] <= state.clock[TIME] or (
+            fixed and system.jumps[control[CORNER]] == 0)):
+        control[CORNER] += 1
+    return corners[control[CORNER]] if control[CORNER] < corners.size else np.inf
+
+
+@compiled
+def set_end(system, state):
+    """Set the time at the end of a step; corners that are as near as rounding are one.
+
+    A step that ends at a jump reads its loads before that.
+    """
+    clock, control, corners = state.clock, state.control, system.corners
+    end, near = clock[TIME] + clock[CURRENT_STEP], NEAR * clock[CURRENT_STEP]
+    clock[END], clock[BESIDE], control[MEETS] = end, 0.0, NOTHING
+    k = control[CORNER]
+    while k < corners.size and corners[k] < end + near:
+        clock[END] = corners[k]
+        control[MEETS] = max(control[MEETS], JUMP if system.jumps[k] == 1 else BEND)
+        k += 1
+    if control[MEETS] == JUMP:
+        clock[BESIDE] = -BEFORE * near
+
+
+@compiled
+def go_on(state):
     """Set the time after an accepted step.
 
     Rates of accelerations jump at a corner: auxiliary accelerations, which are ahead by a part of
@@ -107,22 +164,21 @@ def go_on(system, state):
     the rate of a short pulse on.
     """
     clock, control = state.clock, state.control
-    clock[TIME] += clock[CURRENT_STEP]
-    if control[CORNER] < system.corners.size:
-        corner = system.corners[control[CORNER]]
-        if abs(clock[TIME] - corner) < 1e-6 * clock[CURRENT_STEP]:
-            clock[TIME] = corner
-            clock[AUX_STEP] = np.inf
+    clock[TIME] = clock[END]
+    if control[MEETS] != NOTHING:
+        clock[AUX_STEP] = np.inf
+    if control[MEETS] == JUMP:
+        control[RESTART] = ASKED
 
 
 @compiled
 def write_between(system, state, record, last_grid):
-    """Write output at the grid times within the last step."""
+    """Write output at the grid times within the last step; at its end after a restart."""
     clock, control = state.clock, state.control
     h = clock[CURRENT_STEP]
     while control[GRID] < last_grid:
         t = (control[GRID] + 1) * clock[STEP]
-        if t > clock[TIME]:
+        if t > clock[TIME] or (t == clock[TIME] and control[RESTART] != 0):
             return
         control[GRID] += 1
         if control[GRID] % record.every[0] == 0:
@@ -136,9 +192,12 @@ def _write_row(system, state, row, at, t, s, h):
     """Interpolate the state at a share `s` of the last step, by cubics through values and rates."""
     copy(state.now, row)
     row[RECORD_T], row[RECORD_ITERATIONS] = t, state.control[ITERATIONS]
+    if s == 1.0:
+        return
+    set_powers(system, state, h)
     for k in range(state.works.size):
-        early, late = state.powers_old[k], state.powers[k]
-        row[RECORD_WORKS + k] -= h * ((1.0 - s) * early + 0.5 * (1.0 - s * s) * (late - early))
+        row[RECORD_WORKS + k] = _cubic(s, state.works_old[k], h * state.powers_old[k],
+                                       state.works[k], h * state.powers[k])
     total = state.q.size
     q, v, a = (row[at[Q_PART]:at[Q_PART] + total], row[at[V_PART]:at[V_PART] + total],
                row[at[A_PART]:at[A_PART] + total])

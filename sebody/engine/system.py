@@ -55,7 +55,8 @@ class System(Arrays):
     inertias            (N,) largest mass or moment of inertia of that position or rotation at the
                         start, which sets it
     thin                (N,) the same where about some axis there is nearly none, zero elsewhere
-    magnitude           (N,) size of each coordinate: for the rounding floor and for tolerances
+    magnitude           (N,) size of each coordinate, for tolerances and rounding: of positions the
+                        model's extent, 1 of rotations, 0 of modes and multipliers
     rotated             (k, 2) positions not solved for in global axes: first unknown, axes
     rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
                         solved for in: start and width of the matrix, row, axes of the unknown, of
@@ -70,8 +71,10 @@ class System(Arrays):
     table_at            (p + 1,) where the table of each port begins
     table_times         times of the tables, ascending in each
     table_pieces        (times, PIECE) see `sebody.engine.tables`
-    functions           (p, 3) addresses of a compiled history and its rates, 0 for a table
+    functions           (p, 3) addresses of a compiled history and its rates, 0 for a table; CLOCK
+                        where the history is the time itself
     corners             times at which a history has a corner, ascending
+    jumps               1 for those of them at which accelerations jump
     prescribed          (k, 3) coordinate, port, 1 for rotations
     prescribed_factor   (k,) motion of the coordinate by that of the port
     ------------------  ----------------------------------------------------------------------------
@@ -79,8 +82,10 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     links               rigid links
     relaxed             (1,) 1 where constraints are redundant or something without mass can move
+    massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
+                        accelerations
     damped              (1,) 1 where a superelement has structural damping
-    routines            (1,) address of `refactorize`, see `sebody.engine.routines`
+    routines            (2,) addresses of `refactorize` and `restart`, see `sebody.engine.routines`
     ==================  ============================================================================
     """
 
@@ -122,10 +127,12 @@ class System(Arrays):
     table_times: NDArray
     table_pieces: NDArray
     corners: NDArray
+    jumps: NDArray
     functions: NDArray
     prescribed: NDArray
     prescribed_factor: NDArray
     links: Links
     relaxed: NDArray
+    massless: NDArray
     damped: NDArray
     routines: NDArray

@@ -12,14 +12,15 @@ PIECE = POLYNOMIAL + 3
 
 
 @compiled
-def history_at(times, pieces, first, last, t, out, at):
+def history_at(times, pieces, first, last, t, beside, out, at):
     """Value and two rates at t of the pieces `first` to `last`; constant before the first.
 
     At the time of a piece the value and rates are those of this piece: a motion that starts from
-    speed has it at once.
+    speed has it at once. Pieces are chosen by the time ``t + beside``: of a jump at t a negative
+    `beside` gives what is before it.
     """
     i = first
-    while i < last and times[i + 1] <= t:
+    while i < last and times[i + 1] <= t + beside:
         i += 1
     x = max(t - times[i], 0.0)
     a, b, c, d, e, f = (pieces[i, 0], pieces[i, 1], pieces[i, 2], pieces[i, 3], pieces[i, 4],
@@ -29,7 +30,7 @@ def history_at(times, pieces, first, last, t, out, at):
     out[at + 2] = 2.0 * c + x * (6.0 * d + x * (12.0 * e + x * 20.0 * f))
     if pieces[i, AMPLITUDE] != 0.0:
         _add_harmonic(pieces, i, x, out, at)
-    if t < times[first]:
+    if t + beside < times[first]:
         out[at + 1], out[at + 2] = 0.0, 0.0
 
 

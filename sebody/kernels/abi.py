@@ -7,7 +7,8 @@ once for all kernels. The contents of the arguments are described in `sebody.ker
 argument         meaning
 ===============  =================================================================================
 task             RESIDUAL, TANGENT (residual and matrix), ENERGY, or VELOCITY and ACCELERATION:
-                 constraints differentiated in time
+                 constraints differentiated in time. With ENERGY an element with a power port leaves
+                 the forces that have the power of this port
 count            number of elements in the batch
 stride           length of an index row
 width            number n of unknowns of an element (coordinates, then multipliers)

@@ -178,8 +178,9 @@ ARGUMENTS = (
     ("R", "float64", "rotations, nine numbers each, row by row"),
     ("v", "float64", "velocities of the coordinates"),
     ("a", "float64", "their accelerations"),
-    ("references", "float64", "frames of the last converged step, nine numbers each"),
-    ("frames", "float64", "frames of the current iterate; superelements write theirs"),
+    ("references", "float64", "frames of the last converged step, nine numbers each, then what "
+     "elements keep from step to step"),
+    ("frames", "float64", "the same of the current iterate; all write their own"),
     ("T", "float64", "tangent operators of the step increments of rotations, nine numbers each"),
     ("loads", "float64", "of every power port the amplitude now and its first two derivatives"),
     ("coefficients", "float64", "the row COEFFICIENTS"),
@@ -191,7 +192,7 @@ ARGUMENTS = (
 
 INDEX = Row("index row of an element", (
     Part("constants", (), "where its row of constants begins"),
-    Part("frame", (), "number of its frame"),
+    Part("frame", (), "number of its frame; of elements that keep numbers the place of theirs"),
     Part("port", (), "number of its power port, if it does work: a load, damper or drive"),
     Part("positions", (), "N_POSITIONS, the same for all elements of a batch"),
     Part("rotations", (), "N_ROTATIONS, likewise"),
@@ -233,8 +234,8 @@ RECORD = Row("what is recorded of a state", (
     Part("R", ("rotations", 9), "rotation matrices"),
     Part("v", ("coordinates",), "velocities"),
     Part("a", ("coordinates",), "accelerations"),
-    Part("frames", ("bodies", 9), "frames of superelements"),
-    Part("frames_old", ("bodies", 9), "the same of the last accepted step"),
+    Part("frames", ("kept",), "frames of superelements, nine numbers each, and what elements keep"),
+    Part("frames_old", ("kept",), "the same of the last accepted step"),
 ))
 # places that are the same in all models; of other parts their number, see `Record.at`
 RECORD_T, RECORD_ITERATIONS, RECORD_WORKS = (
@@ -272,6 +273,7 @@ SUPERELEMENT_CONSTANTS = (
     Part("full", (1,), "leading rows and columns of S, M and C that are not diagonal"),
     Part("masses", (1,), "mass"),
 )
+CLOCK = 1       # in place of the address of a function of time: the time itself
 MOST_SLAVED = 12        # coordinates that may follow the unknowns: load modes of three
 # translations, three rotations and six products of angular velocities
 MARGIN = MOST_SLAVED + 6    # what scratch rows of option C have beyond n: these, a force, a moment

@@ -17,6 +17,7 @@ N_POSITIONS = None      # any number
 N_ROTATIONS = 0
 CONSTANTS = ()
 MULTIPLIERS = 0
+MEMORY = 0
 WIDTH = None            # any number
 INERTIAL = False
 POWER = True

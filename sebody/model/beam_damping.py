@@ -10,18 +10,16 @@ named mode of each.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem import planar_beam, straight_beam
-from sebody.fem.beam import section_axes
 from sebody.fem.section import AnySection
 from sebody.reduction import ReducedBody
 
@@ -35,8 +33,8 @@ Times = tuple[float, ...]       # of tension, bending in the planes of y and z, 
 Damping = "float | tuple[float, str | float]"
 
 
-def retardation_times(damping: Damping, name: str, planar: bool, ends: Sequence[ArrayLike],
-                      section: AnySection, up: ArrayLike | None) -> Times:
+def retardation_times(damping: Damping, name: str, planar: bool, length: float,
+                      section: AnySection) -> Times:
     """Retardation times of each kind of deformation; none at all without damping.
 
     Parameters
@@ -65,18 +63,18 @@ def retardation_times(damping: Damping, name: str, planar: bool, ends: Sequence[
     if not named:
         raise InputError(f"{what}: mode is {mode!r}: give 'free 1', 'clamped 1' (at the first "
                          "end), 'hinged 1' or another number up to 9")
-    line = tuple(tuple(map(float, end)) for end in ends)
-    axis = None if up is None else tuple(map(float, up))
+    arguments = planar, length, section, named[1], int(named[2])
     try:
-        hash(section)
-        found = _frequencies(planar, line, section, axis, named[1], int(named[2]))
-    except TypeError:
-        found = _frequencies.__wrapped__(planar, line, section, axis, named[1], int(named[2]))
+        hash(arguments)
+    except TypeError:       # a section of arrays
+        found = _frequencies.__wrapped__(*arguments)
+    else:
+        found = _frequencies(*arguments)
     return tuple(2.0 * ratio / omega if omega else 0.0 for omega in found)
 
 
-def damped(body: ReducedBody, times: Times, line: NDArray, up: ArrayLike | None) -> ReducedBody:
-    """A superelement of a beam with the damping of its material, ``D K D``.
+def damped(body: ReducedBody, times: Times) -> ReducedBody:
+    """A superelement of a beam along x with the damping of its material, ``D K D``.
 
     D takes the root of the time of each kind from coordinates along the beam's axes, and from
     internal modes by the kind of motion that their inertia couples with; it maps rigid motions to
@@ -86,10 +84,8 @@ def damped(body: ReducedBody, times: Times, line: NDArray, up: ArrayLike | None)
     ----------
     times : tuple of float
         See `retardation_times`.
-    line : (3,) or (2,)
-        Along the axis.
     """
-    kinds = _kinds(line, up)
+    kinds = _kinds(body.planar)
     roots = np.sqrt(times)
     blocks = [sum(root * axes[kind] for root, axes in zip(roots, kinds, strict=True))
               for kind, count in (("position", len(body.position_nodes)),
@@ -120,28 +116,28 @@ def _share(body: ReducedBody, axes: dict[str, NDArray], momenta: NDArray) -> flo
     return total
 
 
-def _kinds(line: NDArray, up: ArrayLike | None) -> list[dict[str, NDArray]]:
+def _kinds(planar: bool) -> list[dict[str, NDArray]]:
     """Projections of positions and rotations to tension, bending along y and z, and torsion."""
-    if len(line) == 2:
-        t = line / np.linalg.norm(line)
-        along = np.outer(t, t)
+    if planar:
+        along = np.diag([1.0, 0.0])
         return [{"position": along, "rotation": np.zeros((1, 1))},
                 {"position": np.eye(2) - along, "rotation": np.ones((1, 1))}]
-    t, y, z = (np.outer(axis, axis) for axis in section_axes(line, up))
+    x, y, z = (np.outer(axis, axis) for axis in np.eye(3))
     none = np.zeros((3, 3))
-    return [{"position": t, "rotation": none}, {"position": y, "rotation": z},
-            {"position": z, "rotation": y}, {"position": none, "rotation": t}]
+    return [{"position": x, "rotation": none}, {"position": y, "rotation": z},
+            {"position": z, "rotation": y}, {"position": none, "rotation": x}]
 
 
 @lru_cache(maxsize=64, typed=True)
-def _frequencies(planar: bool, ends: tuple, section: AnySection, up: tuple | None, held: str,
+def _frequencies(planar: bool, length: float, section: AnySection, held: str,
                  number: int) -> Times:
     """Angular frequency of the mode of a number of each kind; 0 where nothing has mass."""
+    ends = np.zeros((2, 2 if planar else 3))
+    ends[1, 0] = length
     fe_model = (planar_beam(*ends, section, ELEMENTS) if planar else
-                straight_beam(*ends, section, ELEMENTS, up))
-    line = np.subtract(ends[1], ends[0])
+                straight_beam(*ends, section, ELEMENTS, (0.0, 1.0, 0.0)))
     K, M = fe_model.stiffness.toarray(), fe_model.mass.toarray()
-    return tuple(_frequency(K, M, axes, held, number) for axes in _kinds(line, up))
+    return tuple(_frequency(K, M, axes, held, number) for axes in _kinds(planar))
 
 
 def _frequency(K: NDArray, M: NDArray, axes: dict[str, NDArray], held: str, number: int) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from copy import deepcopy
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike
 from sebody import inputs, memory
 from sebody.errors import InputError
 from sebody.fem import planar_beam, straight_beam
+from sebody.fem.beam import section_axes
 from sebody.fem.section import AnySection, part_of
 from sebody.model.beam_damping import Damping, Times, damped, retardation_times
 from sebody.model.bodies import superelement
@@ -95,7 +97,8 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
         raise InputError(f"beam {name!r}: up is for beams in space, leave it out")
     if elements % bodies:
         raise InputError(undivided)
-    times = retardation_times(damping, name, model.planar, (first.point, last.point), section, up)
+    length = float(np.linalg.norm(last.point - first.point))
+    times = retardation_times(damping, name, model.planar, length, section)
     options = {"modes": modes, "up": up, "damping": damping, "stiffening": stiffening, **placing}
     step, each = (last.point - first.point) / bodies, elements // bodies
     if each == 1 and stiffening is None:
@@ -116,21 +119,42 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
 
 def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements: int, modes: int,
           up: ArrayLike | None, times: Times) -> ReducedBody:
-    """One superelement of a beam; models of the same beam, as variants are, share it."""
-    points = tuple(tuple(map(float, node.point)) for node in ends)
-    axis = None if up is None else tuple(inputs.vector(up, "up", 3).tolist())
-    arguments = model.planar, points, section, elements, modes, axis, times
+    """One superelement of a beam; beams that differ in place and direction alone share the work.
+
+    Along its own axes stretching and bending are not mixed, so slender beams lose no digits.
+    """
+    line = np.zeros(3)
+    line[:model.dimension] = ends[1].point - ends[0].point
+    axes = section_axes(line, None if up is None else inputs.vector(up, "up", 3))
+    length = float(np.linalg.norm(line))
+    turn = tuple(map(tuple, axes[:model.dimension, :model.dimension].T.tolist()))
+    arguments = model.planar, length, section, elements, modes, times
     try:
         hash(arguments)
     except TypeError:       # a section of arrays, or input that is refused below
-        return _reduced.__wrapped__(*arguments)
-    return _reduced(*arguments)
+        return _turned(_straight.__wrapped__(*arguments), turn)
+    return _placed(turn, *arguments)
 
 
 @lru_cache(maxsize=KEPT, typed=True)
-def _reduced(planar: bool, ends: tuple, section: AnySection, elements: int, modes: int,
-             up: tuple | None, times: Times) -> ReducedBody:
+def _placed(turn: tuple, *arguments: Any) -> ReducedBody:
+    return _turned(_straight(*arguments), turn)
+
+
+def _turned(body: ReducedBody, turn: tuple) -> ReducedBody:
+    """A beam along x as it lies in the model; `turn` has the rows of a rotation matrix."""
+    rotation = np.array(turn)
+    return body if np.array_equal(rotation, np.eye(len(turn))) else body.rotated(rotation)
+
+
+@lru_cache(maxsize=KEPT, typed=True)
+def _straight(planar: bool, length: float, section: AnySection, elements: int, modes: int,
+              times: Times) -> ReducedBody:
+    """A beam along x, its section's y axis along y."""
+    dimension = 2 if planar else 3
+    ends = np.zeros((2, dimension))
+    ends[1, 0] = length
     fe_model = (planar_beam(*ends, section, elements) if planar else
-                straight_beam(*ends, section, elements, up))
+                straight_beam(*ends, section, elements, (0.0, 1.0, 0.0)))
     body = craig_bampton(fe_model, [(0, "full"), (elements, "full")], modes)
-    return damped(body, times, np.subtract(ends[1], ends[0]), up) if times else body
+    return damped(body, times) if times else body

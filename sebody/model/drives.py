@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
-from sebody.model import histories
+from sebody.model import motions
 from sebody.model.inputs import (
     along,
     chosen_name,
@@ -43,10 +43,10 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
     ----------
     motion : table, function, tuple of three functions or ready profile
         The angle, counted from where the nodes start: its value at t = 0 is taken off [rad]. A
-        rate that it has at t = 0 is that of the start. See `sebody.model.histories.motion`.
+        rate that it has at t = 0 is that of the start. See `sebody.model.motions.motion`.
     """
     a, b = pair(model, node, to, "drive", ("rotation",))
-    history = histories.motion(motion)
+    history = motions.motion(motion)
     vectors = turning_axes(model, axis, "drive", a, signed=True)
     constants = dict(zip(("n", "m"), vectors[1:], strict=True)) if vectors else {}
     name = chosen_name(model, name, f"angle at {a.name}")
@@ -66,7 +66,7 @@ def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayL
     a, b = pair(model, node, to, "drive")
     vectors = along(model, axis, "drive", a)
     constants = {"e": vectors[0], "start": vectors[0] @ (b.point - a.point)}
-    history = histories.motion(motion)
+    history = motions.motion(motion)
     name = chosen_name(model, name, f"slide at {a.name}")
     equation = Element(name, model.kind_of("slide_drive"), positions(a, b) + rotations(a),
                        constants, 1, history)
@@ -105,7 +105,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     if not np.linalg.norm(way) > 0:
         raise InputError(f"motion of {moved.name} has the direction {direction}: give one "
                          "that is not zero")
-    history = histories.motion(motion)
+    history = motions.motion(motion)
     count = len(moved.motions) + 1
     name = chosen_name(model, name, f"motion{f' {count}' * (count > 1)} of {moved.name}")
     hold(model, node, what)

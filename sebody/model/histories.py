@@ -14,18 +14,19 @@ from numbers import Number
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.errors import InputError
+from sebody.kernels.layout import CLOCK
 from sebody.kernels.user_functions import UserFunction, compile_history
-from sebody.model.derivatives import rates_of
 from sebody.model.functions import compilable, compiled_history
+from sebody.model.history_rows import linear, table
 
 LOAD, MOTION = "load history", "motion of a drive"
-SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
 COEFFICIENTS = 6        # most of a polynomial
 SMALL = 1e-9            # jump of a value or rate, relative to its size, that is rounding
+NEAR = 1e-8             # distance at which a function is looked at beside a corner, relative to it
+STEEP = 10.0            # a jump exceeds the changes beside it by this factor
 
 Source = "ArrayLike | Callable | tuple[Callable, Callable, Callable] | History | None"
 
@@ -43,10 +44,13 @@ class History:
     waves: tuple[tuple[float, float, float], ...] = ()      # A, w, p of each; none at all: zeros
     functions: tuple[UserFunction, ...] = ()    # in place of pieces: value and its rates
     corners: tuple[float, ...] = ()     # times at which it is not smooth: variable steps end there
+    is_time: bool = False               # the value is the time itself, for functions of time
 
     @property
     def addresses(self) -> tuple[int, int, int]:
-        """Addresses of the compiled value and its rates, 0 where there is none."""
+        """Addresses of the compiled value and its rates, 0 where there is none; CLOCK of time."""
+        if self.is_time:
+            return CLOCK, 0, 0
         given = [f.address for f in self.functions]
         return (*given, *[0] * (3 - len(given)))
 
@@ -126,6 +130,12 @@ class History:
                 found.append((t, np.where(jump, before, after), after))
         return found
 
+    def abrupt(self, rate: int) -> list[float]:
+        """Times after the start at which the value jumps (0), or its first or second rate (2)."""
+        if not self.functions:
+            return [t for t, before, after in self.jumps() if before[rate] != after[rate]]
+        return [t for t in self.corners if t > 0.0 and _jumps(self.functions[rate].ctypes, t)]
+
     def with_corners(self) -> History:
         """This history of pieces, its corners where its value or a rate jumps."""
         return replace(self, corners=tuple(t for t, *_ in self.jumps()))
@@ -144,14 +154,14 @@ class History:
 def history(source: Source) -> History:
     """A load history from None (1), a number, a table, a function of time or a ready profile.
 
-    A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; a
-    function is compiled, of a tuple of a function and its rates the function.
+    A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; two
+    rows of one time are a jump. A function is compiled, of a tuple of a function and its rates the
+    function.
 
     Raises
     ------
     InputError
-        A table whose times do not increase or that is not finite, or a function Numba cannot
-        compile.
+        A table whose times decrease or that is not finite, or a function Numba cannot compile.
     """
     if source is None:
         return History()
@@ -159,73 +169,53 @@ def history(source: Source) -> History:
         return History(pieces=((inputs.number(source, LOAD),),))
     if isinstance(source, History):
         return source
-    if _is_function_with_rates(source):
+    if is_function_with_rates(source):
         source = source[0]
     if callable(source):
         return History(functions=(compiled_history(source, LOAD),))
-    times, values = table(source, LOAD)
-    slopes = np.append(np.diff(values) / np.diff(times), 0.0)
-    bends = np.diff(slopes, prepend=0.0) != 0.0
-    return History(tuple(times), tuple(zip(values, slopes, strict=True)),
-                   corners=tuple(times[bends]))
+    times, pieces, corners = linear(*table(source, LOAD, jumping=True))
+    return History(times, pieces, corners=corners)
 
 
-def with_corners(function: Callable[[float], float], corners: Sequence[float]) -> History:
-    """A function of time and the times at which it is not smooth: variable steps end there.
+def with_corners(function: Callable[[float], float] | tuple[Callable, Callable, Callable],
+                 corners: Sequence[float]) -> History:
+    """A function of time and the times at which it is not smooth: steps meet them.
+
+    Variable steps end at all of them. Fixed ones do where accelerations jump, at a jump of a load
+    or of a drive's second rate.
+
+    Parameters
+    ----------
+    function : callable, or tuple of three
+        A function, or for a drive the function and its first two rates.
 
     Raises
     ------
     InputError
         A function Numba cannot compile, or times that are no numbers.
     """
-    remedy = f"corners are {inputs.shown(corners)}: give a list of times"
-    times = np.unique(inputs.vector(corners, "corners", remedy=remedy))
-    inputs.function(function, "function", "give a function of time")
-    return History(functions=(compiled_history(function, LOAD),), corners=tuple(times.tolist()))
+    times = corners_of(corners)
+    given = function if is_function_with_rates(function) else (function,)
+    for one in given:
+        inputs.function(one, "function", "give a function of time")
+    return History(functions=tuple(compiled_history(one, LOAD) for one in given), corners=times)
 
 
-def clock() -> History:
-    """A history whose value is the time itself."""
-    return History((0.0,), ((0.0, 1.0),))
-
-
-def motion(source: Source) -> History:
-    """The motion of a drive: a position and its first two derivatives, less its value at t = 0.
-
-    Parameters
-    ----------
-    source : table, function, tuple of three functions or ready profile
-        A table ``[(t, value), ...]`` becomes a cubic spline, at rest at both ends and outside.
-        The rates of a function of time are derived from it by SymPy; three functions are value,
-        rate and second rate.
+def corners_of(given: Sequence[float]) -> tuple[float, ...]:
+    """Times of corners, ascending.
 
     Raises
     ------
     InputError
-        None of these, functions that are not each other's derivatives, a function that cannot be
-        compiled or differentiated, a position or rate that jumps.
+        Times that are no numbers.
     """
-    if isinstance(source, History):
-        if len(source.functions) == 1:
-            value = source.functions[0]
-            rates = (compiled_history(f, MOTION) for f in rates_of(value.function, MOTION))
-            source = replace(source, functions=(value, *rates))
-        _refuse_jumps(source)
-        return source.from_zero()
-    if callable(source):
-        source = (source, *rates_of(source, MOTION))
-    if _is_function_with_rates(source):
-        functions = tuple(compiled_history(f, MOTION) for f in source)
-        _check_rates(functions)
-        return History(functions=functions).from_zero()
-    if isinstance(source, Number):
-        raise InputError(f"motion of a drive is {inputs.shown(source)}, always the same: give a "
-                         "table, a function of time or a ready profile, or fix the node")
-    times, values = table(source, MOTION)
-    if len(times) < 2:
-        raise InputError("the motion of a drive has one row: give at least two rows (t, value), "
-                         "or fix the node")
-    return spline_of(times, values, (0.0, 0.0)).from_zero()
+    remedy = f"corners are {inputs.shown(given)}: give a list of times"
+    return tuple(np.unique(inputs.vector(given, "corners", remedy=remedy)).tolist())
+
+
+def clock(corners: Sequence[float] = ()) -> History:
+    """A history whose value is the time itself, with corners of what depends on it."""
+    return History((0.0,), ((0.0, 1.0),), corners=corners_of(corners), is_time=True)
 
 
 def spline_of(times: NDArray, values: NDArray, rates: tuple[float, float]) -> History:
@@ -242,25 +232,6 @@ def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> History:
                                            (float(last),)))
 
 
-def table(source: ArrayLike, what: str) -> tuple[NDArray, NDArray]:
-    """Times and values of a table.
-
-    Raises
-    ------
-    InputError
-        Other shapes than rows (t, value), numbers that are not finite, times that do not increase.
-    """
-    rows = inputs.reals(source, f"{what} cannot be read as numbers: it",
-                        "give rows (t, value), or a function of time")
-    if rows.ndim != 2 or rows.shape[1] != 2 or not len(rows):
-        raise InputError(f"{what} has shape {rows.shape}: give rows (t, value)")
-    if not np.isfinite(rows).all():
-        raise InputError(f"{what} contains NaN or infinite entries: give finite numbers")
-    if (np.diff(rows[:, 0]) <= 0).any():
-        raise InputError(f"times of a {what} must increase: sort the rows and merge equal times")
-    return rows[:, 0], rows[:, 1]
-
-
 def same_waves(parts: Sequence[History]) -> tuple[tuple[float, float, float], ...]:
     """Harmonics of all pieces of some histories, zeros where one has none."""
     if not any(part.waves for part in parts):
@@ -270,7 +241,7 @@ def same_waves(parts: Sequence[History]) -> tuple[tuple[float, float, float], ..
                  for wave, _ in zip_longest(part.waves, part.pieces, fillvalue=none))
 
 
-def _is_function_with_rates(source: object) -> bool:
+def is_function_with_rates(source: object) -> bool:
     return isinstance(source, tuple) and len(source) == 3 and all(map(callable, source))
 
 
@@ -284,25 +255,10 @@ def _less(function: UserFunction, value: float) -> UserFunction:
     return made
 
 
-def _refuse_jumps(given: History) -> None:
-    """Refuse a motion that no body can follow."""
-    for t, before, after in given.jumps():
-        for k, what in enumerate(("position", "rate")):
-            if before[k] != after[k]:
-                raise InputError(
-                    f"motion of a drive: its {what} jumps from {before[k]:.6g} to {after[k]:.6g} "
-                    f"at t = {t:.6g}, which no body can follow: go there by rest_to_rest, "
-                    "trapezoidal or a spline; only at t = 0 may it have a speed at once")
-
-
-def _check_rates(functions: Sequence[UserFunction]) -> None:
-    """Refuse a rate that is not the derivative of the function before it."""
-    for k, what in ((0, "second function is not the derivative of the first"),
-                    (1, "third function is not the derivative of the second")):
-        f, rate = functions[k].ctypes, functions[k + 1].ctypes
-        for t in SAMPLES:
-            slope = (f(t + 1e-5) - f(t - 1e-5)) / 2e-5
-            size = max(abs(slope), abs(rate(t)), abs(f(t)), 1e-300)
-            if not abs(slope - rate(t)) < 1e-4 * size:
-                raise InputError(f"motion of a drive: the {what}: at t = {t} it is {rate(t):.6g}, "
-                                 f"differences give {slope:.6g}")
+def _jumps(function: Callable[[float], float], t: float) -> bool:
+    """Whether a function jumps at a time: by more than it changes as near to it."""
+    d = NEAR * abs(t)
+    values = [function(t + x) for x in (-2.0 * d, -d, d, 2.0 * d)]
+    beside = abs(values[1] - values[0]) + abs(values[3] - values[2])
+    jump = abs(values[2] - values[1])
+    return jump > STEEP * beside + SMALL * max(abs(values[1]), abs(values[2]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from numpy.typing import ArrayLike
 
@@ -110,7 +110,7 @@ def body_load(model: Mechanism, body: str, load: str,
 
 
 def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
-               function: Callable[..., None]) -> Element:
+               function: Callable[..., None], corners: Sequence[float] = ()) -> Element:
     """Forces by a function of the user, compiled for the loop.
 
     Parameters
@@ -120,11 +120,13 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
     function : callable
         ``function(t, x, v, force)`` with arrays of all coordinates, node after node; it sets
         `force`, which is zero before. Numba compiles it; derivatives are central differences.
+    corners : sequence of float
+        Times at which the forces jump: steps end there.
 
     Raises
     ------
     InputError
-        A function that cannot be compiled, or no nodes.
+        A function that cannot be compiled, no nodes, or corners that are no times.
     """
     inputs.name(name, "name of a user force")
     places = positions(*(known(model, n) for n in inputs.items(
@@ -135,7 +137,7 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")
     compiled = compiled_force(function, name, model.dimension * len(places))
     name = chosen_name(model, name, "user force")
-    return _add(model, Element(name, "user_force", places, {}, history=clock(),
+    return _add(model, Element(name, "user_force", places, {}, history=clock(corners),
                                function=compiled))
 
 

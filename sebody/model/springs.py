@@ -47,8 +47,8 @@ def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
                    name: str | None = None) -> Element:
     """Spring and damper about the axis of a revolute joint: ``M = k u + k3 u^3 + c u'``.
 
-    `rest` is the angle of `node` against `to` (the ground) without moment, zero at the start.
-    In space the angle stays within half a turn of the start.
+    `rest` is the angle of `node` against `to` (the ground) without moment, zero at the start. Turns
+    are counted: in space from step to step, so in one step less than half a turn.
     """
     what = "torsion spring"
     a, b = pair(model, node, to, what, ("rotation",))
@@ -57,17 +57,28 @@ def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
     constants = {"k": stiffness, "k3": cubic, "c": damping, "rest": rest}
     if vectors := turning_axes(model, axis, what, a, signed=True):
         constants |= zip(("n", "m"), vectors[1:], strict=True)
-    return _add(model, name, what, a, rotations(a, b), constants)
+    return _add(model, name, what, a, rotations(a, b), constants, keeps_angle=not model.planar)
 
 
 def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
             stiffness: ArrayLike = 0.0, damping: ArrayLike = 0.0,
             turning_stiffness: ArrayLike = 0.0, turning_damping: ArrayLike = 0.0,
-            name: str | None = None) -> Element:
-    """Springs and dampers along and about the axes of `node`, between nodes at one point.
+            rotation: ArrayLike | None = None, name: str | None = None) -> Element:
+    """Springs and dampers along and about axes that turn with `node`, between nodes at one point.
 
     Each coefficient is a number, or one for each axis. Moments follow the sine of the angles:
     stay well below half a right angle.
+
+    Parameters
+    ----------
+    rotation : (3, 3), planar (2, 2), optional
+        Rotates the axes of space to those of the bushing at the start, its columns; by default
+        they are the same.
+
+    Raises
+    ------
+    InputError
+        Coefficients that are negative, no rotation, or nodes that do not start together.
     """
     a, b = pair(model, node, to, "bushing")
     check_together(model, a, b, "bushing")
@@ -77,14 +88,17 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
                  "c": _spread(damping, f"{where}: damping", lengths[0]),
                  "kt": _spread(turning_stiffness, f"{where}: turning_stiffness", lengths[1]),
                  "ct": _spread(turning_damping, f"{where}: turning_damping", lengths[1])}
+    turn = np.eye(model.dimension) if rotation is None else inputs.rotation(
+        rotation, f"bushing at {a.name!r}: rotation", model.dimension)
+    constants |= {f"e{k}": axis for k, axis in enumerate(turn.T, 1)}
     return _add(model, name, "bushing", a, positions(a, b) + rotations(a, b), constants)
 
 
 def _add(model: Mechanism, name: str | None, what: str, a: Node, places: tuple[Place, ...],
-         constants: dict[str, ArrayLike]) -> Element:
+         constants: dict[str, ArrayLike], keeps_angle: bool = False) -> Element:
     name = chosen_name(model, name, f"{what} at {a.name}")
     kind = model.kind_of(what.replace(" ", "_"))
-    model.loads.append(Element(name, kind, places, constants))
+    model.loads.append(Element(name, kind, places, constants, keeps_angle=keeps_angle))
     return model.loads[-1]
 
 

@@ -109,14 +109,14 @@ class ReducedBody:
         object.__setattr__(self, "notes", tuple(notes))
         for name in ("stiffness", "mass"):
             matrix = inputs.reals(getattr(self, name), name, "give a matrix of real numbers")
-            checks.check_matrix(name, matrix, names)
+            checks.check_matrix(name, matrix, names, coordinates)
             self._store(name, (matrix + matrix.T) / 2)
         rigid = self.rigid_modes_about(coordinates.mean(axis=0))
         checks.check_stiffness(self.stiffness, rigid, names)
         checks.check_mass(self.mass, rigid, names)
         if self.damping is not None:
             damping = inputs.reals(self.damping, "damping", "give a matrix of real numbers")
-            checks.check_matrix("damping", damping, names)
+            checks.check_matrix("damping", damping, names, coordinates)
             self._store("damping", (damping + damping.T) / 2)
             checks.check_damping(self.damping, rigid, names)
         if self.invariants is not None:

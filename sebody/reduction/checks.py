@@ -1,7 +1,8 @@
 """Checks of reduced matrices. Every message names the matrix, the entry and the remedy.
 
 Matrices are compared in unit-free form: positions, rotations and each internal mode are scaled
-by the square root of their largest diagonal entry, so no verdict depends on the units.
+by the square root of their largest diagonal entry, so no verdict depends on the units. Of slender
+bodies the stiffness of rotations is rounding beside what a turn about the other end would take.
 """
 
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ from sebody.errors import InputError
 
 KEEPS = ("full", "translation", "rotation")
 SYMMETRY_LIMIT = 1e-8
+ROUNDING = 1e-14        # of the sums a reduced matrix is made of, relative to the largest of them
 NEGATIVE_MASS_LIMIT = 1e-8
 NEGATIVE_STIFFNESS_LIMIT = 1e-6
 RIGID_LIMIT = 1e-6
@@ -58,7 +60,7 @@ def coordinate_names(keeps: tuple[str, ...], dimension: int, modes: int,
     )
 
 
-def check_matrix(name: str, matrix: NDArray, names: list[str]) -> None:
+def check_matrix(name: str, matrix: NDArray, names: list[str], coordinates: NDArray) -> None:
     """Raise InputError unless `matrix` has the layout's size and is finite and symmetric."""
     size = len(names)
     if matrix.shape != (size, size):
@@ -72,8 +74,7 @@ def check_matrix(name: str, matrix: NDArray, names: list[str]) -> None:
         raise InputError(
             f"{name}[{i}, {j}] is {matrix[i, j]}; the matrix must be finite, export it again"
         )
-    scale = unit_scale(matrix, names)
-    defect = np.abs(matrix - matrix.T) / np.outer(scale, scale)
+    defect = asymmetry(matrix, names, coordinates)
     i, j = np.unravel_index(np.argmax(defect), defect.shape)
     if defect[i, j] > SYMMETRY_LIMIT:
         raise InputError(
@@ -81,6 +82,21 @@ def check_matrix(name: str, matrix: NDArray, names: list[str]) -> None:
             f"{name}[{j}, {i}] = {matrix[j, i]:.6g} ({names[i]}, {names[j]}); "
             "export both triangles or mirror one"
         )
+
+
+def asymmetry(matrix: NDArray, names: list[str], coordinates: NDArray) -> NDArray:
+    """Differences across the diagonal (n, n), relative to its entries.
+
+    Where these are small beside the forces that a rotation by the body's length would take,
+    rounding of those forces counts as part of them.
+    """
+    scale = unit_scale(matrix, names)
+    kind = np.array([name.split()[0] for name in names])
+    across = np.linalg.norm(np.ptp(coordinates, axis=0))
+    turned = across * scale.max(where=kind == "position", initial=0.0)
+    summed = np.where(kind == "rotation", np.maximum(scale, turned), scale)
+    allowed = np.outer(scale, scale) + ROUNDING / SYMMETRY_LIMIT * np.outer(summed, summed)
+    return np.abs(matrix - matrix.T) / allowed
 
 
 def check_stiffness(stiffness: NDArray, rigid: NDArray, names: list[str]) -> None:

@@ -54,6 +54,7 @@ class ComponentModes:
         """Reduced stiffness (25) and mass (38), (n, n) each, of the FE matrices."""
         static, dynamic = self.constraint, self.fixed_interface
         boundary = static.T @ (stiffness @ static)
+        boundary = (boundary + boundary.T) / 2  # rounding of what is stiff, as axially, is not
         summands = np.abs(static).T @ (abs(stiffness) @ np.abs(static))
         if np.all(np.abs(boundary) <= _ROUNDING * summands):
             boundary[:] = 0.0  # a boundary that holds the body without strain, e.g. one node

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import rotational
 from sebody.kernels.layout import ENERGIES
+from sebody.model.extent import extent
 from sebody.model.parts import Element, Node, Superelement
 from sebody.results import energy_balance
 from sebody.results import force_quantities as forces
@@ -95,8 +96,7 @@ def _momentum(result: Recording, what: str) -> Finding:
 
 
 def _constraints(result: Recording) -> list[Finding]:
-    size = max((np.abs(node.point).max() for node in result.model.nodes.values()),
-               default=0.0) or 1.0
+    size = extent(result.model) or 1.0
     residuals = result.constraint_residuals.max(axis=0)
     off, rate = residuals[0] / size, residuals[1] / max(_fastest(result, size), 1e-300)
     return [Finding("constraints", f"{off:.1e}", _verdict(off / DRIFT),

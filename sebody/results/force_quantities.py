@@ -4,8 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.kernels.layout import RECORD
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement
-from sebody.results.recording import Recording
+from sebody.results.recording import Recording, record_counts
 
 
 def bodies(recording: Recording) -> dict[str, Superelement | Element]:
@@ -99,7 +100,8 @@ def multipliers(recording: Recording, name: str) -> NDArray:
                          "joins is shared or fixed; the force on a fixed node is its reaction, "
                          f"that of the joint {name}.force")
     firsts = [(recording.numbering.multipliers[id(c)], c.multipliers) for c in equations]
-    return recording.recorded("q")[:, [first + k for first, count in firsts for k in range(count)]]
+    q = recording.unique_rows[:, RECORD.slices(record_counts(recording.numbering))["q"]]
+    return q[:, [first + k for first, count in firsts for k in range(count)]]
 
 
 def work(recording: Recording, name: str) -> NDArray:

@@ -78,7 +78,7 @@ def evaluated(group: Motions, rows: NDArray, counts: Counts) -> tuple[NDArray, i
     places = np.array([slices[name].start for name in READ])
     status = _evaluate(group.address, len(group.index[0]), group.counts["n"], group.index,
                        group.constants, np.ascontiguousarray(rows), places,
-                       np.zeros(9 * counts["bodies"]), np.zeros(group.scratch), found)
+                       np.zeros(counts["kept"]), np.zeros(group.scratch), found)
     return found, status
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering
+from sebody.assembly.numbering import Numbering, kept_frames
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.layout import ENERGIES, RECORD
@@ -16,6 +16,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.tables import summary
 from sebody.results.balance import Balance
 from sebody.results.energy_balance import energy_balance
+from sebody.results.least_norm import least_norm
 from sebody.results.postprocessing import (
     Forces,
     constraint_residuals,
@@ -30,6 +31,7 @@ class Start(NamedTuple):
 
     changed: dict[str, float]       # triplets whose velocity was solved for, with its change
     redundant: tuple[str, ...]      # joints with constraints that others contain
+    shared: tuple[str, ...] = ()    # joints whose multipliers are not unique at the start
 
 
 @dataclass(eq=False, repr=False)
@@ -60,6 +62,16 @@ class Recording:
         return self.rows[:, RECORD.slices(record_counts(self.numbering))[name]]
 
     @cached_property
+    def unique_rows(self) -> NDArray:
+        """The recorded states with multipliers of least norm, also those of redundant constraints.
+
+        In the states of the loop these contain a part that exerts no force, and jumps.
+        """
+        if self.system is None or not self.system.relaxed[0]:
+            return self.rows
+        return least_norm(self.model, self.numbering, self.system, self.state, self.rows)
+
+    @cached_property
     def counters(self) -> NDArray:
         """Steps, iterations and others, by the CONTROL indices of `engine.state`."""
         return self.state.control.copy()
@@ -82,7 +94,7 @@ class Recording:
     @cached_property
     def forces(self) -> Forces:
         """Forces in every recorded state."""
-        return forces(self.system, self.state, self.rows)
+        return forces(self.system, self.state, self.unique_rows)
 
     @cached_property
     def balance(self) -> Balance:
@@ -94,8 +106,11 @@ class Recording:
     def powers(self) -> NDArray:
         """Powers of the power ports in every recorded state, (n, ports)."""
         at = ENERGIES.slices(record_counts(self.numbering))["powers"]
+        rows = self.unique_rows
+        evaluated = (self.energies if rows is self.rows else
+                     energies(self.system, self.state, rows))
         return prescribed_powers(self.system, self.recorded("t")[:, 0], self.forces.sums,
-                                 self.energies[:, at])
+                                 evaluated[:, at])
 
     @cached_property
     def constraint_residuals(self) -> NDArray:
@@ -110,4 +125,4 @@ EVALUATED = "counters", "energies", "powers", "constraint_residuals"
 def record_counts(numbering: Numbering) -> dict[str, int]:
     """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
     return {"ports": len(numbering.histories), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "bodies": len(numbering.modes)}
+            "rotations": len(numbering.rotations), "kept": kept_frames(numbering)}

@@ -19,6 +19,7 @@ from sebody.results.cautions import cautions
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
 from sebody.results.hot_spots import HotSpots, hot_spots
+from sebody.results.least_norm import arm
 from sebody.results.quantities import saved
 from sebody.results.recording import Recording
 from sebody.results.saving import packed, unpacked
@@ -286,7 +287,8 @@ class Result(Recording):
                                      for name, change in self.start.changed.items()))
         if self.start and self.start.redundant:
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
-                         + ": multipliers are those of least norm")
+                         + f"; multipliers of {', '.join(self.start.shared)} are not unique, given "
+                         f"are those of least norm (moments divided by {arm(self.model):.4g})")
         lines += [f"general kernel       of {', '.join(bodies)}: one of the layout's own is "
                   f"faster, made by {command}"
                   for command, bodies in self.advice.items()]

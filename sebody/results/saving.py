@@ -46,7 +46,7 @@ def packed(recording: Recording) -> dict[str, NDArray]:
     notes = {name: getattr(recording, name) for name in NOTES}
     notes |= {"version": VERSION, "start": recording.start, "advice": recording.advice}
     forces = recording.forces
-    arrays = {"rows": recording.rows, "numbers": numbers, "model": np.array(text),
+    arrays = {"rows": recording.unique_rows, "numbers": numbers, "model": np.array(text),
               "elements": forces.elements, "supports": forces.sums[:, recording.numbering.free:]}
     arrays |= {name: getattr(recording, name) for name in EVALUATED}
     notes["checksums"] = checksums(arrays)
@@ -100,7 +100,7 @@ def _check_times(table: Table, rows: NDArray) -> None:
 
 def _made(make: Callable[..., Any], notes: dict, found: dict[str, NDArray], model: Mechanism,
           numbering: Numbering) -> Any:
-    start = notes["start"] and Start(notes["start"][0], tuple(notes["start"][1]))
+    start = notes["start"] and Start(notes["start"][0], *map(tuple, notes["start"][1:]))
     made = make(model, numbering, None, None, found["rows"], start=start,
                 **{name: notes[name] for name in NOTES})
     made.warnings = tuple(made.warnings)

@@ -128,7 +128,8 @@ def test_redundant_joints_share_their_force(joints, name):
     assert run.start.redundant == (f"{name} at base (2)",)
     twice, once = run.run_to(0.5).result(), simulate(single, 0.01, 0.5, exact)
     assert np.abs(twice["tip.position"] - once["tip.position"]).max() < 1e-8
-    assert "redundant            constraints of " + name + " at base (2): multipliers" in (
+    assert (f"redundant            constraints of {name} at base (2); multipliers of {name} at "
+            f"base, {name} at base (2) are not unique, given are those of least norm") in (
         twice.summary())
     one = once[f"{name} at base.multipliers"]
     for half in (twice[f"{name} at base{which}.multipliers"] for which in ("", " (2)")):

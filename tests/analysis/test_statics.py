@@ -111,10 +111,15 @@ def test_gravity_sags_a_cantilever():
     assert sag == pytest.approx(-weight * LENGTH**4 / (8 * EI), rel=5e-3)
 
 
-def test_a_mechanism_has_no_equilibrium():
+def test_a_mechanism_has_an_equilibrium_where_its_load_holds_it():
+    """A hinged beam turns into the force; a torque that is too large turns it on and on."""
     model = cantilever(2)
     model.nodes["base"].rotation.fixed = False
     model.force("tip", (0.0, 1.0))
+    tip = equilibrium(model)["tip.position"][-1]
+    stretch = LENGTH / (SLENDER.youngs_modulus * SLENDER.area)
+    assert tip == pytest.approx([0.0, LENGTH + stretch], abs=1e-9 * LENGTH)
+    model.torque("tip", 10.0 * LENGTH)
     with pytest.raises(SimulationError, match="no equilibrium was found above 0 of the load"):
         equilibrium(model)
 

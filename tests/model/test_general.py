@@ -8,35 +8,44 @@ from sebody.assembly.batches import make_batches
 from sebody.assembly.build import work_size
 from sebody.assembly.numbering import number
 from sebody.derive.kernels.manifest import SUPERELEMENTS
-from sebody.fem import frame, planar_beam, straight_beam
+from sebody.fem import frame as fe_frame
+from sebody.fem import planar_beam, straight_beam
 from sebody.kernels.layout import ENERGY, RESIDUAL, TANGENT
 from sebody.kernels.loader import load
-from sebody.kernels.names import ANY, general_layout, superelement_name
+from sebody.kernels.names import ANY, general_layout, layout_variant, superelement_name
+from sebody.model.frames import FRAMES
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
 from sebody.studies.check import states
 from sebody.studies.check.superelements import superelement_case
 
-GENERAL = [row for row in SUPERELEMENTS if row[0].endswith(ANY)]
-SPECIAL = [row for row in SUPERELEMENTS if not row[0].endswith(("d", ANY))
-           and (general_layout(row[0]), *row[1:]) in GENERAL]
+GENERAL = [row for row in SUPERELEMENTS if ANY in row[0]]
+
+
+def general(layout):
+    """The general layout for another one, damped or not."""
+    return layout_variant(general_layout(layout), damped=layout.endswith("d"))
+
+
+SPECIAL = [row for row in SUPERELEMENTS if row not in GENERAL
+           and (general(row[0]), *row[1:]) in GENERAL]
 CONSERVING = generalized_alpha(rho=1.0, tolerance=1e-10)
 GRAVITY = (0.0, -40.0, 0.0)
 
 
 def test_what_is_shipped():
-    assert len(GENERAL) == 12 and len(SPECIAL) == 12
+    assert len(GENERAL) == 18 and len(SPECIAL) == 16
 
 
 @pytest.mark.parametrize("layout, floating, inertia", SPECIAL, ids=lambda x: x)
 def test_general_kernel_equals_the_specialised_one(layout, floating, inertia):
-    special, general = (load(superelement_name(name, floating, inertia))
-                        for name in (layout, general_layout(layout)))
-    case = superelement_case(special, 3, gravity=1.0)
+    special, any_nodes = (load(superelement_name(name, floating, inertia))
+                          for name in (layout, general(layout)))
+    case = superelement_case(special, 3, gravity=1.0, damping=0.1 * layout.endswith("d"))
     for task in (RESIDUAL, TANGENT, ENERGY):
         coefficients = (1.0, 0.3, 2.0, 1, 1)
         for one, same in zip(*(states.evaluate(c, task, coefficients)
-                               for c in (case, case._replace(module=general))), strict=True):
+                               for c in (case, case._replace(module=any_nodes))), strict=True):
             # the same sums; products may enter them with one rounding or two
             assert states.difference(same, one) <= 1e-13
 
@@ -80,7 +89,7 @@ def spatial():
     place(model, "mixed", beam(["full", "translation", "translation", "rotation"], 0), (0, 0, 50))
     corners = np.array([[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0], [30, 20, 30.0]])
     edges = [(0, 1), (1, 2), (2, 3), (3, 0), *((k, 4) for k in range(4))]
-    roof = craig_bampton(frame(corners, edges, SECTION, 3),
+    roof = craig_bampton(fe_frame(corners, edges, SECTION, 3),
                          [(k, "translation") for k in range(5)], 2)
     place(model, "roof", roof, (0, 0, 100), frame="positions")
     return model
@@ -153,7 +162,25 @@ def test_a_specialised_kernel_of_the_user_comes_first(monkeypatch, tmp_path):
 
 
 def test_a_frame_the_nodes_cannot_define_is_refused():
-    for floating, message in (("positions", "lie on a line, so the frame 'positions' cannot see"),
-                              ("mean", "there is no kernel for layout 'f5', frame 'mean'")):
+    for option, message in (
+            ({"frame": "positions"}, "lie on a line, so the frame 'positions' cannot see"),
+            ({"inertia": "a"}, "there is no kernel for layout 'f5', frame 'converged_mean', "
+                               "inertia 'a': make it with")):
         with pytest.raises(InputError, match=message):
-            place(Model(), "long", beam(["full"] * 5), (0, 0, 0), frame=floating)
+            place(Model(), "long", beam(["full"] * 5), (0, 0, 0), **option)
+
+
+@pytest.mark.parametrize("frame, damping", [
+    *((frame, 0.0) for frame in FRAMES), ("converged_mean", 0.02), ("node", 0.02),
+    ("positions", 0.02)])
+def test_four_full_nodes_have_option_b_with_every_frame(frame, damping):
+    """The paper's option serves all reduced matrices, so nothing has to be derived for it."""
+    corners = np.array([[0, 0, 0], [60, 0, 0], [60, 40, 10], [0, 40, 0.0]])
+    body = craig_bampton(fe_frame(corners, [(0, 1), (1, 2), (2, 3)], SECTION, 2),
+                         [(k, "full") for k in range(4)], 1)
+    model = Model()
+    nodes = place(model, "bent", body.damped(damping) if damping else body, (0, 0, 0),
+                  frame=frame, inertia="b")
+    model.gravity(GRAVITY)
+    result = simulate(model, 0.02, 0.2)
+    assert len(nodes) == 4 and result.steps == 10 and result.cuts == 0

@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 from sebody import InputError, Model, Simulation, simulate
 from sebody.engine import evaluate
 from sebody.model.histories import History, history, with_corners
+from sebody.model.motions import motion
 from sebody.scenes.hinged_beam import build
 
 TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]
@@ -29,9 +30,11 @@ def two_nodes():
 
 
 @pytest.mark.parametrize("table, message", [
-    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must increase: sort the rows "
-                                           "and merge equal times"),
-    ([(0.0, 1.0), (0.0, 2.0)], "times of a load history must increase"),
+    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must not decrease, after t = 2 "
+                                           "they do: sort the rows"),
+    ([(0.0, 1.0), (3.0, 2.0), (3.0, 1.0), (3.0, 0.0)],
+     "load history has more than two rows at t = 3: give the value before a jump and the value "
+     "after it"),
     ([1.0, 2.0], r"load history has shape \(2,\): give rows \(t, value\)"),
     ([(0.0, 1.0, 2.0)], r"load history has shape \(1, 3\): give rows"),
     ([], "load history has shape .*: give rows"),
@@ -74,7 +77,8 @@ def test_histories_to_be_refused(source):
     (lambda m: m.torque("base", (0, 0)), "torque on base.rotation is .*give 3 finite"),
     (lambda m: m.torque("base", (0, np.nan, 0)), "torque on base.rotation is .*give 3 finite"),
     (lambda m: m.force("far", (0, 0, 1)), "node 'far' is unknown: the model has base, tip"),
-    (lambda m: m.force("tip", (0, 0, 1), [(0.0, 1.0), (0.0, 2.0)]), "must increase: sort the rows"),
+    (lambda m: m.force("tip", (0, 0, 1), [(0.5, 1.0), (0.0, 2.0)]),
+     "must not decrease, after t = 0.5"),
 ])
 def test_wrong_loads(action, message):
     model = two_nodes()
@@ -249,3 +253,46 @@ def test_a_function_keeps_the_corners_it_is_given():
     assert Simulation(model, 0.01).system.corners.tolist() == [0.05, 0.15]
     with pytest.raises(InputError, match="corners are .*: give a list of times"):
         with_corners(ramps, [[0.05]])
+
+
+def test_further_arguments_keep_their_defaults():
+    """As users bind the variable of a loop: ``lambda t, F=F: ...``; arrays and helpers, too."""
+    powers = np.array([1.0, 3.0])
+
+    def helped(t, scale=2.0, powers=powers):
+        return scale * raised(t, powers[1])
+
+    def raised(x, k):
+        return x**k
+    made = [history(lambda t, F=F, w=0.5: F * np.cos(w * t)) for F in (1.0, -2.5, 4.0)]
+    times = np.array([0.0, 0.7, 2.0])
+    for F, one in zip((1.0, -2.5, 4.0), made, strict=True):
+        assert one.values(times) == pytest.approx(F * np.cos(0.5 * times), rel=1e-15)
+    assert history(helped).values(times) == pytest.approx(2.0 * times**3, rel=1e-15)
+    driven = motion(lambda t, A=0.3: A * np.sin(2.0 * t))
+    assert driven.at(0.4) == pytest.approx(0.3 * np.array(
+        [np.sin(0.8), 2.0 * np.cos(0.8), -4.0 * np.sin(0.8)]), rel=1e-14)
+    cornered = motion(with_corners(lambda t, A=0.3: A * t**3, [1.0]))
+    assert cornered.at(0.5) == pytest.approx([0.0375, 0.225, 0.9], rel=1e-14)
+
+
+def test_a_force_keeps_the_defaults_of_further_arguments():
+    rest = np.array([0.1, -0.2, 0.3])
+
+    def pulls(t, x, v, force, k=7.0, rest=rest):
+        for i in range(3):
+            force[i] = k * (rest[i] - x[i])
+    model = Model()
+    model.point_mass("body", model.node("body", (1.0, 2.0, 3.0), "translation"), 2.0)
+    model.user_force("pull", ["body"], pulls)
+    start = Simulation(model, 0.01).result()["body.acceleration"][0]
+    assert start == pytest.approx(3.5 * np.array([-0.9, -2.2, -2.7]), rel=1e-14)
+
+
+@pytest.mark.parametrize("function, arguments", [
+    (lambda t, u: t, "t, u"), (lambda t, u, F=1.0: t, "t, u, F")])
+def test_further_arguments_without_a_value_are_named(function, arguments):
+    with pytest.raises(InputError, match=f"load history '<lambda>' has the arguments "
+                                         rf"\({arguments}\): give a function of \(t\); further "
+                                         "arguments need defaults"):
+        history(function)

@@ -21,7 +21,8 @@ from sebody import (
     with_corners,
 )
 from sebody.engine.evaluate import set_loads
-from sebody.model.histories import history, motion
+from sebody.model.histories import history
+from sebody.model.motions import motion
 
 t = sp.Symbol("t")
 u = (t - sp.Rational(1, 4)) / 2

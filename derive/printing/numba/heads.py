@@ -49,7 +49,7 @@ def body_load_head(given: BodyLoad, kernel: Kernel) -> Head:
         (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
          "modes.", f"Frame: {given.option.traits.summary}."),
         (f'FRAME = "{given.frame}"', *counts(planar, (None, None)),
-         f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}", "MULTIPLIERS = 0",
+         f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}", "MULTIPLIERS = 0", "MEMORY = 0",
          "WIDTH = None            # any number",
          "INERTIAL = False        # has kinetic energy",
          "POWER = True        # does work on the system: a load, damper or drive",
@@ -91,6 +91,7 @@ def element_head(given: Element, kernel: Kernel) -> Head:
          f"ROTATIONS = {known[FIRST_ROTATION]}      # first rotation among the local coordinates",
          f"CONSTANTS = {table(constants)}", f"MULTIPLIERS = {multipliers}",
          f"WIDTH = {known[WIDTH]}",
+         f"MEMORY = {int(given.kept is not None)}      # numbers it keeps from step to step",
          f"INERTIAL = {bool(given.sums.get('kinetic'))}        # has kinetic energy",
          f"POWER = {power}        # does work on the system: a load, damper or drive",
          f"DRIVEN = {multipliers > 0 and power}        # a constraint that depends on time",

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.histories import History, history
+from sebody.model.history_rows import rows_of
 from sebody.model.model import Model
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
 from sebody.model.variants.copying import exchange
@@ -248,17 +249,15 @@ def load_table(model: Model, load: Element, name: str) -> Handle:
 
 def _table(element: Element, name: str, touches: str) -> Handle:
     before = element.history
-    linear = not before.functions and not before.waves and all(
-        not any(piece[2:]) for piece in before.pieces)
-    if not linear or len(before.times) < 2:
+    rows = None if before.functions or before.waves else rows_of(before.times, before.pieces)
+    if rows is None or len(rows) < 2:
         raise InputError(f"{name}: the history of {element.name!r} is no table of values: vary its "
                          "amplitude")
-    values = np.array([piece[0] for piece in before.pieces])
 
-    def made(rows: NDArray) -> History:
-        # corners matter to variable steps alone, which ensembles do not have
-        return replace(history(np.column_stack([before.times, rows])), corners=before.corners)
-    return _attribute(element, "history", touches, values, made)
+    def made(values: NDArray) -> History:
+        # the corners of the table as built: runs that have the same ones begin with a copy
+        return replace(history(np.column_stack([rows[:, 0], values])), corners=before.corners)
+    return _attribute(element, "history", touches, rows[:, 1], made)
 
 
 def drive_amplitude(model: Model, drive: Joint | tuple[Triplet, Motion], name: str) -> Handle:

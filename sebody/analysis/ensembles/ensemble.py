@@ -25,7 +25,9 @@ from sebody.errors import InputError
 from sebody.model.model import Model
 from sebody.model.tables import summary
 from sebody.reduction import ReducedBody
+from sebody.results.result import Result
 
+PLACING = ".position", ".rotation"      # parameters that move where runs begin
 Values = ArrayLike | Sequence[ReducedBody]
 
 
@@ -42,6 +44,9 @@ class Ensemble:
         `generalized_alpha` with rho 0.9 by default.
     output_every : int
         Every so many steps a state is recorded, from which outputs are made.
+    start : Result, optional
+        State at which all runs start, see `Simulation`: initial positions and rotations cannot be
+        varied then.
 
     Raises
     ------
@@ -58,9 +63,9 @@ class Ensemble:
     """
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
-                 output_every: int = 1):
+                 output_every: int = 1, start: Result | None = None):
         self.model, self.scheme = model, scheme
-        self._template = Simulation(model, h, scheme, output_every)
+        self._template = Simulation(model, h, scheme, output_every, start=start)
         self.h, self.every = self._template.h, self._template.every
         self._lock = Lock()         # the model is changed for moments
         self._images: dict[tuple[str, ...], Image] = {}
@@ -135,6 +140,9 @@ class Ensemble:
         parameters = inputs.mapping(parameters, "parameters",
                                     "give a dict of names and arrays of values")
         found, runs = given(self.model, parameters) if parameters else ({}, 1)
+        if placing := [name for name in found if self._template.begun and name.endswith(PLACING)]:
+            raise InputError(f"{placing[0]} cannot be varied: all runs begin at the start that was "
+                             "given; leave it out, or build an ensemble without a start")
         last = self._last_step(t_end)
         return found, runs, last, outputs_of(outputs, last * self.h)
 

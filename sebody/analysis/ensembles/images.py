@@ -71,7 +71,7 @@ class Image:
         touched = {handle.touches for handle in handles.values()}
         return not (any(handle.whole for handle in handles.values())
                     or one.scheme.stabilized or one.system.relaxed[0]
-                    or (constrained and MOTION in touched)
+                    or ((constrained or one.begun) and MOTION in touched)
                     or (one.start.changed and touched & {BODIES, MOTION}))
 
     def _lines(self, handles: Mapping[str, Handle]) -> Lines | None:

@@ -9,32 +9,26 @@ from numpy.typing import NDArray
 
 from sebody.analysis.ensembles.images import Image
 from sebody.analysis.ensembles.outputs import Fold, Output
-from sebody.analysis.evaluation import evaluate
 from sebody.analysis.row_exchanges import RowExchanges
 from sebody.analysis.simulation import Simulation
-from sebody.engine.evaluate import move_prescribed, set_loads, set_powers, to_body_axes
+from sebody.engine.evaluate import move_prescribed, set_loads
 from sebody.engine.links import place_dependent
 from sebody.engine.loop import advance
-from sebody.engine.matrix import refactorize, solve
 from sebody.engine.state import (
+    ASKED,
     DONE,
-    EVALUATED,
-    FACTORED,
     FAILED,
-    PHASE,
-    PIVOTED,
-    PROJECTED,
     REASON,
     REASONS,
     RECORDED,
-    SOLVED,
+    RESTART,
     TIME,
     Record,
     State,
 )
 from sebody.engine.step import write_record
 from sebody.engine.system import System
-from sebody.kernels.layout import ACCELERATION, RESIDUAL, TANGENT
+from sebody.errors import InputError
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 
@@ -54,11 +48,10 @@ class Copies:
         state = image.places.packed(one.state, self.floats)
         self.control, self.moved = one.state.control.copy(), one.state.moved.copy()
         self.state: State = _with_own_integers(state)
-        self.moving = one.system.is_multiplier[:one.numbering.total] == 0
-        self.solved = np.arange(one.numbering.total) < one.numbering.free
         self.exchanges = RowExchanges(self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
         self._record: Record | None = None
+        self.none = Record.of(self.state, 0)
 
     def record(self, rows: int, every: int) -> Record:
         """Room for recorded states, the same for all runs: fresh memory costs as much as a start.
@@ -88,36 +81,15 @@ class Copies:
         state.loads_old[:] = state.loads
         move_prescribed(system, state)
         place_dependent(system.links, state.q, state.v, state.a, state.R)
-        if not self._accelerate():
-            return False
+        state.control[RESTART] = ASKED
+        code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
+        if code == FAILED:
+            raise InputError("the initial state has no accelerations: "
+                             f"{REASONS[int(state.control[REASON])]}")
         state.control[:] = self.control
         state.frames_old[:] = state.frames
-        state.aux[:] = np.where(self.solved, state.a, 0.0)
         state.aux_old[:] = state.aux
-        set_powers(system, state)
-        return True
-
-    def _accelerate(self) -> bool:
-        """Accelerations and multipliers of the start, as `analysis.initial_state` solves for."""
-        system, state = self.system, self.state
-        state.set_coefficients(c_mass=1.0, c_damping=0.0, c_stiffness=0.0, c_geo=1.0,
-                               c_constraint=1.0)
-        evaluate(system, state, TANGENT, TANGENT, "the initial state")
-        if not refactorize(system, state, EVALUATED, self.dense) or state.control[PIVOTED]:
-            return False
-        state.a[self.solved & self.moving], state.q[~self.moving] = 0.0, 0.0
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
-        evaluate(system, state, RESIDUAL, ACCELERATION, "the initial state")
-        to_body_axes(system, state.frames, state.residual, False)
-        solve(system, state, self.dense)
-        answer = np.zeros(state.q.size)
-        n = system.diagonal.size
-        answer[:n] = -state.correction[:n]
-        to_body_axes(system, state.frames, answer, True)
-        state.a[self.solved & self.moving] = answer[self.solved & self.moving]
-        state.q[~self.moving] = answer[~self.moving]
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
-        return True
+        return code == DONE
 
 
 def _with_own_integers(state: State) -> State:
@@ -174,11 +146,7 @@ class Course:
     def _advance(self, record: Record, last: int, stop: Stop) -> int:
         run, state, chunk = self.run, self.run.state, 1000
         while True:
-            phase = state.control[PHASE]
-            if phase == FACTORED:
-                run.exchanges.factorize()
-            elif phase in (PROJECTED, SOLVED):
-                run.exchanges.solve()
+            run.exchanges.serve()
             began = time.perf_counter()
             code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
             if code in (DONE, FAILED) or stop():

@@ -122,7 +122,7 @@ class Work:
             try:
                 for name, handle in self.image.handles.items():
                     handle.set(self.values[name][run])
-                made = Simulation(one.model, one.h, one.scheme, one.every)
+                made = Simulation(one.model, one.h, one.scheme, one.every, start=one.begun)
                 made.model = copy(one.model)
             finally:
                 for handle in reversed(self.image.handles.values()):

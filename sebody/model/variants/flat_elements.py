@@ -12,6 +12,7 @@ from sebody.errors import InputError
 from sebody.model.parts import Axes, Element, Joint, positions, rotations
 from sebody.model.variants.flattening import Flattening
 
+PARALLEL = 1e-9         # one less the cosine of an angle that is rounding
 TURNING_TOGETHER = ("weld", "prismatic")    # joints whose nodes keep any direction
 
 
@@ -176,15 +177,24 @@ def _torsion_spring(flat: Flattening, one: Element) -> tuple[str, dict]:
 
 
 def _bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
-    of = {name: flat.plane.axes.T @ np.diag(one.constants[name]) @ flat.plane.axes
-          for name in ("k", "c", "kt", "ct")}
-    for matrix in of.values():
-        if np.abs(matrix - np.diag(np.diag(matrix))).max() > 1e-9 * np.abs(matrix).max():
+    """Its axes may lie in the plane in any direction where the third is normal to it.
+
+    Where coefficients along axes are equal, any axes will do.
+    """
+    axes = np.array([one.constants[f"e{k}"] for k in (1, 2, 3)]) @ flat.plane.axes
+    of = {name: axes.T @ np.diag(one.constants[name]) @ axes for name in ("k", "c", "kt", "ct")}
+    turn = np.eye(3)
+    if abs(axes[:, 2]).max() > 1.0 - PARALLEL:      # of one axis
+        first = np.delete(axes, np.argmax(abs(axes[:, 2])), axis=0)[0]
+        turn[:2, 0], turn[:2, 1] = first[:2], [-first[1], first[0]]
+    for name, matrix in of.items():
+        own = of[name] = turn.T @ matrix @ turn
+        if np.abs(own - np.diag(np.diag(own))).max() > 1e-9 * np.abs(own).max():
             raise InputError(f"{one.name!r} has other coefficients along axes that are neither in "
                              "the plane nor normal to it")
     kept: dict[str, NDArray] = {name: np.diag(matrix)[:2] if name in ("k", "c") else
                                 np.diag(matrix)[2:] for name, matrix in of.items()}
-    return "planar_bushing", kept
+    return "planar_bushing", kept | {"e1": turn[:2, 0], "e2": turn[:2, 1]}
 
 
 _ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {

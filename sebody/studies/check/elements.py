@@ -35,6 +35,7 @@ from sebody.studies.check.states import (
     tangent_rate,
 )
 
+TURNED = 2.0 * np.pi    # angle that an element keeps: it has turned once
 AMPLITUDES = np.array([0.7, 0.3, -0.4])     # of a load or drive, with its rates
 
 
@@ -49,7 +50,7 @@ def element_case(module: ModuleType, seed: int) -> Case:
     size = Row(module.__name__, module.CONSTANTS).size({})
     return Case(module, n, index_row(n, module.N_POSITIONS, nrot),
                 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
-                random.normal(size=n), random.normal(size=n), np.zeros(9), np.zeros(9),
+                random.normal(size=n), random.normal(size=n), np.full(9, TURNED), np.zeros(9),
                 random.normal(size=3), AMPLITUDES)
 
 

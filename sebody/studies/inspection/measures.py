@@ -15,6 +15,7 @@ from sebody.errors import InputError
 from sebody.io.body_file import BodyFile
 from sebody.reduction import frame_weights
 from sebody.reduction.checks import (
+    asymmetry,
     check_layout,
     coordinate_names,
     rigid_residual,
@@ -77,7 +78,7 @@ def matrices_of(file: BodyFile) -> Matrices:
     coordinates, keeps = np.asarray(parts["coordinates"], dtype=float), tuple(parts["keeps"])
     check_layout(coordinates, keeps)
     names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0), file.names)
-    found, asymmetry = {}, {}
+    found, differences = {}, {}
     for name in ("stiffness", "mass"):
         matrix = np.asarray(parts[name], dtype=float)
         if matrix.shape != (len(names),) * 2:
@@ -87,12 +88,11 @@ def matrices_of(file: BodyFile) -> Matrices:
             i, j = np.argwhere(~np.isfinite(matrix))[0]
             raise InputError(f"{name}[{i}, {j}] is {matrix[i, j]} ({names[i]}, {names[j]}): export "
                              "the matrix again")
-        scale = unit_scale(matrix, names)
-        asymmetry[name] = float(np.max(np.abs(matrix - matrix.T) / np.outer(scale, scale)))
+        differences[name] = float(asymmetry(matrix, names, coordinates).max())
         found[name] = (matrix + matrix.T) / 2
     rigid = rigid_motions(coordinates, keeps, len(names), coordinates.mean(axis=0))
     return Matrices(**found, coordinates=coordinates, keeps=keeps, names=names,
-                    asymmetry=asymmetry, rigid=rigid)
+                    asymmetry=differences, rigid=rigid)
 
 
 def mass_properties(body: Matrices) -> dict:

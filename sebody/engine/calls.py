@@ -1,0 +1,28 @@
+"""Calls of functions at their addresses, as kernels are called.
+
+What a compiled function calls by name is compiled again as a part of it. Factorizations and
+restarts are called seldom and are long: by address the loop is compiled without them, and beside
+them. `sebody.engine.routines` has the addresses.
+"""
+
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+
+@intrinsic
+def call_refactorize(typingctx, address, system, state, wanted, dense):
+    """Call `sebody.engine.matrix.refactorize` at its address."""
+    return types.boolean(types.int64, system, state, types.int64, types.boolean), _call
+
+
+@intrinsic
+def call_restart(typingctx, address, system, state, lead, dense):
+    """Call `sebody.engine.restart.restart` at its address."""
+    return types.int64(types.int64, system, state, types.float64, types.boolean), _call
+
+
+def _call(context, builder, sig, args):
+    kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
+    function = ir.FunctionType(context.get_value_type(sig.return_type), kinds)
+    return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])

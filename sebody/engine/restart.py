@@ -1,0 +1,281 @@
+"""Restart: accelerations and multipliers solved anew, at the start and where loads jump.
+
+Positions and velocities stay. Newton's iteration solves the equations of motion together with the
+constraints, differentiated twice in time, for accelerations a and multipliers; forces may depend on
+multipliers. The step that ended here saw the loads before the jump, the next one begins from what
+follows after it: auxiliary accelerations are set from a.
+
+Of constraints that hold for velocities, too (index 2), multipliers are of second order from the
+first step on if auxiliary accelerations are those of the later time they belong to. The rates of
+the accelerations come from a look ahead: one more correction, in the state a short time later.
+"""
+
+import numpy as np
+
+from sebody.engine.calls import call_refactorize
+from sebody.engine.evaluate import (
+    move_prescribed,
+    run_kernels,
+    set_loads_beside,
+    sum_forces,
+    to_body_axes,
+    update_rotations,
+)
+from sebody.engine.links import place_dependent
+from sebody.engine.matrix import solve
+from sebody.engine.newton import SLOWEST
+from sebody.engine.state import (
+    AHEAD,
+    ASKED,
+    AUX_STEP,
+    BEGIN,
+    BESIDE,
+    CONTRACTION,
+    CURRENT_STEP,
+    DONE,
+    EVALUATED,
+    FACTOR,
+    FACTORED,
+    FAILED,
+    FLOOR,
+    FRESH,
+    ITERATE,
+    ITERATION,
+    KEPT,
+    LAST_NORM,
+    MATRICES,
+    NO_START,
+    PHASE,
+    PIVOTED,
+    REASON,
+    RELAXED,
+    RESTART,
+    SOLVE,
+    SOLVED,
+    TIME,
+    WANTED,
+)
+from sebody.engine.vectors import copy
+from sebody.engine.work import set_acting
+from sebody.kernels.layout import (
+    ACCELERATION,
+    C_CONSTRAINT,
+    C_DAMPING,
+    C_GEO,
+    C_MASS,
+    C_STIFFNESS,
+    OK,
+    RESIDUAL,
+    TANGENT,
+)
+from sebody.kernels.pipeline import compiled
+
+MOST_CORRECTIONS = 30   # of a restart
+MOST_MATRICES = 6       # likewise
+ACCURATE = 1e-10        # correction, relative to accelerations and multipliers, that is none
+ROUNDED = 1e-6          # the same that may be left where new matrices do not help
+POOR = 0.3              # a contraction rate above this asks for a new matrix
+HARDLY = 0.5            # and above this rounding is all that is left, if little is
+SUMMANDS = 10.0         # roundings in what velocities make of accelerations
+CONTRADICTION = 1e-7    # residual, relative to the solution, of constraints that contradict others
+SHORT = 1e-3            # of a step: how far to look ahead
+
+
+@compiled
+def restart(system, state, lead, dense):
+    """Solve for accelerations and multipliers of the state reached.
+
+    Parameters
+    ----------
+    lead : float
+        By how much auxiliary accelerations are ahead of the state, in steps; with 0 they are the
+        accelerations themselves, as the first step takes them for.
+
+    Returns
+    -------
+    int
+        DONE; FAILED with a reason; FACTOR or SOLVE for Python to do so and call again.
+    """
+    control = state.control
+    while True:
+        if control[PHASE] == BEGIN:
+            _begin(system, state)
+            control[PHASE] = ITERATE
+        if control[PHASE] == ITERATE:
+            wanted = control[WANTED]
+            status = _evaluate(system, state, wanted)
+            if status != OK:
+                return _fail(state, status)
+            control[PHASE] = FACTORED
+            if wanted != KEPT:
+                if not _factorize(system, state, dense):
+                    return FACTOR
+        if control[PHASE] == FACTORED:
+            control[PHASE] = SOLVED
+            if control[PIVOTED] == 1:
+                return SOLVE
+            solve(system, state, dense)
+        control[PHASE] = ITERATE
+        if control[RESTART] == AHEAD:
+            _take_rates(system, state, lead)
+            return _end(system, state)
+        verdict = _correct(system, state)
+        if verdict == FAILED:
+            return _fail(state, NO_START)
+        if verdict == DONE:
+            if lead == 0.0:
+                copy(state.a, state.aux)
+                state.clock[AUX_STEP] = state.clock[CURRENT_STEP]
+                return _end(system, state)
+            _look_ahead(system, state)
+
+
+@compiled
+def _factorize(system, state, dense):
+    """Factorize masses and constraints; False where Python has to."""
+    control = state.control
+    control[WANTED] = KEPT
+    control[FRESH] += 1
+    control[MATRICES] += 1
+    done = call_refactorize(system.routines[0], system, state, EVALUATED, dense)
+    if not done or system.massless[0] == 1:
+        control[PIVOTED] = 1
+    return control[PIVOTED] == 0
+
+
+@compiled
+def _begin(system, state):
+    """Set the loads after the jump and the coefficients of masses and constraints."""
+    clock, control, c = state.clock, state.control, state.coefficients
+    set_loads_beside(system, state.loads, clock[TIME], -clock[BESIDE])
+    for k in range(system.prescribed.shape[0]):
+        state.a[system.prescribed[k, 0]] = 0.0
+    for k in range(system.prescribed.shape[0]):
+        state.a[system.prescribed[k, 0]] += (system.prescribed_factor[k]
+                                             * state.loads[3 * system.prescribed[k, 1] + 2])
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    c[C_MASS], c[C_DAMPING], c[C_STIFFNESS], c[C_GEO], c[C_CONSTRAINT] = 1.0, 0.0, 0.0, 1.0, 1.0
+    for i in range(state.T.size):       # the unknowns are accelerations, not increments
+        state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
+    control[WANTED], control[RESTART] = EVALUATED, ASKED
+    control[FRESH] = control[ITERATION] = 0
+    clock[LAST_NORM] = 0.0
+
+
+@compiled
+def _evaluate(system, state, wanted):
+    """Evaluate forces and the constraints' second rates; returns the kernels' status."""
+    bodies, batches = system.first_joint[0], system.address.size
+    status = run_kernels(RESIDUAL if wanted == KEPT else TANGENT, 0, bodies, system, state)
+    if status == OK and wanted != KEPT:
+        status = run_kernels(TANGENT, bodies, batches, system, state)
+    if status == OK:
+        status = run_kernels(ACCELERATION, bodies, batches, system, state)
+    sum_forces(system, state, state.residual)
+    to_body_axes(system, state.frames, state.residual, False)
+    return status
+
+
+@compiled
+def _correct(system, state):
+    """Subtract a correction; returns DONE, FAILED or, to go on, SOLVE."""
+    control, clock, n = state.control, state.clock, system.diagonal.size
+    norm = size = left = 0.0
+    for i in range(n):
+        d, r = state.correction[i] * state.weight[i], state.residual[i] * state.scale[i]
+        x = (state.q[i] if system.is_multiplier[i] > 0.0 else state.a[i]) * state.weight[i]
+        norm += d * d
+        size += x * x
+        left += r * r
+    norm = np.sqrt(norm)
+    to_body_axes(system, state.frames, state.correction, True)
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            state.q[i] -= state.correction[i]
+        else:
+            state.a[i] -= state.correction[i]
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    size = max(np.sqrt(size), norm)
+    rate = norm / clock[LAST_NORM] if control[ITERATION] > 0 else 0.0
+    clock[LAST_NORM] = norm
+    control[ITERATION] += 1
+    if not np.isfinite(norm):
+        return FAILED
+    none = max(ACCURATE, ROUNDED if rate > HARDLY else 0.0) * size + _rounding(system, state)
+    if norm <= none:
+        # what the corrections of a regularized matrix leave is a contradiction, or a force on
+        # something without mass
+        gap = (control[RELAXED] == 1 and system.massless[0] == 0
+               and np.sqrt(left) > n * norm + CONTRADICTION * size)
+        return FAILED if gap else DONE
+    if rate > POOR:
+        control[WANTED] = EVALUATED
+    ended = control[ITERATION] >= MOST_CORRECTIONS or (rate > POOR
+                                                       and control[FRESH] >= MOST_MATRICES)
+    return FAILED if ended else SOLVE
+
+
+@compiled
+def _rounding(system, state):
+    """Norm of accelerations that are rounding.
+
+    They move positions by less than their rounding in a step, or are rounding of what the
+    velocities make.
+    """
+    speed, h = 0.0, state.clock[CURRENT_STEP]
+    for i in range(state.v.size):
+        if system.magnitude[i] > 0.0:
+            speed = max(speed, abs(state.v[i]) / system.magnitude[i])
+    return state.clock[FLOOR] * (1.0 / (h * h) + SUMMANDS * speed * speed)
+
+
+@compiled
+def _look_ahead(system, state):
+    """Move the state by a short time, for one more correction."""
+    clock = state.clock
+    dt = SHORT * clock[CURRENT_STEP]
+    copy(state.now, state.kept)
+    copy(state.R, state.R_old)
+    copy(state.frames, state.frames_old)
+    copy(state.loads, state.loads_old)
+    for i in range(state.q.size):
+        state.dq[i] = dt * (state.v[i] + 0.5 * dt * state.a[i]) * (1.0 - system.is_multiplier[i])
+        state.q[i] += state.dq[i]
+        state.v[i] += dt * state.a[i]
+    set_loads_beside(system, state.loads, clock[TIME] + dt, -clock[BESIDE])
+    move_prescribed(system, state)
+    update_rotations(system, state)
+    state.control[RESTART] = AHEAD
+
+
+@compiled
+def _take_rates(system, state, lead):
+    """Return to the state reached; set auxiliary accelerations to those of a later time."""
+    h = state.clock[CURRENT_STEP]
+    to_body_axes(system, state.frames, state.correction, True)
+    copy(state.kept, state.now)
+    copy(state.loads_old, state.loads)
+    copy(state.a, state.aux)
+    for i in range(system.diagonal.size):
+        if system.is_multiplier[i] == 0.0:
+            state.aux[i] -= lead / SHORT * state.correction[i]
+    state.clock[AUX_STEP] = h
+
+
+@compiled
+def _end(system, state):
+    """Let the next step begin from here."""
+    control = state.control
+    set_acting(system, state)
+    control[WANTED], control[PIVOTED], control[FRESH] = EVALUATED, 0, 0
+    control[RESTART], control[PHASE] = 0, BEGIN
+    state.clock[CONTRACTION] = SLOWEST      # nothing is known of the next step
+    return DONE
+
+
+@compiled
+def _fail(state, reason):
+    """Give up: a later call begins anew."""
+    control = state.control
+    control[REASON], control[PHASE], control[RESTART] = reason, BEGIN, ASKED
+    return FAILED

@@ -1,0 +1,140 @@
+"""Work of the power ports: loads, springs, drives, prescribed motions and damped bodies.
+
+Over a step a force f does the work ``(f_n + f_n+1) / 2 . dq`` with the increment dq of the step,
+not the mean of the powers at both ends: so energies and works agree as they do in the scheme. With
+the trapezoidal rule, ``M dv = h (F_n + F_n+1) / 2`` and ``dq = h (v_n + v_n+1) / 2``, the work of
+all forces F is the change of the kinetic energy, exactly, and that of linear elastic forces the
+change of strain energy. What numerical damping takes is left over.
+
+Elements with a port leave its force, as a residual, in `State.g` when they are asked for ENERGY.
+Bodies with damping tell its power alone: it is taken in the middle of the step, at the velocities
+``dq / h``.
+"""
+
+from sebody.engine.evaluate import run_kernels, sum_forces
+from sebody.engine.vectors import copy
+from sebody.kernels.abi import at, pointer_to
+from sebody.kernels.layout import AT_PORT, ENERGY, POWERS, RESIDUAL
+from sebody.kernels.pipeline import compiled
+from sebody.kernels.rotations import rotate
+
+
+@compiled
+def add_work(system, state, h):
+    """Add the work of the power ports over a step that was accepted."""
+    if state.works.size == 0:
+        return
+    copy(state.works, state.works_old)
+    for k in range(system.links.dependent.shape[0]):
+        first = system.links.dependent[k, 0]
+        for i in range(first, first + system.dimension[0]):
+            state.dq[i] = state.q[i] - state.q_old[i]
+    _take_forces(system, state, 0.5)
+    if system.damped[0] == 1:
+        _add_damping(system, state, h)
+
+
+@compiled
+def set_acting(system, state):
+    """Set the forces of the power ports in the current state: of elements, then of motions."""
+    if state.works.size > 0:
+        _take_forces(system, state, 0.0)
+
+
+@compiled
+def _take_forces(system, state, factor):
+    """Evaluate the forces of the ports; add a factor times their work, with those before.
+
+    One pass: in a plane a step takes half a microsecond, as much as three passes of this.
+    """
+    power, elements = system.first_power[0], state.acting.size - system.prescribed.shape[0]
+    if elements > 0:
+        run_kernels(ENERGY, power, system.address.size, system, state)
+    forces, unknowns = pointer_to(state.g), pointer_to(system.g_unknown)
+    acting, old = pointer_to(state.acting), pointer_to(state.acting_old)
+    dq, is_multiplier = pointer_to(state.dq), pointer_to(system.is_multiplier)
+    first = system.at_g[power]
+    for b in range(power, system.address.size):
+        row = at(pointer_to(system.index), system.at_index[b] + AT_PORT)
+        for element in range(system.count[b]):
+            product = 0.0
+            for k in range(first, first + system.width[b]):
+                i, n = unknowns[k], k - system.at_g[power]
+                product += (acting[n] + forces[k]) * dq[i] * (1.0 - is_multiplier[i])
+                old[n], acting[n] = acting[n], forces[k]
+            state.works[row[element * system.stride[b]]] -= factor * product
+            first += system.width[b]
+    if system.prescribed.shape[0] > 0:
+        _take_reactions(system, state, elements, factor)
+
+
+@compiled
+def _take_reactions(system, state, first, factor):
+    """The same for prescribed motions: the forces on their coordinates."""
+    run_kernels(RESIDUAL, 0, system.address.size, system, state)
+    sum_forces(system, state, state.residual)
+    for k in range(system.prescribed.shape[0]):
+        port, n = system.prescribed[k, 1], first + k
+        force = -system.prescribed_factor[k] * state.residual[system.prescribed[k, 0]]
+        state.works[port] -= factor * (state.acting[n] + force) * (state.loads[3 * port]
+                                                                  - state.loads_old[3 * port])
+        state.acting_old[n], state.acting[n] = state.acting[n], force
+
+
+@compiled
+def _add_damping(system, state, h):
+    """Add the work of the bodies' damping over a step."""
+    copy(state.now, state.kept)
+    for i in range(state.q.size):
+        increment = state.q[i] - state.q_old[i]
+        state.q[i], state.v[i] = state.q_old[i] + 0.5 * increment, increment / h
+    q, dq = pointer_to(state.q), pointer_to(state.dq)
+    for r in range(system.rotation_at.size):
+        first = system.rotation_at[r]
+        for i in range(first, first + 3):
+            q[i], state.v[i] = 0.5 * dq[i], dq[i] / h
+        rotate(pointer_to(state.R_old), 9 * r, q[first], q[first + 1], q[first + 2],
+               pointer_to(state.R), 9 * r)
+    for k in range(state.works.size):
+        state.energy[POWERS + k] = 0.0
+    run_kernels(ENERGY, 0, system.first_joint[0], system, state)
+    copy(state.kept, state.now)
+    for k in range(state.works.size):
+        state.works[k] += h * state.energy[POWERS + k]
+
+
+@compiled
+def set_powers(system, state, h):
+    """Set the powers at the begin and end of the last step; of bodies' damping the mean one."""
+    for k in range(state.works.size):
+        state.powers[k] = (state.works[k] - state.works_old[k]) / h
+    for b in range(system.first_power[0], system.address.size):
+        for element in range(system.count[b]):
+            state.powers[_port(system, b, element)] = 0.0
+    for k in range(system.prescribed.shape[0]):
+        state.powers[system.prescribed[k, 1]] = 0.0
+    copy(state.powers, state.powers_old)
+    _subtract_powers(system, state.acting_old, state.v_old, state.loads_old, state.powers_old)
+    _subtract_powers(system, state.acting, state.v, state.loads, state.powers)
+
+
+@compiled
+def _subtract_powers(system, acting, v, loads, powers):
+    """Subtract products of forces, residuals, and velocities."""
+    first = system.at_g[system.first_power[0]]
+    for b in range(system.first_power[0], system.address.size):
+        for element in range(system.count[b]):
+            place = system.at_g[b] + element * system.width[b]
+            for k in range(place, place + system.width[b]):
+                i = system.g_unknown[k]
+                powers[_port(system, b, element)] -= acting[k - first] * v[i]
+    elements = acting.size - system.prescribed.shape[0]
+    for k in range(system.prescribed.shape[0]):
+        port = system.prescribed[k, 1]
+        powers[port] -= acting[elements + k] * loads[3 * port + 1]
+
+
+@compiled
+def _port(system, b, element):
+    """Number of the power port of an element."""
+    return system.index[system.at_index[b] + element * system.stride[b] + AT_PORT]

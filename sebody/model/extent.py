@@ -1,0 +1,45 @@
+"""The size of a model: what lengths and errors of positions are compared with."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.model.mechanism import Mechanism
+from sebody.reduction import ReducedBody
+
+# constants of elements that are lengths, and moments of inertia of rigid bodies
+LENGTHS, MOMENTS = ("length",), ("J_xx", "J_yy", "J_zz")
+
+
+def extent(model: Mechanism) -> float:
+    """Largest length in a model [length]; 0 if nothing has one.
+
+    The distance of the outermost nodes, ground points included, the size of the largest body, the
+    largest radius of gyration of a rigid body about its node, or the longest spring: where the
+    model is put, and which way it is turned, does not matter.
+    """
+    points = [node.point for node in (*model.nodes.values(), *model.grounds)]
+    found = [_diameter(np.array(points)) if points else 0.0]
+    found += [_size(reduced) for reduced in
+              {id(body.body): body.body for body in model.bodies.values()}.values()]
+    for body in model.rigid_bodies.values():
+        moments = [body.constants[name] for name in MOMENTS if name in body.constants]
+        found.append(float(np.sqrt(max(moments, default=0.0) / body.constants["mass"])))
+    found += [float(element.constants[name]) for element in (*model.loads, *model.constraints)
+              for name in LENGTHS if name in element.constants]
+    return max(found)
+
+
+def _size(body: ReducedBody) -> float:
+    """Distance of the outermost nodes; of a body on one node its radius of gyration."""
+    found = _diameter(body.coordinates)
+    if found > 0.0:
+        return found
+    turns = body.rigid_modes_about(body.centre_of_mass)[:, body.coordinates.shape[1]:]
+    return float(np.sqrt(max((turns.T @ body.mass @ turns).diagonal().max(), 0.0)
+                         / body.total_mass))
+
+
+def _diameter(points: NDArray) -> float:
+    """Twice the largest distance from the middle of the points."""
+    middle = (points.max(axis=0) + points.min(axis=0)) / 2
+    return 2.0 * float(np.linalg.norm(points - middle, axis=1).max())

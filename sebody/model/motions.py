@@ -1,0 +1,87 @@
+"""Motions of drives: histories with two rates, that do not jump but in the second."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from numbers import Number
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.kernels.user_functions import UserFunction
+from sebody.model.derivatives import rates_of
+from sebody.model.functions import compiled_history
+from sebody.model.histories import (
+    MOTION,
+    History,
+    Source,
+    is_function_with_rates,
+    spline_of,
+)
+from sebody.model.history_rows import table
+
+SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
+
+
+def motion(source: Source) -> History:
+    """The motion of a drive: a position and its first two derivatives, less its value at t = 0.
+
+    Parameters
+    ----------
+    source : table, function, tuple of three functions or ready profile
+        A table ``[(t, value), ...]`` becomes a cubic spline, at rest at both ends and outside.
+        The rates of a function of time are derived from it by SymPy; three functions are value,
+        rate and second rate.
+
+    Raises
+    ------
+    InputError
+        None of these, functions that are not each other's derivatives, a function that cannot be
+        compiled or differentiated, a position or rate that jumps.
+    """
+    if isinstance(source, History):
+        if len(source.functions) == 1:
+            value = source.functions[0]
+            rates = (compiled_history(f, MOTION) for f in rates_of(value.function, MOTION))
+            source = replace(source, functions=(value, *rates))
+        _check_rates(source.functions)
+        _refuse_jumps(source)
+        return source.from_zero()
+    if callable(source):
+        source = (source, *rates_of(source, MOTION))
+    if is_function_with_rates(source):
+        functions = tuple(compiled_history(f, MOTION) for f in source)
+        _check_rates(functions)
+        return History(functions=functions).from_zero()
+    if isinstance(source, Number):
+        raise InputError(f"motion of a drive is {inputs.shown(source)}, always the same: give a "
+                         "table, a function of time or a ready profile, or fix the node")
+    times, values = table(source, MOTION)
+    if len(times) < 2:
+        raise InputError("the motion of a drive has one row: give at least two rows (t, value), "
+                         "or fix the node")
+    return spline_of(times, values, (0.0, 0.0)).from_zero().with_corners()
+
+
+def _refuse_jumps(given: History) -> None:
+    """Refuse a motion that no body can follow."""
+    for t, before, after in given.jumps():
+        for k, what in enumerate(("position", "rate")):
+            if before[k] != after[k]:
+                raise InputError(
+                    f"motion of a drive: its {what} jumps from {before[k]:.6g} to {after[k]:.6g} "
+                    f"at t = {t:.6g}, which no body can follow: go there by rest_to_rest, "
+                    "trapezoidal or a spline; only at t = 0 may it have a speed at once")
+
+
+def _check_rates(functions: Sequence[UserFunction]) -> None:
+    """Refuse a rate that is not the derivative of the function before it."""
+    if not functions:
+        return
+    for k, what in ((0, "second function is not the derivative of the first"),
+                    (1, "third function is not the derivative of the second")):
+        f, rate = functions[k].ctypes, functions[k + 1].ctypes
+        for t in SAMPLES:
+            slope = (f(t + 1e-5) - f(t - 1e-5)) / 2e-5
+            size = max(abs(slope), abs(rate(t)), abs(f(t)), 1e-300)
+            if not abs(slope - rate(t)) < 1e-4 * size:
+                raise InputError(f"motion of a drive: the {what}: at t = {t} it is {rate(t):.6g}, "
+                                 f"differences give {slope:.6g}")
