@@ -33,8 +33,8 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
     t_end : float
         End of the runs, a whole number of steps [time].
     quantities : str or iterable of str
-        Names as results have them, or ``frequency 1`` and so on, of the model linearised at its
-        start. The error of a quantity is its largest difference, relative to its largest change
+        Names as results have them, or ``frequency 1`` and so on, about the equilibrium at the start
+        or the steady rotation. The error of a quantity is its largest difference, relative to its largest change
         from the start; that of a frequency is relative to it.
     tolerance : float
         Largest error.

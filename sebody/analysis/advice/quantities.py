@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.analysis.linearization import modes
+from sebody.analysis.advice.steady import steady_frequencies
 from sebody.analysis.simulation import Simulation
-from sebody.errors import InputError, LimitWarning
+from sebody.errors import InputError, LimitWarning, SimulationError
 from sebody.model.model import Model
 from sebody.results.naming import component_of, split
 from sebody.results.result import Result
@@ -32,8 +32,8 @@ class Quantities:
     Parameters
     ----------
     names : str or iterable of str
-        As a result has them, and ``frequency 1``, the lowest one above zero of the model
-        linearised at its start, and so on.
+        As a result has them, and ``frequency 1``, the lowest one above zero of small motion about
+        the equilibrium at the start or the steady rotation, and so on.
 
     Raises
     ------
@@ -74,9 +74,9 @@ class Quantities:
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LimitWarning)
-            self.of(Simulation(model, h).result(), h)
+            self.of(Simulation(model, h).result())
 
-    def of(self, result: Result, h: float) -> Values:
+    def of(self, result: Result) -> Values:
         """The quantities of a run.
 
         Raises
@@ -85,18 +85,17 @@ class Quantities:
             A quantity does not exist.
         """
         return Values([_history(result, name) for name in self.histories],
-                      self._frequencies(result, h) if self.numbers else [])
+                      self._frequencies(result) if self.numbers else [])
 
     def wholes(self, result: Result) -> list[str]:
         """The quantities that the histories are components of, or they themselves."""
         return [split(result, name)[0] for name in self.histories]
 
-    def _frequencies(self, result: Result, h: float) -> list[float]:
-        run = Simulation(result.model, h)
+    def _frequencies(self, result: Result) -> list[float]:
         try:
-            omega = modes(run).omega
-        except InputError as reason:
-            raise InputError(f"the model has no frequencies at its start: {reason}") from reason
+            omega = steady_frequencies(result)
+        except (InputError, SimulationError) as reason:
+            raise InputError(f"quantity {f'frequency {self.numbers[0]}'!r}: {reason}") from reason
         flexible = omega[omega > RIGID * omega.max(initial=0.0)]
         if max(self.numbers) > len(flexible):
             raise InputError(f"quantity 'frequency {max(self.numbers)}' does not exist: the model "

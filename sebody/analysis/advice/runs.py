@@ -86,5 +86,5 @@ class Runs:
             if not watched:
                 simulation.watch = _Unwatched()
             result = simulation.run_to(end, self.progress).result()
-        return Run(self.quantities.of(result, step.h), step.h * every, result.seconds,
+        return Run(self.quantities.of(result), step.h * every, result.seconds,
                    result.iterations_per_step * result.steps, result)
