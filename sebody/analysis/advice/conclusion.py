@@ -6,6 +6,7 @@ from sebody.analysis.advice.limits import doubts
 from sebody.analysis.advice.outcome import Advice
 from sebody.analysis.advice.reasons import neighbours, reasons
 from sebody.analysis.advice.search import Search
+from sebody.analysis.advice.words import limiting
 from sebody.analysis.tolerance import Tolerance
 
 REPEATS = 2         # further runs of what is compared in time
@@ -33,7 +34,21 @@ def conclusion(search: Search, found: Tried, given: Tried | None = None,
         None if choice.step.local is None else Tolerance(choice.step.local),
         float(found.predicted), seconds, lab.runs.t_end,
         tuple(change.code() for change in made.changes), tuple(reasons(search, choice)),
-        tuple(remarks), interrupted, tuple(doubts(lab)), warnings)
+        tuple(remarks), interrupted, tuple(doubts(lab)), warnings,
+        _kept(search, found), lab.runs.balanced)
+
+
+def _kept(search: Search, found: Tried) -> str:
+    """What is kept how well, in the quantity's unit, when it is worst, and what limits it."""
+    worst = found.worst
+    if not worst.quantity or found.error == float("inf"):
+        return ""
+    when = "" if worst.row is None else f", worst at t = {worst.row * found.h:.4g}"
+    parts = search.lab.estimates.contributions(found.choice)
+    largest = max(parts, key=lambda one: one.error).kind if parts else ""
+    return (f"Keeps {worst.quantity} within {found.error * worst.size:.2g} "
+            f"({100 * found.error:.2g} % of {worst.size:.3g}){when}; limited by "
+            f"{limiting(search.lab.parts, largest)}")
 
 
 def _quickest(search: Search, found: Tried) -> float:

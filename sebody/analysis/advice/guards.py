@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from sebody.analysis.advice.measures import lengths
 from sebody.analysis.advice.outcome import Doubt
-from sebody.analysis.advice.quantities import Values, lengths
+from sebody.analysis.advice.quantities import Values
 from sebody.analysis.advice.reference import Reference
 from sebody.assembly.numbering import Numbering, stretch
 from sebody.model.model import Model

@@ -19,7 +19,7 @@ from sebody.analysis.advice.guards import (
 from sebody.analysis.advice.indicators.recorded import Recorded
 from sebody.analysis.advice.loads import SEEN, Missed, missed
 from sebody.analysis.advice.outcome import Doubt, Trial
-from sebody.analysis.advice.quantities import Quantities, difference
+from sebody.analysis.advice.quantities import Quantities, Worst, compared, difference, sizes_of
 from sebody.analysis.advice.reference import ORDER_FACTOR, Reference, reference, still
 from sebody.analysis.advice.runs import Run, Runs
 from sebody.analysis.advice.words import in_brief
@@ -28,9 +28,12 @@ from sebody.errors import InputError, SimulationError
 from sebody.model.model import Model
 
 FINER = (4, 2, 1)       # parts of the given step, of the first runs of the richest model
-SHORTER = (8, 16)       # further ones, where the tolerance needs them
+SHORTER = (8, 16, 32, 64)     # further ones, where the tolerance needs them
 GOOD = 0.2              # of the tolerance, that the reference may be off by without them
+LARGEST = 0.9           # relative tolerance, that an absolute one is at most
 SHORTEST = 64           # parts of the given step, of the grid
+EARLY = 3               # steps of the grid, that errors are those of the start in
+MARGIN = 1.2            # of a tolerance that would pass
 SHARE = 0.5             # of the tolerance, that the reference must be good to
 
 
@@ -42,6 +45,8 @@ class Tried:
     error: float
     predicted: float
     seconds: float
+    worst: Worst = Worst(0.0, "")
+    h: float = 0.0          # of its records
 
 
 class Laboratory:
@@ -54,11 +59,14 @@ class Laboratory:
     quantities : Quantities
     runs : Runs
     tolerance : float
+    absolute : float, optional
+        Largest error in the quantities' own unit, in place of the relative one.
     """
 
-    def __init__(self, model: Model, quantities: Quantities, runs: Runs, tolerance: float):
+    def __init__(self, model: Model, quantities: Quantities, runs: Runs, tolerance: float,
+                 absolute: float | None = None):
         self.model, self.quantities, self.runs = model, quantities, runs
-        self.tolerance = tolerance
+        self.tolerance, self.absolute = tolerance, absolute
         self.parts: list[Part] = parts_of(model, quantities.owners)
         self.builder = Builder(model, self.parts, quantities.owners)
         self.cost = Cost(model, self.parts, runs.t_end)
@@ -102,6 +110,8 @@ class Laboratory:
                 raise InputError(f"{what}: the model does not move; give it loads, a drive or "
                                  "initial velocities")
             raise InputError(f"{what}: give one that the motion changes")
+        if self.absolute is not None:
+            self.tolerance = min(self.absolute / max(sizes_of(first.values)), LARGEST)
         for part in FINER[1:]:
             try:
                 self._base(self.runs.h / part)
@@ -128,8 +138,9 @@ class Laboratory:
         for h in sorted(errors):
             self.table.append(Trial(words, h, 0.0 if h == finest else errors[h],
                                     self.bases[h].seconds))
+            run = self.bases[h]
             self.tried.append(Tried(choice._replace(step=Step(h)), errors[h], errors[h],
-                                    self.bases[h].seconds))
+                                    run.seconds, self.worst(run), run.h))
         recorded = Recorded(self.model, first.result, self.quantities.wholes(first.result),
                             self.reference.sizes, first.values.frequencies)
         self.estimates = Estimates(recorded, self.parts,
@@ -191,21 +202,33 @@ class Laboratory:
         return self.bases[h]
 
     def _reference(self) -> Reference:
-        return reference([self.bases[h].values for h in sorted(self.bases, reverse=True)])
+        found = [self.bases[h].values for h in sorted(self.bases, reverse=True)]
+        return reference(found, self.absolute is not None)
 
     def _judge(self) -> None:
         """Refuse a tolerance that the reference is not good for."""
         if self.reference.error <= SHARE * self.tolerance:
             return
-        own, fine = self.reference.step_error, min(self.bases)
+        worst, fine = self.reference.worst, min(self.bases)
+        first = worst.row is not None and worst.row < EARLY
+        where = "" if worst.row is None else f" at t = {worst.row * self.runs.h:.4g}"
+        told = (f"{worst.quantity} is known to {self.reference.error:.2g} of its change only, worst"
+                f"{where}, even with the step {fine:.3g}")
+        enough = (f"a tolerance of {self.reference.error / SHARE * MARGIN:.1g} would pass: half of "
+                  "it is left for the reference")
+        if first:
+            raise InputError(
+                f"{told}: the model is loaded suddenly at the start, which its fastest vibrations "
+                "answer; start from the equilibrium (start='equilibrium'), let loads grow from "
+                f"zero, or measure {worst.quantity} by rms or below a frequency; {enough}")
         if not self.reference.falls:
             raise SimulationError(
-                f"the error does not fall with the step: it stays at {own:.2g} with the step "
-                f"{fine:g}. The motion may be chaotic, then only its beginning can be computed: "
-                "use a larger tolerance or an earlier end", self.bases[fine].result)
-        raise InputError(f"with the step {fine:g} the whole model has an error of about "
-                         f"{own:.2g} from the step: give a smaller h, or a larger "
-                         f"tolerance than {self.tolerance:g}")
+                f"{told}, and shorter steps do not change that: the motion depends on the step, as "
+                "chaotic motions, impacts, and vibrations do that no damping takes away; give an "
+                f"earlier end, damping, or measure {worst.quantity} by rms, peak or below a "
+                f"frequency; {enough}", self.bases[fine].result)
+        raise InputError(f"{told}: shorter steps that are tried, down to "
+                         f"{self.runs.h / SHORTER[-1]:.3g}, are not enough; {enough}")
 
     def run(self, choice: Choice, watched: bool = False) -> Run:
         """Run a choice.
@@ -230,9 +253,12 @@ class Laboratory:
 
     def error(self, run: Run) -> float:
         """Error of a run with that of the reference."""
+        return self.reference.error + self.worst(run).error
+
+    def worst(self, run: Run) -> Worst:
+        """Where a run differs most from the reference."""
         stride = max(round(run.h / self.runs.h), 1)
-        return self.reference.error + difference(run.values, self.reference.values,
-                                                 self.reference.sizes, (1, stride))
+        return compared(run.values, self.reference.values, self.reference.sizes, (1, stride))
 
     def apart(self, run: Run, h: float) -> float:
         """Difference of a run from the richest model with the same step."""
@@ -250,5 +276,7 @@ class Laboratory:
         self.table.append(Trial(words, choice.step.h, error, seconds, predicted, cost, kind,
                                 choice.step.local))
         found = Tried(choice, error, predicted, seconds)
+        if run:
+            found.worst, found.h = self.worst(run), run.h
         self.tried.append(found)
         return found, run

@@ -125,6 +125,10 @@ class Advice:
         loads between its steps, by instability.
     warnings : tuple of str
         Of the runs of the reference and of the chosen model.
+    kept : str
+        What is kept how well, when it is worst, and what limits it, in a sentence.
+    balanced : bool
+        Whether runs start from equilibrium.
     """
 
     model: Model
@@ -144,6 +148,8 @@ class Advice:
     interrupted: bool = False
     doubts: tuple[Doubt, ...] = ()
     warnings: tuple[str, ...] = ()
+    kept: str = ""
+    balanced: bool = False
 
     @property
     def doubt(self) -> float:
@@ -171,17 +177,20 @@ class Advice:
             Lines that make the given model, by the name ``model``, imports first.
         """
         names = sorted({line.partition("= ")[2].partition("(")[0] for line in self.lines})
-        imports = [f"from sebody import {'Tolerance, ' * bool(self.local)}simulate"]
+        imports = [f"from sebody import {'Tolerance, ' * bool(self.local)}simulate",
+                   *["from sebody.analysis import equilibrium"] * self.balanced]
         if names:
             imports.append(f"from sebody.model.variants import {', '.join(names)}")
         local = f", tolerance=Tolerance({self.local.relative!r})" if self.local else ""
-        run = f"result = simulate(model, {self.step!r}, {self.t_end!r}{local})"
+        start = ", start=equilibrium(model)" * self.balanced
+        run = f"result = simulate(model, {self.step!r}, {self.t_end!r}{local}{start})"
         own = [line for line in given if line.startswith(("from ", "import "))]
         return "\n".join([*own, *imports, "", *given[len(own):], *self.lines, run])
 
     def summary(self) -> str:
         """What was chosen and why, the time it saves, and the error."""
         return "\n".join([
+            *([self.kept] if self.kept else []),
             *map(str, self.reasons),
             *([f"not tried: {', '.join(self.untried)}; raise the budget"] if self.untried else []),
             *self.remarks,

@@ -11,6 +11,7 @@ from sebody.analysis.advice.changes import Step
 from sebody.analysis.advice.quantities import Quantities, Values
 from sebody.analysis.limits import Watch
 from sebody.analysis.simulation import Simulation
+from sebody.analysis.statics import equilibrium
 from sebody.analysis.tolerance import Tolerance
 from sebody.assembly.numbering import Numbering
 from sebody.errors import LimitWarning
@@ -55,12 +56,15 @@ class Runs:
     t_end : float
     progress : callable, optional
         Called between and during runs.
+    balanced : bool
+        Whether runs start from the equilibrium under the loads of t = 0.
     """
 
     quantities: Quantities
     h: float
     t_end: float
     progress: Callable[[float], None] | None = None
+    balanced: bool = False
 
     def run(self, model: Model, step: Step, watched: bool = False, every: int = 0) -> Run:
         """Run a model; recorded on the grid, or on a longer step.
@@ -82,9 +86,12 @@ class Runs:
         tolerance = None if step.local is None else Tolerance(step.local)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LimitWarning)       # advice tells them
-            simulation = Simulation(model, step.h, output_every=every, tolerance=tolerance)
+            start = equilibrium(model) if self.balanced else None
+            simulation = Simulation(model, step.h, output_every=every, tolerance=tolerance,
+                                    start=start)
             if not watched:
                 simulation.watch = _Unwatched()
             result = simulation.run_to(end, self.progress).result()
-        return Run(self.quantities.of(result), step.h * every, result.seconds,
+        h = step.h * every
+        return Run(self.quantities.of(result, h, self.h), h, result.seconds,
                    result.iterations_per_step * result.steps, result)
