@@ -46,8 +46,8 @@ def test_tolerances_with_units(text, units, expected):
     ({"tolerance": "2 furlong"}, "the unit 'furlong' is unknown: give one of m, dm"),
     ({"tolerance": "much"}, "tolerance is 'much': give a number, such as 1e-3, or one with a unit"),
     ({"tolerance": "2mm", "quantities": "frequency 1"}, "frequencies are kept relatively"),
-    ({"quantities": "tip.position mean"}, "'tip.position mean' is unclear: give a name"),
-    ({"quantities": "tip.position < fast Hz"}, "'tip.position < fast Hz' is unclear"),
+    ({"quantities": "tip.position mean"}, "'position mean' is unknown: did you mean"),
+    ({"quantities": "tip.position < fast Hz"}, "frequency is 'fast': give a number above 0"),
     ({"quantities": "tip.position < 0 Hz"}, "frequency is '0': give a number above 0"),
     ({"start": "rest"}, "start is 'rest': give 'equilibrium' or nothing")])
 def test_what_cannot_be_measured_is_said(given, message):

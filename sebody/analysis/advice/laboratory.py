@@ -67,7 +67,8 @@ class Laboratory:
                  absolute: float | None = None):
         self.model, self.quantities, self.runs = model, quantities, runs
         self.tolerance, self.absolute = tolerance, absolute
-        self.parts: list[Part] = parts_of(model, quantities.owners)
+        self.parts: list[Part] = parts_of(model, quantities.owners,
+                                           quantities.places.beams)
         self.builder = Builder(model, self.parts, quantities.owners)
         self.cost = Cost(model, self.parts, runs.t_end)
         self.table: list[Trial] = []

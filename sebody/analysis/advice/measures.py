@@ -12,7 +12,7 @@ from sebody.errors import InputError
 from sebody.units import FORCES, LENGTHS, PRESSURES, parsed_units
 
 KINDS = "peak", "rms", "final"
-WORDS = re.compile(r"(?P<name>\S+)(?: < (?P<cut>[0-9.eE+-]+) Hz)?(?: (?P<kind>peak|rms|final))?")
+WORDS = re.compile(r"(?P<name>[^<]+?)(?: < (?P<cut>\S+) Hz)?(?: (?P<kind>peak|rms|final))?")
 ORDER = 4               # of the filter, which runs forth and back
 SAMPLED = 0.4           # of the sampling rate, from which a limit changes nothing that is recorded
 TOLERANCE = re.compile(r"([0-9.]+(?:[eE][+-]?[0-9]+)?) *([A-Za-z]*)")

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
+from sebody.analysis.advice.inside import Places
 from sebody.analysis.advice.measures import Measure
 from sebody.analysis.advice.steady import steady_frequencies
 from sebody.analysis.simulation import Simulation
 from sebody.errors import InputError, LimitWarning, SimulationError
+from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.results.naming import component_of, split
 from sebody.results.result import Result
@@ -57,6 +59,7 @@ class Quantities:
         self.measures = tuple(Measure.of(n) for n, number in zip(given, numbers, strict=True)
                               if number is None)
         self.histories = [one.name for one in self.measures]
+        self.places = Places(Mechanism(), [])
         self.numbers = [int(number[1]) for number in numbers if number]
 
     @property
@@ -71,11 +74,14 @@ class Quantities:
     def check(self, model: Model, h: float) -> None:
         """Refuse quantities that a model does not have, by its state at the start.
 
+        Those inside beams are known by their places from here on.
+
         Raises
         ------
         InputError
             A quantity does not exist, or the model cannot be started.
         """
+        self.places = Places(model, self.histories)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LimitWarning)
             self.of(Simulation(model, h).result(), h)
@@ -88,12 +94,15 @@ class Quantities:
         InputError
             A quantity does not exist.
         """
-        return Values([one.filtered(_history(result, one.name), h, grid) for one in self.measures],
-                      self._frequencies(result) if self.numbers else [], self.measures)
+        histories = [self.places.history(result, name, _history) for name in self.histories]
+        return Values([measure.filtered(history, h, grid) for measure, history in zip(
+            self.measures, histories, strict=True)],
+            self._frequencies(result) if self.numbers else [], self.measures)
 
     def wholes(self, result: Result) -> list[str]:
         """The quantities that the histories are components of, or they themselves."""
-        return [split(result, name)[0] for name in self.histories]
+        return [split(result, self.places.names(result.model, name)[0])[0]
+                for name in self.histories]
 
     def _frequencies(self, result: Result) -> list[float]:
         try:
