@@ -16,6 +16,7 @@ from functools import partial
 from pathlib import Path
 
 import sebody.generated
+from sebody.contract.names import PREFIXES, motion_name
 from sebody.derive.compiler import Variant, compile_kernel, file_name
 from sebody.derive.kernels.layouts import Layout, LayoutError
 from sebody.derive.kernels.manifest import ELEMENTS, SUPERELEMENTS
@@ -24,7 +25,6 @@ from sebody.derive.names import kernel_of
 from sebody.derive.printing.numba.options import options_text
 from sebody.files import replacing
 from sebody.kernels.loader import find, user_directory
-from sebody.kernels.names import PREFIXES, motion_name
 
 SECONDS = {True: 2.5, False: 0.4}       # to derive a superelement, or another element
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from sebody.contract.names import element_name, superelement_name
 from sebody.derive.form.kernel import Kernel
 from sebody.derive.formulas import elements
 from sebody.derive.kernels.body_load import BODY_LOADS, body_load_kernel
@@ -21,7 +22,6 @@ from sebody.derive.printing.numba.heads import (
     motion_head,
     superelement_head,
 )
-from sebody.kernels.names import element_name, superelement_name
 
 
 class Variant(NamedTuple):

@@ -103,7 +103,7 @@ def _known(word: str, what: str, text: str) -> tuple[str, str]:
         return names[alike[0]], alike[0]
     near = alike or get_close_matches(word, names, n=3)
     meant = f"did you mean {' or '.join(near)}? " if near else ""
-    raise InputError(f"{what} {text!r}: {word!r} is no unit known here: {meant}{_REMEDY}")
+    raise InputError(f"{what} {text!r}: {word!r} is not a known unit: {meant}{_REMEDY}")
 
 
 def _consistent(found: dict[str, str], what: str, text: str) -> Units:

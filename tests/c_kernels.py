@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sebody.kernels.layout import ACCELERATION, ENERGY, OK, RESIDUAL, TANGENT, VELOCITY
+from sebody.contract.layout import ACCELERATION, ENERGY, OK, RESIDUAL, TANGENT, VELOCITY
 from sebody.studies.check.elements import element_case
 from sebody.studies.check.states import arguments, called
 

@@ -48,7 +48,7 @@ class Spinning:
         self.free = np.setdiff1d(np.arange(n), held)
 
     def gradient(self, y, load, gravity):
-        """Forces and stiffness of y: elastic, centrifugal, dead loads and weight."""
+        """Forces and stiffness of y: elastic, centrifugal, fixed-direction loads and weight."""
         z = np.concatenate([y, self.Q @ y @ y / 2])
         Z = np.vstack([np.eye(self.n), self.Q @ y])
         W = self.spin

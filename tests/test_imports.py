@@ -13,6 +13,7 @@ FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.g
            "examples": "sebody.scenes"}
 # every room, lowest first, and which others its files may import; those in OPEN are open to all
 OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "spelling", "tabular", "version"}
+COMPILED = {"contract", "compiler", "kernels", "generated"}
 ROOMS = {
     "errors": set(),
     "inputs": set(),
@@ -23,26 +24,30 @@ ROOMS = {
     "spelling": set(),
     "tabular": set(),
     "version": set(),
-    "kernels": set(),
-    "generated": {"kernels"},
-    "engine": {"kernels"},
+    "contract": set(),
+    "compiler": {"contract"},
+    "kernels": {"contract", "compiler"},
+    "generated": {"contract", "compiler", "kernels"},
+    "engine": {"contract", "compiler", "kernels"},
     "fem": set(),
     "reduction": {"fem"},
     "io": {"fem", "reduction"},
-    "model": {"kernels", "generated", "fem", "reduction", "io"},    # of generated the options alone
-    "assembly": {"kernels", "generated", "engine", "reduction", "model"},   # the options likewise
-    "results": {"kernels", "generated", "engine", "fem", "reduction", "model", "assembly"},
-    "analysis": {"kernels", "generated", "engine", "reduction", "model", "assembly", "results"},
+    "model": {*COMPILED, "fem", "reduction", "io"},     # of generated the options alone
+    "assembly": {*COMPILED, "engine", "reduction", "model"},        # the options likewise
+    "results": {*COMPILED, "engine", "fem", "reduction", "model", "assembly"},
+    "analysis": {*COMPILED, "engine", "reduction", "model", "assembly", "results"},
     "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "io", "results"},
-    "studies": {"kernels", "generated", "engine", "fem", "reduction", "io", "model", "assembly",
-                "results", "analysis", "scenes"},
-    "cli": {"kernels", "reduction", "io", "sebody", "results", "analysis", "scenes", "studies"},
-    "derive": {"kernels"},
+    "studies": {*COMPILED, "engine", "fem", "reduction", "io", "model", "assembly", "results",
+                "analysis", "scenes"},
+    "cli": {"contract", "kernels", "reduction", "io", "sebody", "results", "analysis", "scenes",
+            "studies"},
+    "derive": {"contract", "compiler", "kernels"},
 }
 RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory": set(),
             "units": set(), "files": {"numpy"}, "lazy": set(), "spelling": set(), "version": set(),
+            "contract": {"numpy"}, "compiler": RUNTIME | {"llvmlite"},
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
@@ -127,6 +132,17 @@ def test_packages_of_others(path):
     tops = {name.split(".")[0] for name in imported(path.read_text())}
     unknown = tops - allowed
     assert unknown <= (set() if own == "generated" else set(sys.stdlib_module_names)), unknown
+
+
+def test_numbas_inside_is_used_in_one_module():
+    """What a release of Numba may change stands in one table, and has a plain counterpart."""
+    users = {name for name, path in MODULES.items() for other in imported(path.read_text())
+             if other.startswith(("numba.core", "numba.misc", "numba.np", "numba.cpython"))}
+    assert users == {"sebody.compiler.inside.names"}
+    ways = [{node.name for node in ast.parse((ROOT / path).read_text()).body
+             if isinstance(node, ast.FunctionDef) and node.name[0] != "_"}
+            for path in ("sebody/compiler/plain.py", "sebody/compiler/inside/entry.py")]
+    assert ways[0] == ways[1] | {"is_kept"}      # that of the fast way is in its cache.py
 
 
 def test_no_circle_among_modules():

@@ -175,7 +175,7 @@ def test_a_model_says_what_it_is_before_a_run():
     said = model.summary()
     free = Simulation(model, 1e-3).numbering.free
     assert sum(unknowns(model)) == free
-    assert f"unknowns  {free}: 4 of nodes, 5 of modes, 1 of the equations of joints" in said
+    assert f"unknowns  {free}: 4 of nodes, 5 of modes, 1 of joint equations" in said
     assert "Bodies\n" in said and "Nodes\n" in said and "Joints and drives\n" in said
     assert "prescribed by motion of pin.position, motion 2 of pin.position" in said
     masses = [body.body.total_mass for body in model.bodies.values()]
@@ -188,7 +188,7 @@ def test_a_model_says_what_it_is_before_a_run():
     model.force("o", (1, 0, 0), 5.0)
     model.torque("o", (1, 0, 0), lambda t: 2 * t)
     said = model.summary()
-    assert "free      ball: nothing ties them to the ground" in said
+    assert "free      ball: not connected to the ground" in said
     assert re.search(r"o +\(1, 2, 3\) +3 unknowns +3 unknowns +\(1, 0, 0\)", said)
     assert "constant 5" in said and "function <lambda>" in said and "gravity (0, 0, -9.81)" in said
     assert "array(" not in said

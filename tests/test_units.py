@@ -47,8 +47,8 @@ def test_units_of_quantities():
     ("mm kg N s", "do not belong together: with kg, mm and s a unit of force is 0.001 N, with N 1"),
     ("mm t MN s", "with MN 1e[+]06 N"), ("mm t GPa s", "do not belong together"),
     ("mm cm t s", "names two units of length, mm and cm"), ("t s", "names no unit of length"),
-    ("mm s", "names no unit of mass or force"), ("mm tt s", "'tt' is no unit known here: did you"),
-    ("furlong kg s", "'furlong' is no unit known here: name units of length"),
+    ("mm s", "names no unit of mass or force"), ("mm tt s", "'tt' is not a known unit: did you"),
+    ("furlong kg s", "'furlong' is not a known unit: name units of length"),
     (3, "units is 3: name units"), (None, "units is None")])
 def test_refused(text, said):
     with pytest.raises(InputError, match=said):

@@ -3,10 +3,10 @@
 import numpy as np
 from plain_kernels import evaluated, executed
 
+from sebody.contract.layout import RESIDUAL, TANGENT
 from sebody.derive.compiler import Variant, compile_kernel, stages_of
 from sebody.derive.kernels.transposed import transposed_element, transposed_superelement
 from sebody.derive.printing.numba.files import file_text
-from sebody.kernels.layout import RESIDUAL, TANGENT
 from sebody.studies.check.elements import element_case
 from sebody.studies.check.superelements import superelement_case
 

@@ -5,9 +5,9 @@ from enum import Enum, auto
 
 import sympy as sp
 
+from sebody.contract.layout import Part
 from sebody.derive.form import counts
 from sebody.derive.form.whole import Count, Number, Stored, Whole, whole
-from sebody.kernels.layout import Part
 
 
 class Held(Enum):

@@ -4,9 +4,9 @@ Counts of the boundary and of the modes are known beforehand in specialised kern
 general ones; the others follow from them and from the sizes of a body.
 """
 
+from sebody.contract import layout
 from sebody.derive.form.functions import PADDED
 from sebody.derive.form.whole import Agreed, Applied, Count, Whole, whole
-from sebody.kernels import layout
 
 POSITIONS, ROTATIONS = Count("N_POSITIONS"), Count("N_ROTATIONS")   # nodes that keep theirs
 FIRST_ROTATION, FIRST_MODE = Count("ROTATIONS"), Count("MODES")     # among the local coordinates
@@ -39,7 +39,7 @@ task, count, stride, width = map(Count, ("task", "count", "stride", "width"))
 
 
 def agreed(name: str) -> Agreed:
-    """A number of `sebody.kernels.layout` by its name there."""
+    """A number of `sebody.contract.layout` by its name there."""
     return Agreed(name, getattr(layout, name))
 
 

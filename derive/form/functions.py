@@ -103,5 +103,11 @@ PLANAR_MEAN = _function("frame_search", "planar_mean", Gives.STATUS, count=WHOLE
                         angles=READ, frame=WRITE, psi=WRITE)
 BEST_FIT = _function("frame_search", "best_fit", Gives.STATUS, count=WHOLE, fit=READ, X=READ,
                      alpha=READ, x=READ, frame=ADD)
+MEAN_AXES = _function("frame_search", "mean_axes", Gives.STATUS, positions=WHOLE, rotations=WHOLE,
+                      n=WHOLE, nodes=READ, alpha=READ, X=READ, Gam=READ, q=READ, R=READ, frame=ADD,
+                      psi=WRITE)
+PLANAR_MEAN_AXES = _function("frame_search", "planar_mean_axes", Gives.STATUS, positions=WHOLE,
+                             rotations=WHOLE, n=WHOLE, alpha=READ, X=READ, Gam=READ, q=READ,
+                             frame=ADD, psi=WRITE)
 PLANAR_FIT = _function("frame_search", "planar_fit", Gives.STATUS, count=WHOLE, fit=READ, X=READ,
                        alpha=READ, x=READ, frame=WRITE)

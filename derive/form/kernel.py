@@ -16,7 +16,7 @@ class Operations(NamedTuple):
 
 
 class Kernel(NamedTuple):
-    """Statements with the arguments of `sebody.kernels.layout`, and what they need.
+    """Statements with the arguments of `sebody.contract.layout`, and what they need.
 
     Counts in `known` are constants: a target prints their names or their values.
     """

@@ -71,39 +71,45 @@ class Product(NamedTuple):
                              out=self.out.d)
 
 
+class Sum(NamedTuple):
+    """What every one of some carriers adds to a vector."""
+
+    over: str                           # a home, see `loops`
+    summand: sp.Matrix
+
+
 class Solve(NamedTuple):
-    """A linear 3-vector equation ``sum_j summand_j(unknown) + constant = 0`` over `over` nodes.
+    """A linear 3-vector equation: sums of what is linear in the unknown, and a constant, vanish.
 
     The inverse of its matrix is kept in `inverse`, made where `invert` says so.
     """
 
     title: str
     unknown: Quantity
-    over: str
-    summand: sp.Matrix
+    sums: tuple[Sum, ...]
     constant: sp.Matrix
     inverse: str
     transposed: bool = False
     invert: bool = False
-    weight: sp.Symbol | None = None     # of a node, adding up to one over the nodes
+    weight: sp.Symbol | None = None     # of a node, adding up to one over the nodes of the only sum
     role: Role = Role.PLAIN
 
-    def matrix(self, space: Space) -> sp.Matrix:
+    def matrix(self, part: Sum, space: Space) -> sp.Matrix:
         """Matrix of one summand, without the axes that a plane drops."""
-        matrix = solve_matrix(self)
+        matrix = solve_matrix(self, part)
         return matrix[2:, 2:] if space.planar else matrix
 
     def known_matrix(self, space: Space) -> sp.Matrix | None:
         """The sum over the nodes, where it is known beforehand: weights add up to one."""
         if self.weight is None:
             return None
-        value = (self.matrix(space) / self.weight).applyfunc(sp.cancel)
+        value = (self.matrix(self.sums[0], space) / self.weight).applyfunc(sp.cancel)
         return None if value.free_symbols else value
 
-    def right_side(self, space: Space) -> list[sp.Expr]:
-        """What the nodes add to the right-hand side."""
+    def right_side(self, part: Sum, space: Space) -> list[sp.Expr]:
+        """What one summand adds to the right-hand side."""
         zero = {s: 0 for s in self.unknown.kept}
-        return [-e for e in space.components("axial", self.summand.subs(zero))]
+        return [-e for e in space.components("axial", part.summand.subs(zero))]
 
 
 class Invert(NamedTuple):
@@ -211,8 +217,8 @@ def search(title: str, function: Function, *operands: Array | View | Whole | int
     return Search(title, function, checked(function, operands), operations, finds)
 
 
-def solve_matrix(step: Solve) -> sp.Matrix:
+def solve_matrix(step: Solve, part: Sum) -> sp.Matrix:
     """Matrix of one summand of a linear equation in its unknown."""
-    columns = [step.summand.diff(u) if isinstance(u, sp.Symbol) else sp.zeros(3, 1)
+    columns = [part.summand.diff(u) if isinstance(u, sp.Symbol) else sp.zeros(3, 1)
                for u in step.unknown.symbols]
     return sp.Matrix.hstack(*columns)

@@ -56,7 +56,7 @@ class Count(Whole):
 
 @dataclass(frozen=True)
 class Agreed(Whole):
-    """A number that kernels and runtime agree on: a name in `sebody.kernels.layout`."""
+    """A number that kernels and runtime agree on: a name in `sebody.contract.layout`."""
 
     name: str
     value: int

@@ -1,8 +1,8 @@
 """The arrays of a superelement kernel: state, local coordinates, forces and constants."""
 
+from sebody.contract.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array, constant, pointed, scratch
-from sebody.kernels.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS
 
 qe, ve, ae = map(scratch, ("qe", "ve", "ae"))           # state of the element
 y, yd, ydd = map(scratch, ("y", "yd", "ydd"))           # local coordinates; velocities in T

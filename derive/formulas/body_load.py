@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import Part
 from sebody.derive.form.arrays import Place, constant
 from sebody.derive.form.counts import agreed, first
 from sebody.derive.form.spaces import Space
@@ -27,7 +28,6 @@ from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.passes.linearize import Linearizer
 from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import check_same, differential
-from sebody.kernels.layout import Part
 
 LOAD = Part("P", ("n",), "load on the local coordinates, of amplitude one")
 
@@ -85,6 +85,6 @@ def _column(q: Quantities, chosen: Frame, on_rotations: Stage, on_modes: Stage) 
 
 
 def _amplitude(space: Space) -> sp.Symbol:
-    """Of the history, at its power port."""
+    """Of the time function, at its power port."""
     return space.quantity("amplitude", "scalar", "element", arrays.loads,
                           Place(3 * arrays.index[first + agreed("AT_PORT")])).symbols[0]

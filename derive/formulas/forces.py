@@ -27,7 +27,8 @@ def force(planar: bool, follower: bool) -> Element:
         turn = rotation(space, "a")
         blocks, direction = [x, turn], turn.state.symbols * d.symbols
     name = "planar_" * planar + "follower_" * follower + "force"
-    return element(name, ("follower" if follower else "dead") + " force on a position", space,
+    kind = "follower" if follower else "fixed-direction"
+    return element(name, f"{kind} force on a position", space,
                    blocks, (d,), load=AMPLITUDE[0] * direction.dot(x.direction.symbols))
 
 
@@ -39,7 +40,8 @@ def torque(planar: bool, follower: bool) -> Element:
     if not follower:
         direction = turn.state.symbols * direction
     name = "planar_" * planar + "follower_" * follower + "torque"
-    return element(name, ("follower" if follower else "dead") + " torque on a rotation", space,
+    kind = "follower" if follower else "fixed-direction"
+    return element(name, f"{kind} torque on a rotation", space,
                    [turn], (d,), load=AMPLITUDE[0] * d.symbols.dot(direction))
 
 

@@ -35,7 +35,8 @@ def unknown_rules(q: Quantities) -> Rules:
 
 def in_time(q: Quantities) -> Rules:
     """Velocities in place of variations: whatever varies so has these rates."""
-    pairs = (q.dx, q.vs), (q.dx0, q.v0), (q.dth, q.Om), (q.dth0, q.Om0)
+    pairs = ((q.dx, q.vs), (q.dx0, q.v0), (q.dth, q.Om), (q.dth0, q.Om0),
+             (q.space.d(q.qm), q.vm))
     return {d: rate for varied, rated in pairs
             for d, rate in zip(varied.symbols, rated.symbols, strict=True)
             if isinstance(d, sp.Symbol)}

@@ -75,7 +75,9 @@ def _in_time(q: Quantities, step: Stage | Solve) -> Stage | Solve:
     def target(quantity: Quantity) -> Quantity:
         return q.Om0 if quantity.name == q.dth0.name else quantity
     if isinstance(step, Solve):
-        return step._replace(unknown=target(step.unknown), summand=step.summand.xreplace(rates_of),
+        return step._replace(unknown=target(step.unknown), sums=tuple(
+                                 part._replace(summand=part.summand.xreplace(rates_of))
+                                 for part in step.sums),
                              constant=step.constant.xreplace(rates_of), invert=True)
     sets, adds = (tuple((target(quantity), value.xreplace(rates_of)) for quantity, value in group)
                   for group in (step.sets, step.adds))

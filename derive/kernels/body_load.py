@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from sebody.contract.layout import FRAME_CONSTANTS, Part
+from sebody.contract.names import body_load_kind
 from sebody.derive.form.spaces import Space
 from sebody.derive.form.steps import Step
 from sebody.derive.formulas.body_load import LOAD, body_load
@@ -10,8 +12,6 @@ from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.options import FRAMES
 from sebody.derive.kernels.superelement import opaque_names
 from sebody.derive.passes.lower import Names
-from sebody.kernels.layout import FRAME_CONSTANTS, Part
-from sebody.kernels.names import body_load_kind
 
 BODY_LOADS = {body_load_kind(name, planar): (name, planar)
               for name, frame in FRAMES.items() for planar in (False, True)

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import sympy as sp
 
+from sebody.contract.names import element_name
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import pointed, scratch
 from sebody.derive.form.counts import agreed
@@ -26,7 +27,6 @@ from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elements import AMPLITUDE, KEPT_ANGLE, Block, Element, whole_turns
 from sebody.derive.kernels.arguments import ARGUMENTS
 from sebody.derive.kernels.bodies import MATRIX, port
-from sebody.kernels.names import element_name
 
 SUMS = {"kinetic": ("KINETIC", 0), "strain": ("STRAIN", 0), "potential": ("POTENTIAL", 0),
         "P_x": ("MOMENTUM", 0), "P_y": ("MOMENTUM", 1), "P_z": ("MOMENTUM", 2),

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sebody.kernels.layout import (
+from sebody.contract.layout import (
     LETTERS,
     FrameTraits,
     InertiaTraits,
@@ -12,7 +12,7 @@ from sebody.kernels.layout import (
     first_rotation,
     layout_name,
 )
-from sebody.kernels.names import ANY, layout_variant
+from sebody.contract.names import ANY, layout_variant
 
 PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?)(d)?")
 NUMBERS = "no", "one", "two", "three", "four", "five", "six"

@@ -44,6 +44,8 @@ SUPERELEMENTS = (
     ("any", "positions", "c"),
     ("planar-any", "converged_mean", "c"),
     ("planar-any", "positions", "c"),
+    ("any", "mean_axes", "c"),
+    ("planar-any", "mean_axes", "c"),
     ("any", "converged_mean", "d"),
     ("any", "positions", "d"),
     ("planar-any", "converged_mean", "d"),

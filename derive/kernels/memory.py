@@ -3,13 +3,13 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from sebody.contract.layout import Part, axes_of
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array, Held, constant
 from sebody.derive.form.functions import PACKED_ROOM
 from sebody.derive.form.statements import Let, Point, Statement
 from sebody.derive.form.whole import Applied, Count, Number, Whole, largest, replaced, whole
 from sebody.derive.kernels.arguments import ARGUMENTS
-from sebody.kernels.layout import Part, axes_of
 
 
 class Memory(NamedTuple):

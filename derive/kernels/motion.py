@@ -6,6 +6,8 @@ coordinates and theirs. Superelements know most of it, too, but are not compiled
 
 from typing import NamedTuple
 
+from sebody.contract.layout import FRAME_CONSTANTS, MOTION, Part
+from sebody.contract.names import motion_name
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array, pointed
 from sebody.derive.form.counts import agreed
@@ -26,8 +28,6 @@ from sebody.derive.kernels.superelement import opaque_names
 from sebody.derive.passes.lower import Lowering, Names
 from sebody.derive.passes.operations import operations
 from sebody.derive.passes.uses import uses
-from sebody.kernels.layout import FRAME_CONSTANTS, MOTION, Part
-from sebody.kernels.names import motion_name
 
 MOTIONS = {motion_name(name, planar): (name, planar)
            for name, frame in FRAMES.items() for planar in (False, True)

@@ -1,17 +1,18 @@
 """Frames and inertia options by name: a kernel combines one of each."""
 
+from sebody.contract.layout import FrameTraits, InertiaTraits
 from sebody.derive.form.spaces import Space
-from sebody.derive.formulas.frames import converged_mean, mean, mean_small, positions
+from sebody.derive.formulas.frames import converged_mean, mean, mean_axes, mean_small, positions
 from sebody.derive.formulas.frames.frame import Condition
 from sebody.derive.formulas.inertia import option_a, option_b, option_c, option_d
 from sebody.derive.formulas.quantities import Quantities
-from sebody.kernels.layout import FrameTraits, InertiaTraits
 
 FRAMES = {
     "converged_mean": converged_mean.FRAME,     # the first that a layout can carry is its default
     "mean": mean.FRAME,
     "mean_small": mean_small.FRAME,
     "positions": positions.FRAME,
+    "mean_axes": mean_axes.FRAME,
 }
 INERTIA_OPTIONS = {
     "a": option_a.INERTIA,

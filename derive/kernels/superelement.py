@@ -10,10 +10,12 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS, Part
+from sebody.contract.names import superelement_name
 from sebody.derive.form.arrays import Array
 from sebody.derive.form.spaces import Space
 from sebody.derive.form.statements import Let
-from sebody.derive.form.steps import Damping, Role, Solve, Stage, Step
+from sebody.derive.form.steps import Damping, Role, Solve, Stage, Step, Sum
 from sebody.derive.formulas.damping import damping, linearized_damping
 from sebody.derive.formulas.elastic import ELASTIC, VirtualWork, conjugate_to
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
@@ -32,8 +34,6 @@ from sebody.derive.kernels.options import (
 from sebody.derive.passes.linearize import Linearizer
 from sebody.derive.passes.lower import Names
 from sebody.derive.symbolic.rotations import cross, stumpff, tangent_inverse
-from sebody.kernels.layout import DAMPING_CONSTANTS, SUPERELEMENT_CONSTANTS, Part
-from sebody.kernels.names import superelement_name
 
 
 class Formulas(NamedTuple):
@@ -117,10 +117,17 @@ def superelement(layout: Layout, frame: str, inertia: str) -> Superelement:
 
 def kept(steps: tuple[Step, ...], layout: Layout) -> tuple[Step, ...]:
     """Steps without those over rotations or of damping, where a layout has none."""
-    left = [s for s in steps if (layout.rotations != 0 or getattr(s, "over", "") != "rotation")
-            and (layout.damped or not isinstance(s, Damping))]
-    return tuple(s._replace(steps=kept(s.steps, layout)) if isinstance(s, Damping) else s
-                 for s in left)
+    def has(part: Step | Sum) -> bool:
+        return layout.rotations != 0 or getattr(part, "over", "") != "rotation"
+
+    def of_layout(step: Step) -> Step:
+        if isinstance(step, Damping):
+            return step._replace(steps=kept(step.steps, layout))
+        if isinstance(step, Solve):
+            return step._replace(sums=tuple(filter(has, step.sums)))
+        return step
+    return tuple(of_layout(s) for s in steps
+                 if has(s) and (layout.damped or not isinstance(s, Damping)))
 
 
 @cache
@@ -186,8 +193,8 @@ def _forces(q: Quantities, frame: Frame, inertia: Inertia, work: VirtualWork,
         Stage("moment on the nodes, (30), (57)", "rotation",
               sets=((q.gt, work.rotation + inertia.rotation + frame.rotation + of_mean),)),
         Stage("force of the internal modes", "mode",
-              sets=((q.gm, q.fm.symbols + (q.pmd.symbols if inertia.products
-                                           else sp.zeros(1, 1))),)),)
+              sets=((q.gm, q.fm.symbols + frame.mode + (
+                  q.pmd.symbols if inertia.products else sp.zeros(1, 1))),)),)
 
 
 def _energy(q: Quantities, inertia: Inertia, weight: Gravity) -> tuple[Stage, ...]:

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
+from sebody.contract.layout import MARGIN
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array
 from sebody.derive.form.counts import agreed
@@ -44,7 +45,6 @@ from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.passes.lower import Lowering
 from sebody.derive.passes.operations import operations
 from sebody.derive.passes.uses import uses
-from sebody.kernels.layout import MARGIN
 
 COEFFICIENTS = ("c_mass", "C_MASS"), ("c_damping", "C_DAMPING"), ("c_stiffness", "C_STIFFNESS"), (
     "c_geo", "C_GEO")

@@ -10,6 +10,7 @@ In the array ``matrices`` are the weights, n numbers, and behind them n of each 
 
 import sympy as sp
 
+from sebody.contract.layout import MARGIN
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import scratch
 from sebody.derive.form.counts import agreed
@@ -36,7 +37,6 @@ from sebody.derive.passes.operations import operations
 from sebody.derive.passes.reverse import Reversal, transposed_forms
 from sebody.derive.passes.transposes import bar_array
 from sebody.derive.passes.uses import uses
-from sebody.kernels.layout import MARGIN
 
 C_GEO = sp.Symbol("c_geo")
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import sympy as sp
 
 from sebody.derive.form.spaces import Quantity, Space
-from sebody.derive.form.steps import Solve, Stage, solve_matrix
+from sebody.derive.form.steps import Solve, Stage, Sum, solve_matrix
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential
 
 
@@ -58,11 +58,12 @@ class Linearizer:
     def solve(self, step: Solve) -> Solve:
         """``B du = - d(equation) at fixed u``: the same matrix, a new right-hand side."""
         d_unknown = self.d(step.unknown)
-        summand = solve_matrix(step) * d_unknown.symbols + differential(step.summand, self.rules)
+        sums = tuple(Sum(part.over, solve_matrix(step, part) * d_unknown.symbols
+                         + differential(part.summand, self.rules)) for part in step.sums)
         constant = differential(step.constant, self.rules)
         self.move(step.unknown)
-        return Solve(self.title + step.title, d_unknown, step.over, summand, constant,
-                     step.inverse, step.transposed)
+        return Solve(self.title + step.title, d_unknown, sums, constant, step.inverse,
+                     step.transposed)
 
 
 def along_own(space: Space, quantity: Quantity) -> Rules:

@@ -38,9 +38,10 @@ from sebody.derive.form.steps import (
     Solve,
     Stage,
     Step,
+    Sum,
     Values,
 )
-from sebody.derive.form.whole import Count, Number, Whole
+from sebody.derive.form.whole import Count, Number, Whole, replaced, whole
 from sebody.derive.symbolic.rotations import stumpff, tangent_inverse
 
 Names = dict[sp.Expr, sp.Symbol]    # opaque functions -> symbols that hold their values
@@ -158,11 +159,12 @@ class Lowering:
     def _solve(self, step: Solve) -> list[Statement]:
         unknown = step.unknown
         parts = [sp.Symbol(f"rhs_{axis}") for axis in self._axes(unknown)]
-        found, entries = self._matrix(step) if step.invert else ([], [])
+        found = self._cleared(step) if step.invert else []
         found.append(Zero(tuple(parts)))
-        entries = entries + [_sum(s, e) for s, e in zip(parts, step.right_side(self.space),
-                                                        strict=True)]
-        found += self._loop(step.over, entries)
+        for part in step.sums:
+            entries = self._matrix(step, part) if step.invert else []
+            right = zip(parts, step.right_side(part, self.space), strict=True)
+            found += self._loop(part.over, [*entries, *(_sum(s, e) for s, e in right)])
         if step.invert:
             found += self._inversion(step)
         constant = self.space.components("axial", step.constant)
@@ -173,17 +175,24 @@ class Lowering:
                                             zip(unknown.kept, values, strict=True)])
 
     def _invert(self, step: Invert) -> list[Statement]:
-        found, entries = self._matrix(step.equation)
-        return found + self._loop(step.equation.over, entries) + self._inversion(step.equation)
+        equation = step.equation
+        found = self._cleared(equation)
+        for part in equation.sums:
+            found += self._loop(part.over, self._matrix(equation, part))
+        return found + self._inversion(equation)
 
-    def _matrix(self, step: Solve) -> tuple[list[Statement], list[Entry]]:
-        """What the nodes add to the matrix, where its sum is not known beforehand."""
+    def _cleared(self, step: Solve) -> list[Statement]:
+        """The sum of the matrix before the first summand."""
+        entries = self._matrix(step, step.sums[0])
+        return [Zero(tuple(e.symbol for e in entries))] if entries else []
+
+    def _matrix(self, step: Solve, part: Sum) -> list[Entry]:
+        """What one summand adds to the matrix, where its sum is not known beforehand."""
         if step.known_matrix(self.space) is not None:
-            return [], []
-        matrix = step.matrix(self.space)
-        entries = [_sum(sp.Symbol(f"B_{r}{c}"), matrix[r, c]) for r in range(matrix.rows)
-                   for c in range(matrix.cols)]
-        return [Zero(tuple(e.symbol for e in entries))], entries
+            return []
+        matrix = step.matrix(part, self.space)
+        return [_sum(sp.Symbol(f"B_{r}{c}"), matrix[r, c]) for r in range(matrix.rows)
+                for c in range(matrix.cols)]
 
     def _inversion(self, step: Solve) -> list[Statement]:
         """The inverse of the sum, kept for later equations."""
@@ -259,9 +268,13 @@ def _shared(expressions: tuple, start: int) -> tuple[list, list]:
 
 
 def _by_triplet(quantity: Quantity) -> bool:
-    """Whether its values stand in triplets (or pairs), node after node."""
-    return (bool(quantity.array) and quantity.place is None and quantity.home in TRIPLETS
-            and quantity.kind in ("vector", "axial"))
+    """Whether its values stand in triplets (or pairs), node after node, or follow their places."""
+    if not quantity.array or quantity.home not in TRIPLETS:
+        return False
+    if quantity.place is None:
+        return quantity.kind in ("vector", "axial")
+    start = whole(quantity.place.start)
+    return replaced(start, {TRIPLETS[quantity.home].place: Number(0)}) != start
 
 
 def _sum(symbol: sp.Symbol, value: sp.Expr) -> Entry:

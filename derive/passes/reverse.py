@@ -43,6 +43,7 @@ from sebody.derive.form.steps import (
     Solve,
     Stage,
     Step,
+    Sum,
     call,
 )
 from sebody.derive.form.whole import Whole
@@ -191,11 +192,12 @@ class Reversal:
         bar = self.bar(step.unknown)
         pulled = self.space.quantity("m" + step.unknown.name, bar.kind, ELEMENT)
         none, m = sp.zeros(3, 1), [-s for s in pulled.kept]
-        yield Solve(TITLE + step.title, pulled, step.over, none, -bar.symbols, step.inverse,
+        yield Solve(TITLE + step.title, pulled, (Sum(ELEMENT, none),), -bar.symbols, step.inverse,
                     not step.transposed)
         constant = self.space.components("axial", step.constant)
-        nodes = [-e for e in step.right_side(self.space)]
-        for over, values in ((step.over, nodes), (ELEMENT, constant)):
+        nodes = [(part.over, [-e for e in step.right_side(part, self.space)])
+                 for part in step.sums]
+        for over, values in (*nodes, (ELEMENT, constant)):
             yield from self._added(step.title, over, transposed_forms(values, m, self.varied))
         yield from self._consumed(step, [step.unknown])
 

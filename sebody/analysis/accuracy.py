@@ -40,7 +40,7 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     h : float
         Output grid [time].
     tolerance : Tolerance
-        Allowed error of the run, by default 1e-3 of the extent and 1e-3 rad.
+        Allowed error of the run, by default 1e-3 of the characteristic length and 1e-3 rad.
     scheme, progress, start
         As for `Simulation` and its `run_to`; a bar counts the runs.
 
@@ -80,8 +80,8 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
         except KeyboardInterrupt as stop:
             if before is None:
                 raise
-            before.failure = (f"{stop or 'interrupted'}; kept is the run before, of larger steps, "
-                              "whose error may be above the tolerance")
+            before.failure = (f"{stop or 'interrupted'}; the result is that of the previous run, "
+                              "with larger steps, and its error may be above the tolerance")
             raise Interrupted(before.failure, before) from stop
         seconds += now.seconds
         now.all_seconds = seconds
@@ -96,9 +96,10 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
             return now
         if len(differences) > 2 and differences[-1] > HOPELESS * differences[-3]:
             raise SimulationError(
-                f"the error does not fall with the step: it stays at {differences[-1]:.3g} times "
-                f"the tolerance with {now.steps} steps. The motion may be chaotic, then only its "
-                "beginning can be computed: use a larger tolerance or an earlier end", now)
+                "the error does not decrease with the step: it stays at "
+                f"{differences[-1]:.3g} times the tolerance with {now.steps} steps. The motion may "
+                "be chaotic, so that only its beginning can be computed: use a larger tolerance "
+                "or an earlier end", now)
         share /= min(max(np.sqrt(now.error / AIM), LEAST), MOST)**3
         before = now
 

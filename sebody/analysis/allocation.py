@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.build import work_size
 from sebody.assembly.numbering import Numbering, stretch
+from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
 from sebody.engine.newton import SLOWEST
 from sebody.engine.state import (
     AUX_STEP,
@@ -18,7 +19,6 @@ from sebody.engine.state import (
     State,
 )
 from sebody.engine.system import System
-from sebody.kernels.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
 from sebody.kernels.rotations import rotate
 from sebody.model.mechanism import Mechanism
 from sebody.results.recording import record_counts

@@ -25,10 +25,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import null_space
-from scipy.spatial.transform import Rotation
 
 from sebody.analysis.softening import fit, rows_of, skew
 from sebody.model.parts import Superelement
+from sebody.results import rotations
 
 PASSES = 30         # of the rotation of best fit
 LEAST = 1e-9        # share of a largest eigenvalue of geometry below which others are none
@@ -111,7 +111,7 @@ class Axial(NamedTuple):
         k = int(np.argmax(np.abs(values)))
         force = values[k] / np.ptp(self.points @ axes[:, k])
         return Load(float(force), float(np.abs(shares).max()), self._folding(forces, work),
-                    float(Rotation.from_matrix(turn).magnitude()))
+                    float(np.linalg.norm(rotations.vectors(turn))))
 
     def _forces(self, y: NDArray) -> NDArray:
         """On the positions, (k, p, 3)."""
@@ -121,8 +121,8 @@ class Axial(NamedTuple):
         """The smallest rotation that fits the undeformed positions to these."""
         turn, line = np.eye(3), np.linalg.pinv(_moments(self.points), rcond=LEAST)
         for _ in range(PASSES):
-            turn = turn @ Rotation.from_rotvec(
-                line @ np.cross(self.points, places @ turn).sum(axis=0)).as_matrix()
+            turn = turn @ rotations.matrices(
+                line @ np.cross(self.points, places @ turn).sum(axis=0))
         return turn
 
     def _folding(self, forces: NDArray, work: NDArray) -> float:

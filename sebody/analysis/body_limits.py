@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from sebody.analysis.axial import Axial
 from sebody.analysis.softening import cautious_limit, divergence, first_frequency, reach
-from sebody.analysis.thresholds import AXIAL, BENT, FAST, FLAT, LINEAR, OFF_LINE
-from sebody.kernels.layout import Counts
-from sebody.model.frames import FRAMES
+from sebody.analysis.thresholds import AXIAL, BENT, FAST, FLAT, LINEAR
+from sebody.contract.layout import Counts
+from sebody.model.frames import FRAMES, mass_off_line
 from sebody.model.parts import Superelement
 
 
@@ -55,18 +55,18 @@ def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, loc
     spins : (k, 3) or (k, 1)
         Of the frame, in its axes.
     local : float
-        Largest rotation of a node against the frame [rad].
+        Largest rotation of a node relative to the frame [rad].
     """
     name = body.name
     if local > LINEAR:
         yield Finding("turn", name, local, f"local rotation {local:.2g} rad of body {name!r} "
-                      f"exceeds the linear range, {LINEAR} rad: divide it")
+                      f"exceeds the linear range, {LINEAR} rad: divide the body")
     if local > BENT and limits.off_line:
         yield Finding("bent", name, local, f"local rotation {local:.2g} rad of body {name!r}, "
                       "whose frame follows the rotations of its nodes while its mass is off "
                       f"their line (limit {BENT} rad): its inertia depends too much on how it "
-                      "is bent, and energy may grow; keep the position of a node off the "
-                      "line, such as a corner, or divide the body")
+                      "is bent, and energy may grow; take the frame 'mean_axes', or "
+                      "divide the body")
     speeds = np.linalg.norm(spins, axis=1)
     if "spin" not in said and speeds.max() > limits.spin:
         row = int(np.argmax(speeds))
@@ -77,8 +77,8 @@ def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, loc
 
 def flat(body: Superelement) -> Finding | None:
     """Whether a frame follows positions that lie nearly on a line."""
-    spread = _spread(body)
-    if FRAMES[body.frame].traits.needs_rotations or body.body.planar or spread >= FLAT:
+    spread, traits = _spread(body), FRAMES[body.frame].traits
+    if traits.needs_rotations or traits.modes or body.body.planar or spread >= FLAT:
         return None
     return Finding("flat", body.name, 1.0 / max(spread, 1e-300), f"nodes of body {body.name!r} lie "
                    f"nearly on a line (spread {spread:.1e} of their length): its frame turns about "
@@ -87,7 +87,7 @@ def flat(body: Superelement) -> Finding | None:
 
 
 def local_rotations(y: NDArray, counts: Counts) -> NDArray:
-    """Largest rotation of a node against its frame, (states, bodies), from local coordinates."""
+    """Largest rotation of a node in its body frame, (states, bodies), from local coordinates."""
     first, turns = counts["D"] * counts["N_POSITIONS"], counts["turns"]
     psi = y[..., first:first + turns * counts["N_ROTATIONS"]].reshape(*y.shape[:2], -1, turns)
     return np.linalg.norm(psi, axis=3).max(axis=2, initial=0.0)
@@ -95,17 +95,8 @@ def local_rotations(y: NDArray, counts: Counts) -> NDArray:
 
 def _off_line(body: Superelement) -> bool:
     """Whether a body of option C has its frame on rotations, and its mass off the nodes' line."""
-    if body.inertia != "c" or body.frame == "positions" or len(body.positions) < 2:
-        return False
-    reduced = body.body
-    points = reduced.coordinates[list(reduced.position_nodes)]
-    middle = points.mean(axis=0)
-    _, extents, axes = np.linalg.svd(points - middle)
-    if reduced.planar:          # what is known of the mass off a line is its centre
-        off = abs(axes[1] @ (reduced.centre_of_mass - middle))
-    else:
-        off = np.sqrt(axes[0] @ reduced.invariants.about(middle).J0 @ axes[0] / reduced.total_mass)
-    return bool(off > OFF_LINE * np.ptp((points - middle) @ axes[0]))
+    on_rotations = FRAMES[body.frame].traits.needs_rotations
+    return body.inertia == "c" and on_rotations and mass_off_line(body.body)
 
 
 def _too_fast(body: Superelement, spin: NDArray, speed: float) -> Iterator[Finding]:
@@ -140,12 +131,12 @@ def _too_strong(body: Superelement, axial: Axial, y: NDArray) -> Iterator[Findin
 def remedy(body: Superelement) -> str:
     """What to do about a spin, or an axial force."""
     if body.body.invariants is None:
-        return "divide it in two, or reduce it from an FE model with its mass"
+        return "divide the body in two, or reduce it from an FE model with its mass"
     if body.inertia != "c":
-        return "divide it in two, or take inertia='c'"
+        return "divide the body in two, or take inertia='c'"
     if body.body.invariants.stiffens:
-        return "divide it in two, or let it stiffen with stiffening=True"
-    return "divide it in two, or give its FE model a geometric stiffness"
+        return "divide the body in two, or let it stiffen with stiffening=True"
+    return "divide the body in two, or give its FE model a geometric stiffness"
 
 
 def _compared(limit: float, first: float) -> str:

@@ -1,4 +1,4 @@
-"""Frequencies and rates of growth of small motion over the speed of a steady rotation."""
+"""Frequencies and real parts of eigenvalues of small motion over the speed of a steady rotation."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Campbell:
     omega : (m, count)
         Angular frequencies in axes that rotate with the model [1/time].
     growth : (m, count)
-        Rates of growth, negative where the motion decays [1/time].
+        Real parts of the eigenvalues, negative where the motion decays [1/time].
     """
 
     speeds: NDArray
@@ -52,7 +52,7 @@ class Campbell:
             for k, growth in enumerate(self.growth.T)]
 
     def save_picture(self, path: str | Path) -> Path:
-        """Draw frequencies and rates of growth over the speed: png, pdf or svg (extra ``plot``).
+        """Draw frequencies and real parts of eigenvalues over the speed: png, pdf or svg.
 
         Raises
         ------

@@ -18,7 +18,7 @@ from sebody.engine.state import (
 from sebody.engine.system import System
 from sebody.model.model import Model
 
-KEPT = "results up to there are kept"
+KEPT = "results up to this time are kept"
 
 
 def explained(model: Model, system: System, state: State, numbering: Numbering) -> str:
@@ -30,10 +30,10 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
     if reason == GAP:
         return f"{stopped}: {contradiction(system, state, numbering)}; {KEPT}"
     if reason == NO_START:
-        return (f"{stopped}, where loads jump: {REASONS[reason]}; {KEPT}. Check the loads and the "
-                "joints there")
+        return (f"{stopped}, where loads jump: {REASONS[reason]}; {KEPT}. Check loads and joints "
+                "at this time")
     variable = state.control[ADAPTIVE] == 1
     shortest = state.clock[CHOSEN] if variable else state.clock[STEP] / FINEST
     remedy = "a larger tolerance" if variable else "a smaller step"
-    return (f"{stopped}: {REASONS[reason]}, even with the step cut to {shortest:.3g}; {KEPT}. Use "
-            f"{remedy}, check the loads, or split the body into more superelements")
+    return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
+            f"Use {remedy}, check the loads, or split the body into more superelements")

@@ -4,8 +4,6 @@ The parts of the loop are compiled for the types of a small model's arrays, whic
 every model. Kernels are known by name. Nothing is said or done where all is in the cache.
 """
 
-import sys
-import time
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
@@ -15,23 +13,24 @@ from typing import NamedTuple
 import numpy as np
 from numba import typeof
 
-from sebody.analysis import workers
 from sebody.analysis.allocation import allocate
 from sebody.analysis.schemes import generalized_alpha
-from sebody.analysis.workers import Task
 from sebody.assembly.build import build
 from sebody.assembly.motions import motion_kernel
+from sebody.compiler.choice import way
+from sebody.compiler.decorators import is_compiled
+from sebody.compiler.first_run import Job, compile_apart
+from sebody.compiler.workers import Task
 from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, step_control
+from sebody.engine.routines import compile_routine
 from sebody.engine.state import Record
-from sebody.kernels import loader, store
+from sebody.kernels import loader
 from sebody.kernels.loader import USER_FORCE, element_kernel_name, find
-from sebody.kernels.pipeline import is_compiled
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.results import motion, postprocessing
 
 SECONDS_A_LETTER = 7e-5         # of a kernel's file, of one processor
-WORTH_IT = 4.0                  # seconds of compiling: starting processes takes one or two
 
 _lock = Lock()
 _ready = set()          # kernels and parts of the loop this process need not ask for again
@@ -40,28 +39,31 @@ _ready = set()          # kernels and parts of the loop this process need not as
 class Part(NamedTuple):
     """A function of the loop, and what it is compiled for."""
 
-    function: Callable
+    function: Callable | None       # None where it is compiled with what calls it alone
     arguments: str                  # names in `_examples`
     seconds: float                  # of one processor, on its own
     after: tuple[str, ...] = ()     # parts it calls, or takes most of
+    compile: Callable = way().compile_for
 
 
+_callee = way().part_of_callers
 LOOP = {        # callees of the loop, which waits for them
-    "forces in the loop": Part(evaluate.assemble.callee, "whole whole system state vector", 0.6),
-    "output": Part(step_control.write_between.callee, "system state record whole", 1.2),
-    "correction": Part(newton.apply_correction.callee, "system state scheme flag", 1.1),
-    "evaluation": Part(loop._evaluate.callee, "system state scheme whole flag", 0.8,
+    "forces in the loop": Part(_callee(evaluate.assemble), "whole whole system state vector", 0.6),
+    "output": Part(_callee(step_control.write_between), "system state record whole", 1.2),
+    "correction": Part(_callee(newton.apply_correction), "system state scheme flag", 1.1),
+    "evaluation": Part(_callee(loop._evaluate), "system state scheme whole flag", 0.8,
                        ("forces in the loop",)),
-    "conclusion": Part(loop._conclude.callee, "system state record scheme whole", 1.4),
-    "solution": Part(matrix.solve.callee, "system state flag", 0.5),
-    "beginning": Part(step.begin_step.callee, "system state scheme", 0.7),
-    "choice": Part(step_control.choose_step.callee, "system state", 0.1),
+    "conclusion": Part(_callee(loop._conclude), "system state record scheme whole", 1.4),
+    "solution": Part(_callee(matrix.solve), "system state flag", 0.5),
+    "beginning": Part(_callee(step.begin_step), "system state scheme", 0.7),
+    "choice": Part(_callee(step_control.choose_step), "system state", 0.1),
 }
-PARTS = LOOP | {
+PARTS = {name: part for name, part in LOOP.items() if part.function} | {
     "loop": Part(loop.advance, "system state record scheme whole whole flag", 3.6, tuple(LOOP)),
     "sums": Part(matrix.sum_matrices, "system state vector", 1.4),
-    "matrix": Part(matrix.refactorize, "system state whole flag", 3.4, ("sums",)),
-    "restart": Part(restart.restart, "system state number flag", 2.0, ("solution",)),
+    "matrix": Part(matrix.refactorize, "system state whole flag", 3.4, ("sums",), compile_routine),
+    "restart": Part(restart.restart, "system state number flag", 2.0, ("solution",),
+                    compile_routine),
     "forces": Part(evaluate.assemble, "whole whole system state vector", 0.3,
                    ("forces in the loop",)),
     "constraints": Part(postprocessing._evaluate_constraints, "system state table table", 0.6,
@@ -104,48 +106,24 @@ def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
         kernels = {name: path for name in sorted(set(kernels) - _ready) if (path := _file(name))}
         missing = {name: path for name, path in kernels.items() if not is_compiled(path)}
         lacking = [name for name in parts
-                   if name not in _ready and not PARTS[name].function._cache.holds_any()]
+                   if name not in _ready and not way().is_compiled(PARTS[name].function)]
         _ready.update(kernels, parts)
-        seconds = (sum(map(_seconds, missing.values()))
-                   + sum(PARTS[name].seconds for name in lacking))
-        if (missing or lacking) and seconds >= WORTH_IT:
-            _compile(missing, lacking, seconds, report)
+        what = ["the time loop"] * bool(lacking)
+        what += [f"{len(missing)} kernel{'s' * (len(missing) > 1)}"] * bool(missing)
+        compile_apart(_jobs(missing, lacking), " and ".join(what), Path(loop.__file__), report)
 
 
-def _compile(kernels: dict[str, Path], parts: list[str], seconds: float,
-             report: Callable[[str, float], None] | None) -> None:
-    what = [f"{len(kernels)} kernel{'s' * (len(kernels) > 1)}"] if kernels else []
-    what = " and ".join([*["the time loop"] * bool(parts), *what])
-    if not store.writable(Path(loop.__file__)):
-        print(f"compiling {what}, about {seconds:.0f} s, at every start: "
-              f"{store.not_writable(Path(loop.__file__))}", file=sys.stderr, flush=True)
-        return
-    seconds /= workers.PROCESSES
-    print(f"first run: compiling {what} in {workers.PROCESSES} processes, about {seconds:.0f} s",
-          file=sys.stderr, flush=True)
-    began = time.perf_counter()
-    tasks = [*(Task(name, f"{__name__}:compile_part", (name,), PARTS[name].after)
-               for name in parts),
-             *(Task(name, "sebody.kernels.loader:load", (name,)) for name in kernels)]
-    left = {name: _seconds(path) for name, path in kernels.items()} | _chains(parts)
-    workers.call_all(sorted(tasks, key=lambda task: -left[task.name]), report)
-    print(f"compiled in {time.perf_counter() - began:.0f} s; later runs find it in the cache",
-          file=sys.stderr, flush=True)
-
-
-def _chains(parts: list[str]) -> dict[str, float]:
-    """Seconds from the beginning of each part to the end of what waits for it."""
-    found: dict[str, float] = {}
-    for name in reversed(PARTS):        # what waits for a part comes after it
-        found[name] = PARTS[name].seconds + max(
-            (found[other] for other in found if name in PARTS[other].after), default=0.0)
-    return {name: found[name] for name in parts}
+def _jobs(kernels: dict[str, Path], parts: list[str]) -> list[Job]:
+    return [*(Job(Task(name, f"{__name__}:compile_part", (name,), PARTS[name].after),
+                  PARTS[name].seconds) for name in parts),
+            *(Job(Task(name, "sebody.kernels.loader:load", (name,)), _seconds(path))
+              for name, path in kernels.items())]
 
 
 def compile_part(name: str) -> None:
     """Compile a part of the loop here, or find it in the cache."""
-    function, arguments, _, _ = PARTS[name]
-    function.compile(tuple(_examples()[name] for name in arguments.split()))
+    part = PARTS[name]
+    part.compile(part.function, tuple(_examples()[name] for name in part.arguments.split()))
 
 
 @cache

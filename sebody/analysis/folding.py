@@ -11,7 +11,7 @@ from sebody.analysis.linearization import derivative
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.thresholds import FOLDED
 from sebody.assembly.motions import Motions, motions
-from sebody.kernels.layout import MOTION
+from sebody.contract.layout import MOTION
 from sebody.model.parts import Superelement
 from sebody.results.motion import evaluated
 from sebody.results.recording import record_counts

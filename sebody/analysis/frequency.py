@@ -1,4 +1,4 @@
-"""Steady answers of any quantity to a harmonic load, about a state at rest or in steady rotation.
+"""Frequency response of any quantity to a harmonic load, about rest or a steady rotation.
 
 The load has the amplitude ``exp(i omega t)``; the unknowns, multipliers included, answer with
 ``(-omega^2 M + i omega C + K) X = F``, with the exact derivatives of `linearization` and F that of
@@ -21,9 +21,9 @@ from sebody.analysis.linearization import small_motion
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.turning import Spin, motion
 from sebody.assembly.numbering import coordinates
+from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.errors import InputError
-from sebody.kernels.layout import RECORD_T, RESIDUAL
 from sebody.model.parts import Element
 from sebody.results import rotations
 from sebody.results.frequency_pictures import save_response
@@ -38,7 +38,7 @@ SMALL = 1e-5        # motion of the states that are compared, of the extent or i
 
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
-    """Complex answers of quantities to a load of unit amplitude; see `frequency_response`.
+    """Complex frequency response of quantities to a load of unit amplitude.
 
     ``response["tip.position"]`` is the change of the quantity, (m, ...), over the angular
     frequencies `omega`, (m,) [1/time]; its argument is the phase ahead of the load.
@@ -56,11 +56,11 @@ class FrequencyResponse:
         return tabular.titled(self._title(), HEADS, self._rows())
 
     def _title(self) -> str:
-        return (f"answers to a unit of {self.load!r}, {len(self.omega)} frequencies from "
+        return (f"response to a unit of {self.load!r}, {len(self.omega)} frequencies from "
                 f"{self.omega.min(initial=np.inf):.6g} to {self.omega.max(initial=0.0):.6g} rad/s")
 
     def _rows(self) -> Iterator[tuple[str, ...]]:
-        """The largest answer of every component of every quantity."""
+        """The largest response of every component of every quantity."""
         for name, answer in self.answers.items():
             columns = answer.reshape(len(self.omega), -1).T
             for label, column in zip(component_names(answer, name), columns, strict=True):
@@ -125,9 +125,8 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
         raise inputs.refusal("quantities", quantities, "name at least one")
     for name in names:
         if inputs.name(name, "name of a quantity") in UNMOVED or name.endswith(ADDED_UP):
-            raise InputError(f"quantity {name!r} has no answer to a harmonic load: it is the time, "
-                             "or a work that adds up over a run; name a position, a force or a "
-                             "power")
+            raise InputError(f"quantity {name!r} has no harmonic response: time and work are not "
+                             "periodic; name a position, a force or a power")
     steady = Spin.of(run, spin)
     matrices = small_motion(run, steady)
     element = _load(run, load)
@@ -185,9 +184,9 @@ def _answers(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> ND
         with np.errstate(invalid="ignore"):
             left = np.abs(A @ answer - push / size).max()
         if not left <= 1e-6 * np.abs(push / size).max():
-            raise InputError(f"the answer at omega = {w:.6g} is infinite: there is a frequency of "
-                             "the undamped model, or a motion without stiffness; damp the model, "
-                             "or leave this one out")
+            raise InputError(f"the response at omega = {w:.6g} is infinite: the undamped model has "
+                             "a natural frequency there, or a motion without stiffness; add "
+                             "damping, or leave out this frequency")
         found.append(answer / size)
     return np.array(found).reshape(len(omega), -1)
 

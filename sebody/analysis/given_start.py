@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.assembly.numbering import Numbering, coordinates, stretch
+from sebody.contract.layout import RECORD
 from sebody.engine.state import State
 from sebody.errors import InputError
-from sebody.kernels.layout import RECORD
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
 from sebody.results.recording import record_counts

@@ -11,12 +11,12 @@ from sebody.analysis.redundancy import Solver, least, part_sizes
 from sebody.analysis.rigid_start import follow_drives
 from sebody.analysis.user_faults import fault
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.contract.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
 from sebody.engine.links import place_dependent
 from sebody.engine.state import ASKED, RESTART, State
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.model.mechanism import Mechanism
 from sebody.results.recording import Start
 
@@ -130,11 +130,11 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
         if change > 1e-6 * size:
             demanded = _shown(state.v[coordinates(numbering, triplet)])
             raise InputError(f"the given initial velocity of {triplet.name}, "
-                             f"{_shown(triplet.rate)}, does not fit the joints, drives and other "
-                             f"given ones, which demand {demanded}: leave some of them out, they "
+                             f"{_shown(triplet.rate)}, contradicts joints, drives or other initial "
+                             f"velocities, which demand {demanded}: leave some of them out, they "
                              "are solved for")
     _check(_rates(system, state, multipliers), size, "velocity", multipliers, numbering,
-           "no velocities fit this joint or drive, the others and those given; change one of them")
+           "no velocities satisfy all joints, drives and initial velocities; change one of them")
     changes = {t.name: float(np.abs(answer[coordinates(numbering, t)]).max()) for t in triplets}
     return {name: change for name, change in changes.items() if change > SMALL * size}
 

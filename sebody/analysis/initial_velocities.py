@@ -18,7 +18,7 @@ MOST = 4            # triplets that a message lists
 
 
 def refuse_contradicted(model: Mechanism, numbering: Numbering, state: State) -> None:
-    """Refuse a velocity that was given to what is fixed, prescribed or hangs on another node.
+    """Refuse a velocity that was given to what is fixed, prescribed or follows another node.
 
     Raises
     ------
@@ -44,9 +44,9 @@ def changed(model: Mechanism, numbering: Numbering, state: State) -> str:
              and _differ(state, triplet.rate, actual)]
     if not found:
         return ""
-    return (f"joints and drives demand other initial velocities than rigid_velocity gave: "
-            f"{_listed(found)}; give the model a motion that they allow, or only those of its "
-            "bodies that are free to have it, by body=")
+    return ("rigid_velocity contradicts the initial velocities that joints and drives demand: "
+            f"{_listed(found)}; give a motion that the joints allow, or give body= and name only "
+            "bodies that are free to move like this")
 
 
 def strained(model: Mechanism, numbering: Numbering, state: State) -> str:
@@ -86,7 +86,7 @@ def _differ(state: State, one: NDArray, other: NDArray) -> bool:
 def _holds(triplet: Triplet) -> str:
     """What gives a triplet that is not solved for its velocity."""
     if triplet.root is not None:
-        return f"it hangs on {triplet.root.name} by a rigid link"
+        return f"it follows {triplet.root.name} by a rigid link"
     if triplet.motions:
         return f"{', '.join(repr(motion.name) for motion in triplet.motions)} moves it"
     return "it is fixed"

@@ -17,9 +17,9 @@ from sebody.analysis.quality import remarks
 from sebody.analysis.softening import divergence
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import Numbering
+from sebody.contract.layout import MOTION
 from sebody.engine.state import Scheme
 from sebody.errors import LimitWarning
-from sebody.kernels.layout import MOTION
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 from sebody.results.motion import evaluated
@@ -61,7 +61,7 @@ class Watch:
         undamped = scheme.gamma == 0.5 and scheme.alpha_f == scheme.alpha_m
         if constrained and undamped and not scheme.stabilized:
             self.say("scheme", "without numerical damping the multipliers of index-3 constraints "
-                               "oscillate and grow with every disturbance: use rho 0.9, alpha "
+                               "oscillate and grow after any disturbance: use rho 0.9, alpha "
                                "-0.05, or index=2")
         self.say_of_bodies(found for body in bodies.values() if (found := flat(body)))
 

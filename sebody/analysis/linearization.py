@@ -169,8 +169,8 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
         count = inputs.integer(count, "count", least=1)
     inputs.instance(run, "run", Simulation | Result, "give a Simulation or a Result")
     if np.abs(run.state.v).max() > 0:
-        raise InputError("the state moves: vibrations are about states at rest, modes about "
-                         "moving ones")
+        raise InputError("the state is not at rest: vibrations() needs a state at rest, use modes()"
+                         " for moving states")
     M, _, K, free = linearize(run)
     try:
         squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
@@ -178,7 +178,7 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
         raise InputError("the model has motions without mass, which have no frequency: give every "
                          "rotation inertia, or use modes") from error
     if squares[0] < -100 * np.finfo(float).eps * squares[-1]:
-        raise InputError(f"the state is not stable: the lowest square of a frequency is "
+        raise InputError("the state is not stable: the lowest squared frequency is negative, "
                          f"{squares[0]:.4g}")
     return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count], free @ shapes[:, :count],
                       Shapes(run))
@@ -220,7 +220,7 @@ class Modes(NamedTuple):
 
     @property
     def growth(self) -> NDArray:
-        """Rates of growth, negative where the motion decays [1/time]."""
+        """Real parts of the eigenvalues, negative where the motion decays [1/time]."""
         return self.values.real
 
 

@@ -1,4 +1,4 @@
-"""What steps do not see of load histories: peaks between them, jumps nobody told them of."""
+"""Features of time functions that steps miss: peaks between steps, jumps that are not declared."""
 
 from collections.abc import Callable, Iterator
 
@@ -43,8 +43,8 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
         if missed.size:
             k = missed[0]
             yield name, (f"{name} is {values[k]:.4g} at t = {times[k]:.6g}, between two steps of "
-                         f"{h:g} that see {seen[0, k]:.4g} and {seen[1, k]:.4g}: take steps that "
-                         "meet or resolve the peak, or variable ones with a tolerance")
+                         f"{h:g}, at which it is {seen[0, k]:.4g} and {seen[1, k]:.4g}: choose "
+                         "steps that meet or resolve the peak, or variable steps with a tolerance")
 
 
 def untold(numbering: Numbering, h: float, begin: float, end: float) -> Iterator[tuple[str, str]]:
@@ -63,7 +63,7 @@ def untold(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
             found = _jump(history.functions[-1].ctypes, times)
             if found:
                 yield name, (f"the function of {name} jumps from {found[1]:.4g} to {found[2]:.4g} "
-                             f"at t = {found[0]:.9g}, and steps are not told: give it as "
+                             f"at t = {found[0]:.9g}, which is not declared: give it as "
                              "with_corners(function, times), so that steps end at its jumps; "
                              "without, errors fall with the step only, not with its square")
 
@@ -90,7 +90,7 @@ def _jump(function: Callable[[float], float],
 
 
 def _known(history: History) -> NDArray:
-    """Times at which a history may have a peak."""
+    """Times at which a time function may have a peak."""
     if not history.functions:
         return np.array(history.times)
     corners = np.array(history.corners)

@@ -7,10 +7,10 @@ from scipy.linalg import LinAlgError, eigh, null_space
 from sebody.analysis.allocation import allocate
 from sebody.analysis.evaluation import matrix
 from sebody.analysis.thresholds import CUT, EXCITED, GROWN, PERIOD
+from sebody.contract.layout import ENERGIES, RECORD_T
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import ADAPTIVE, CUTS, STEPS
 from sebody.errors import InputError
-from sebody.kernels.layout import ENERGIES, RECORD_T
 from sebody.model.parts import Element
 from sebody.results import energy_balance
 from sebody.results.audit import DRIFT
@@ -48,8 +48,8 @@ def remarks(run: Recording) -> dict[str, str]:
     grown = growth(kinetic + strain + potential, work) / max((kinetic + strain).max(), 1e-300)
     if grown > GROWN and "balance" not in found:
         found["growth"] = (
-            f"energy grows by {grown:.2g} of its largest while nothing works on the model (limit "
-            f"{GROWN:g}): vibrations that the steps do not resolve feed a body that bends far; "
+            f"energy grows by {grown:.2g} of its maximum although no work is done on the model "
+            f"(limit {GROWN:g}): the steps do not resolve vibrations of a body that bends far; "
             "take a smaller step, divide the body, or keep the position of a node off the line of "
             "the others")
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
@@ -79,12 +79,13 @@ def growth(energy: NDArray, work: NDArray) -> float:
 
 
 def _steps(run: Recording) -> dict[str, str]:
-    """Whether many steps were cut."""
+    """Whether many steps were rejected."""
     steps, cuts = int(run.state.control[STEPS]), int(run.state.control[CUTS])
     if cuts <= CUT * steps:
         return {}
-    return {"cuts": f"{cuts} cuts in {steps} steps (limit {CUT:g} of them): Newton's iteration "
-            "does not converge with this step; take a smaller one, or softer loads and bodies"}
+    return {"cuts": f"{cuts} rejected steps, {steps} accepted (limit of the ratio {CUT:g}): "
+            "Newton's iteration does not converge; take a smaller step, or smoother loads and "
+            "softer bodies"}
 
 
 def _constraints(part: Recording) -> dict[str, str]:
@@ -96,8 +97,9 @@ def _constraints(part: Recording) -> dict[str, str]:
     off = part.constraint_residuals[:, 0].max() / size
     if off <= DRIFT:
         return {}
-    return {"constraints": f"constraints are off by {off:.2g} of the model's extent (limit "
-            f"{DRIFT:g}): take a smaller tolerance of the scheme, or a smaller step"}
+    return {"constraints": f"the largest constraint residual is {off:.2g} of the model's "
+            f"characteristic length (limit {DRIFT:g}): take a smaller tolerance of the scheme, or "
+            "a smaller step"}
 
 
 def _vibrations(part: Recording, states: list[int], h: float, largest: float) -> dict[str, str]:
@@ -107,8 +109,8 @@ def _vibrations(part: Recording, states: list[int], h: float, largest: float) ->
     omega = max(_fastest(part, part.rows[k], EXCITED * largest) for k in states)
     if omega * h * PERIOD <= 2.0 * np.pi:
         return {}
-    return {"period": f"vibrations of {omega:.4g} rad/s are excited and take "
-            f"{2.0 * np.pi / (omega * h):.2g} steps a period (limit {PERIOD:g}): take a step of "
+    return {"period": f"vibrations of {omega:.4g} rad/s are excited and have "
+            f"{2.0 * np.pi / (omega * h):.2g} steps per period (limit {PERIOD:g}): take a step of "
             f"{2.0 * np.pi / (omega * 3.0 * PERIOD):.2g}, or apply loads more gradually"}
 
 

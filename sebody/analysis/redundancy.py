@@ -110,8 +110,8 @@ class Solver:
         _, left = self.relaxed.least(residual)
         if left.max() > CONTRADICTION * max(np.abs(self.relaxed.scale * residual).max(), 1e-300):
             raise InputError(f"the constraints contradict each other at "
-                             f"{self.names[int(np.argmax(left))]}: they demand different "
-                             "accelerations of the same thing; remove a joint or a drive")
+                             f"{self.names[int(np.argmax(left))]}: they demand different values "
+                             "of the same acceleration; remove a joint or a drive")
 
     def _find_redundant(self, system: System) -> None:
         """Joints with constraints whose pivots are those of the regularization."""
@@ -137,8 +137,8 @@ class Solver:
         shape = self.relaxed.scale * probe / np.linalg.norm(probe)
         if np.linalg.norm(probe) > HALF and shape @ (self.relaxed.matrix @ shape) < MASSLESS:
             name = self.names[int(np.argmax(np.abs(probe)))]
-            raise InputError(f"the mass is singular at {name}: nothing with mass moves with it; "
-                             "give it a mass, fix it, or leave it out")
+            raise InputError(f"the mass matrix is singular: {name} moves no mass; add mass or "
+                             "inertia there, fix it, or leave it out")
 
 
 def contradiction(system: System, state: State, numbering: Numbering) -> str:
@@ -147,11 +147,12 @@ def contradiction(system: System, state: State, numbering: Numbering) -> str:
     left = np.abs(state.scale[:n] * (state.residual[:n] + state.constraint_residuals[:n]))
     worst = int(np.argmax(left))
     if not multiplying(system)[worst]:
-        return (f"a force acts on {numbering.names[worst]}, with which nothing that has mass "
-                "moves: give it a mass or fix it")
+        return (f"a force acts on {numbering.names[worst]}, which moves no mass: add mass or "
+                "inertia there, or fix it")
     parties = (left > SHARED * left.max()) & multiplying(system)
     return (f"the constraints of {', '.join(joints(numbering.names, parties))} contradict each "
-            "other: no motion meets them all; remove one, or give the drives motions that fit")
+            "other: no motion satisfies all of them; remove one, or give the drives motions that "
+            "the joints allow")
 
 
 def joints(names: list[str], chosen: NDArray) -> tuple[str, ...]:

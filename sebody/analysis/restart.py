@@ -13,6 +13,7 @@ from sebody import inputs
 from sebody.analysis.fingerprint import fingerprint
 from sebody.analysis.simulation import MOST_STEPS, Simulation
 from sebody.analysis.tolerance import Tolerance
+from sebody.contract.layout import RECORD_T
 from sebody.engine.state import (
     ADAPTIVE,
     AHEAD,
@@ -47,7 +48,6 @@ from sebody.files import check_target, replacing
 from sebody.files.arrays import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.files.members import Header, Member, Table
-from sebody.kernels.layout import RECORD_T
 from sebody.model.model import Model
 
 VERSION = 3
@@ -145,8 +145,8 @@ def _begun(file: str, model: Model, settings: dict) -> Simulation:
         run = Simulation(model, settings["h"], Scheme(*settings["scheme"]), settings["every"],
                          tolerance)
     except TypeError as error:      # too many numbers of the scheme or the tolerance, or too few
-        raise InputError(f"{file} has a scheme {settings['scheme']} or a tolerance "
-                         f"{settings['tolerance']} that there is not: {REPEAT}") from error
+        raise InputError(f"{file} has an unknown scheme {settings['scheme']} or tolerance "
+                         f"{settings['tolerance']}: {REPEAT}") from error
     if settings["model"] != fingerprint(run):
         raise _other_model(file)
     return run
@@ -175,7 +175,7 @@ def _check_numbers(table: Table, run: Simulation, arrays: Mapping[str, NDArray])
     for k, value in enumerate(control):
         most = MOST.get(k, MOST_STEPS if k != CORNER else run.system.corners.size)
         if not 0 <= value <= most:
-            raise table.fault(f"holds {value} in control at {k}, where 0 to {most:g} can be")
+            raise table.fault(f"holds {value} in control at {k}, outside 0 to {most:g}")
     for k in (TIME, STEP, CURRENT_STEP):
         if not np.isfinite(clock[k]):
             raise table.fault("holds numbers in clock that are not finite")

@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
-from scipy.spatial.transform import Rotation
 
 from sebody.analysis.linearization import rotating
 from sebody.analysis.simulation import Simulation
@@ -25,6 +24,7 @@ from sebody.analysis.sparse import Scaled
 from sebody.analysis.turning import Spin
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.errors import InputError
+from sebody.results import rotations
 
 ITERATIONS = 25
 PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
@@ -35,7 +35,7 @@ SLOWEST, FASTEST = 1.5, 5.0  # factor by which the rate falls after a step that 
 AGAIN = 4.0                 # factor by which it rises after one that was not
 ROUGH = 0.2                # tolerance of a step, by its length: the next one corrects it
 DRIFT = 1e3                 # of a step that gets no shorter, by the tolerance: what rounding moves
-FAR = 0.5                   # longest step, in extents or radians
+FAR = 0.5                   # longest step and correction, in extents or radians
 FURTHEST = 100.0            # extents of the model that it may move until it is no structure
 
 
@@ -56,6 +56,7 @@ def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | No
     """
     state, n = run.state, run.numbering.free
     state.frames_old[:] = state.frames
+    far = FAR if np.any(run.system.magnitude[:n] > 0.0) else 1.0    # else of what it leads to
     for _ in range(ITERATIONS):
         try:
             tangent, residual = _linear(run, spin, springs)
@@ -66,7 +67,7 @@ def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | No
             return False
         correction[:n] = _solution(run, solver, residual)
         change = size(run, correction[:n])
-        if not np.isfinite(change) or change > 1.0:
+        if not np.isfinite(change) or change > far:     # perhaps to an unstable place
             return False
         to_body_axes(run.system, state.frames, correction, True)
         state.R_old[:], state.dq[:] = state.R, -correction
@@ -174,7 +175,7 @@ def _displacement(run: Simulation, q: NDArray, R: NDArray) -> NDArray:
     if len(R):
         relative = np.swapaxes(R.reshape(-1, 3, 3), 1, 2) @ state.R.reshape(-1, 3, 3)
         at = run.system.rotation_at[:, None] + np.arange(3)
-        found[at] = Rotation.from_matrix(relative).as_rotvec()
+        found[at] = rotations.vectors(relative)
     found *= run.system.is_multiplier[:found.size] == 0.0
     to_body_axes(run.system, state.frames, found, False)
     return found[:n]

@@ -169,8 +169,8 @@ class Simulation:
         user_faults.refuse_changed(self.model)
         last = self._last_step(t_end)
         if abs(t_end / self.h - last) > OFF_GRID:
-            self.watch.say("end", f"t = {t_end:.9g} is no multiple of the step {self.h:.9g}: the "
-                           f"run ends at t = {last * self.h:.9g}")
+            self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "
+                           f"the run ends at t = {last * self.h:.9g}")
         if self.state.control[ADAPTIVE] == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)
@@ -192,7 +192,7 @@ class Simulation:
             raise SimulationError(self.failure, self.result())
         if code != DONE:
             result = self.result()
-            result.failure = f"interrupted at t = {self.time:.6g}: results up to there are kept"
+            result.failure = f"interrupted at t = {self.time:.6g}: results up to this time are kept"
             raise Interrupted(result.failure, result)
         return self
 
@@ -260,7 +260,7 @@ class Simulation:
         if scheme is None:
             return _default(2 if constrained and variable else 3)
         if variable and constrained and not scheme.stabilized:
-            raise InputError("with constraints of index 3 errors grow where steps change: give "
+            raise InputError("with constraints of index 3 errors grow where the step changes: give "
                              "generalized_alpha(index=2), or a fixed step")
         return scheme if constrained else scheme._replace(stabilized=False)
 

@@ -19,7 +19,7 @@ def start_remarks(model: Mechanism, numbering: Numbering, state: State) -> dict[
 
 
 def _falling(model: Mechanism) -> str:
-    """What a run says of bodies that start from rest where nothing ties them to the ground."""
+    """What a run says of bodies that start from rest where they are not connected to the ground."""
     if not model.gravity_field.any():
         return ""
     names = [name for group in untied(model) for name in group
@@ -29,9 +29,10 @@ def _falling(model: Mechanism) -> str:
     more = len(names) - MOST
     listed = ", ".join(map(repr, names[:MOST])) + (f" and {more} more" if more > 0 else "")
     one = len(names) == 1
-    return (f"nothing ties {'body' if one else 'bodies'} {listed} to the ground, so gravity makes "
-            f"{'it' if one else 'them'} fall: join {'it' if one else 'them'} to another body or "
-            f"fix a node, unless {'it is' if one else 'they are'} meant to fall")
+    return (f"{'body' if one else 'bodies'} {listed} {'is' if one else 'are'} not connected to the "
+            f"ground and {'falls' if one else 'fall'} under gravity: join "
+            f"{'it' if one else 'them'} to another body or fix a node, unless "
+            f"{'it is' if one else 'they are'} meant to fall")
 
 
 def _rates(model: Mechanism, names: list[str]) -> list[NDArray]:

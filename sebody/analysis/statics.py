@@ -11,9 +11,9 @@ from sebody.analysis.folding import Tensions
 from sebody.analysis.settling import balance, settle
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.turning import Spin
+from sebody.contract.layout import FIELD, RECORD_T
 from sebody.engine.evaluate import set_loads
 from sebody.errors import SimulationError
-from sebody.kernels.layout import FIELD, RECORD_T
 from sebody.model.model import Model
 from sebody.results.result import Result
 
@@ -27,11 +27,11 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     Parameters
     ----------
     steps : int
-        Load steps; cut where Newton's iteration does not converge.
+        Load steps; divided where Newton's iteration does not converge.
     t : float
-        Time at which the histories of the loads are read [time].
+        Time at which the time functions of the loads are evaluated [time].
     tolerance : float
-        Of the last correction, relative to the extent of the model or in radians.
+        Of the last correction, relative to the model's characteristic length or in radians.
     spin : (3,) array_like or float, optional
         Angular velocity of a frame about the origin in which everything rests, fixed nodes,
         supports and loads included [1/time]; a number in a plane.
@@ -89,7 +89,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         step /= 2
         if step < SMALLEST:
             reason = user_faults.fault(model, -np.inf) or tensions.reason(run) or (
-                "the structure may buckle there, or a mechanism is free to move; use more steps or "
+                "the structure may buckle, or a mechanism may be free to move; use more steps or "
                 "supports")
             raise SimulationError(f"no equilibrium was found above {share:.4g} of the load: "
                                   f"{reason}", _result(run))

@@ -10,15 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.errors import InputError
 
-UNSIZED = ("nothing in the model has a length: errors of positions are relative to one unit of "
-           "length; give an absolute one, such as Tolerance(1e-3, position=1e-6)")
+UNSIZED = ("the model has no characteristic length: errors of positions are relative to one unit "
+           "of length; give an absolute tolerance, such as Tolerance(1e-3, position=1e-6)")
 FINEST = 1e-9       # relative error of a run below which Newton's tolerance and rounding decide
 
 
 class Tolerance(NamedTuple):
     """Allowed errors of positions and rotations, relative ones added to absolute ones.
 
-    Relative means of the model's extent for positions and of one radian for rotations. Where
+    Relative to the model's characteristic length for positions, to one radian for rotations. Where
     nothing in the model has a length, as in a single mass without a moment of inertia, it means one
     unit of length, and a run warns.
     """
@@ -38,7 +38,8 @@ class Tolerance(NamedTuple):
         for name, value in self._asdict().items():
             inputs.number(value, f"tolerance {name}", least=0, remedy="give a number >= 0")
         if self.relative == 0.0 and not (self.position > 0.0 and self.rotation > 0.0):
-            raise InputError("the tolerance allows no error: give a relative one, or absolute ones "
+            raise InputError("the tolerance allows no error: give a relative error, or absolute "
+                             "ones "
                              "of positions and of rotations")
         return self
 
@@ -59,8 +60,8 @@ class Tolerance(NamedTuple):
         found = (self.allowed(sizes, rotational) / sizes)[sizes > 0.0].min()
         if found < FINEST:
             raise InputError(f"the tolerance allows errors of {found:.3g}, relative to the model's "
-                             f"extent or in radians: give at least {FINEST:g}, below which shorter "
-                             "steps do not help")
+                             f"characteristic length or in radians: give at least {FINEST:g}, "
+                             "below which shorter steps do not help")
 
     def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
         """Allowed error of positions and rotations of a magnitude.

@@ -14,7 +14,7 @@ from scipy.sparse import csc_matrix
 from sebody import inputs
 from sebody.analysis.simulation import Simulation
 from sebody.assembly.numbering import coordinates
-from sebody.kernels.layout import AT_FRAME, AT_POSITIONS
+from sebody.contract.layout import AT_FRAME, AT_POSITIONS
 from sebody.model.parts import Triplet
 from sebody.results.result import Result
 

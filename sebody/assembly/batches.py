@@ -21,13 +21,14 @@ from sebody.assembly.contracts import (
 )
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 from sebody.reduction import ReducedBody
+from sebody.reduction.mean_rotation import mean_rotation
 
 # rows of constants of every body that is still in use: the next run of its model needs them again
 _rows: WeakKeyDictionary[ReducedBody, dict[tuple, NDArray]] = WeakKeyDictionary()
@@ -219,8 +220,9 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
 def frame_constants(body: Superelement) -> dict[str, ArrayLike]:
     """Values of what places the frame of a superelement, by name."""
     points = body.body.coordinates[list(body.body.position_nodes)]
+    of_modes = {"Gam": mean_rotation(body.body).T} if FRAMES[body.frame].traits.modes else {}
     return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
-            "alpha_rs": body.alpha_r, "X": points - body.alpha @ points}
+            "alpha_rs": body.alpha_r, "X": points - body.alpha @ points} | of_modes
 
 
 def _filled(body: Superelement) -> int:
@@ -238,7 +240,8 @@ def _filled(body: Superelement) -> int:
 
 def _full(body: Superelement, kernel: ModuleType) -> int:
     """Leading rows and columns beyond which the element matrix is diagonal."""
-    apart = INERTIA_OPTIONS[kernel.INERTIA].modes_apart
+    # modes that move the frame act on each other through it
+    apart = INERTIA_OPTIONS[kernel.INERTIA].modes_apart and not FRAMES[body.frame].traits.modes
     return _filled(body) if apart else len(body.body.mass)
 
 

@@ -9,10 +9,10 @@ from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
+from sebody.contract.layout import scratch_size
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.kernels.layout import scratch_size
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
@@ -26,7 +26,8 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     Raises
     ------
     InputError
-        No bodies, a triplet that nothing holds, or an element that does not fit its kernel.
+        No bodies, a node that is not connected to anything, or an element that does not fit its
+        kernel.
     """
     if not (model.bodies or model.rigid_bodies):
         raise InputError("the model has no body: add one with model.superelement(...) or "
@@ -101,7 +102,7 @@ def _rotation_starts(numbering: Numbering) -> NDArray:
 
 
 def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
-    """Magnitudes of coordinates: the model's extent for positions, one radian for rotations."""
+    """Magnitudes: the characteristic length for positions, one radian for rotations."""
     length = extent(model)
     size = np.zeros(numbering.total)
     for node in model.nodes.values():

@@ -10,9 +10,7 @@ from types import ModuleType
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.numbering import Numbering
-from sebody.errors import InputError
-from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.layout import (
+from sebody.contract.layout import (
     INDEX,
     MOST_SLAVED,
     ContractError,
@@ -25,6 +23,8 @@ from sebody.kernels.layout import (
     floating_counts,
     superelement_counts,
 )
+from sebody.errors import InputError
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.parts import Element, Superelement
 
 REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebody"
@@ -32,7 +32,7 @@ REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebo
 
 def check_element(element: Element, kernel: ModuleType, unknowns: int,
                   numbering: Numbering) -> None:
-    """Check counts, history and power port of an element.
+    """Check counts, time function and power port of an element.
 
     Raises
     ------
@@ -46,9 +46,9 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
                         ("positions", positions_of(element), kernel.N_POSITIONS),
                         ("rotation matrices", matrices, kernel.N_ROTATIONS)))
     if kernel.DRIVEN and element.history is None:
-        wrong.append("it has no history and the kernel reads one")
+        wrong.append("it has no time function, but the kernel reads one")
     if element.history is not None and not kernel.POWER:
-        wrong.append("it has a history and the kernel reads none")
+        wrong.append("it has a time function, but the kernel reads none")
     if kernel.POWER != (id(element) in numbering.ports):
         wrong.append("it has no power port and the kernel writes power" if kernel.POWER else
                      "it has a power port and the kernel writes no power")

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import LANES
 from sebody.engine.elimination import BLOCK
-from sebody.kernels.layout import LANES
 
 
 class Pattern(NamedTuple):

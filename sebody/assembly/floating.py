@@ -14,9 +14,9 @@ from sebody.assembly.body_axes import (
     stiff_without_rounding,
     without_rounding,
 )
+from sebody.contract.layout import Counts, first_rotation
 from sebody.errors import InputError
 from sebody.generated.options import CONDITIONS
-from sebody.kernels.layout import Counts, first_rotation
 from sebody.kernels.packed import pack
 from sebody.reduction.invariants import InertiaInvariants
 
@@ -121,7 +121,8 @@ def frame_conditions(frame: str, counts: Counts, values: Mapping[str, ArrayLike]
     condition, first = CONDITIONS[key], first_rotation(counts["N_POSITIONS"], D == 2)
     found = np.zeros((D + turns, counts["n"]))
     found[:D, :first] = np.kron(values["alphas"], np.eye(D))
-    begin, size = (0, D) if condition.of == "position" else (first, turns)
+    begin, size = {"position": (0, D), "rotation": (first, turns), "coordinate": (0, 1)}[
+        condition.of]
     constants = (np.asarray(values[name]) for name in condition.constants)
     for j, of_node in enumerate(zip(*constants, strict=True)):
         at = begin + size * j
@@ -142,18 +143,21 @@ def free_coordinates(conditions: NDArray, counts: Counts, turn: NDArray) -> tupl
         axes[3:, 3:] = turn.T
     conditions = axes @ conditions @ by.T
     conditions[np.abs(conditions) < 1e-14 * np.abs(conditions).max(axis=1, keepdims=True)] = 0.0
-    kept, basis = determining(conditions)
+    kept, basis = determining(conditions, counts["bound"])
     bound_free = np.count_nonzero(kept < counts["bound"])
     rows = kept[:bound_free]
     return Free(turn, by[rows, :counts["bound"]], np.arange(len(kept))), basis
 
 
-def determining(conditions: NDArray) -> tuple[NDArray, NDArray]:
-    """Coordinates that determine the others, and the matrix that makes all of them, (n, free)."""
+def determining(conditions: NDArray, bound: int) -> tuple[NDArray, NDArray]:
+    """Coordinates that determine the others, and the matrix that makes all of them, (n, free).
+
+    The others are among the first `bound`, those of the boundary.
+    """
     count, n = conditions.shape
     scale = np.abs(conditions).max(axis=1, keepdims=True)
-    order = qr(conditions / scale, mode="r", pivoting=True)[1]
-    others, kept = order[:count], np.sort(order[count:])
+    others = qr((conditions / scale)[:, :bound], mode="r", pivoting=True)[1][:count]
+    kept = np.setdiff1d(np.arange(n), others)
     basis = np.zeros((n, n - count))
     basis[kept, np.arange(n - count)] = 1.0
     basis[others] = -np.linalg.solve(conditions[:, others], conditions[:, kept])

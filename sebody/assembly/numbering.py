@@ -170,12 +170,21 @@ def _refuse_loose(model: Mechanism, held: dict) -> None:
         for triplet in (node.position, node.rotation):
             for parent in triplet.parents() if triplet is not None else ():
                 if parent.solved and id(parent) not in held:
-                    raise InputError(f"{parent.name} belongs to no body, so nothing holds it: "
-                                     "attach a body or fix it")
+                    raise InputError(f"{_loose(model, parent, held)} is not connected to "
+                                     "anything: attach a body or fix it")
     for load in model.loads:
         borne = parents(load.triplets)
         if borne and load.history is not None and not any(id(p) in held for p in borne):
-            raise InputError(f"{load.name}: no body is there to bear it: attach one")
+            raise InputError(f"{load.name}: the load acts on a node without a body: attach one")
+
+
+def _loose(model: Mechanism, triplet: Triplet, held: dict) -> str:
+    """A triplet that belongs to no body; its node where this belongs to none either."""
+    name, _, kind = triplet.name.rpartition(".")
+    node = model.nodes[name]
+    others = [t for t in (node.position, node.rotation) if t is not None and t is not triplet]
+    whole = not any(id(t) in held or t.fixed for t in others)
+    return f"node {name!r}" if whole else f"the {kind} of node {name!r}"
 
 
 def _refuse_idle_drives(model: Mechanism) -> None:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly import elimination_pattern
 from sebody.assembly.batches import Shape
-from sebody.kernels.layout import LANES
+from sebody.contract.layout import LANES
 
 
 def element_places(shapes: Iterable[Shape], unused: int) -> tuple[NDArray, NDArray]:

@@ -15,7 +15,7 @@ from sebody.assembly.axes import rotated_blocks, summands
 from sebody.assembly.batches import Shape, starts
 from sebody.assembly.links import Ends, link_tables
 from sebody.assembly.places import dense_layout, element_places, sparse_layout
-from sebody.kernels.layout import LANES
+from sebody.contract.layout import LANES
 
 REMEMBERED = 16         # structures
 

@@ -12,17 +12,18 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("result", metavar="RESULT.npz",
                         help="file written by 'sebody run SCENE --output FILE.npz'")
     parser.add_argument("quantities", nargs="*", metavar="QUANTITY",
-                        help="what the page plots first, as for 'sebody plot'")
+                        help="plotted first in the page, written as for 'sebody plot'")
     parser.add_argument("--output", type=Path, metavar="FILE.html", required=True,
-                        help="a page that needs nothing else; gif or mp4 for a film")
+                        help="a self-contained page; with the ending gif or mp4 a film")
     parser.add_argument("--speed", type=float, metavar="S",
-                        help="simulated time for each second of playing")
+                        help="simulated time per second of playback")
     parser.add_argument("--colour", metavar="QUANTITY",
-                        help="what bodies are coloured by, in a page at first: displacement, "
-                             "von_mises, or body, each in a colour of its own")
+                        help="initial colours: displacement, von_mises, or body (one colour for "
+                             "each body); a page can change it")
     parser.add_argument("--reference", metavar="NODE",
-                        help="node that displacements are measured from, or 'frame', the floating "
-                             "frame of each body; by default its support or its first joint")
+                        help="node from which displacements are measured, or 'frame' for the "
+                             "floating frame of each body; default: support or first joint of the "
+                             "body")
     return parser
 
 

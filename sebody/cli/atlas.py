@@ -1,4 +1,4 @@
-"""``sebody atlas``: where methods fail."""
+"""``sebody atlas``: known limits, with theory and measured values."""
 
 import argparse
 from pathlib import Path
@@ -8,10 +8,11 @@ from sebody.cli.inputs import check_picture
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
-    parser = commands.add_parser("atlas", help="where methods fail: theory and measurement")
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="all of them by default")
+    parser = commands.add_parser("atlas", help="known limits: theory, measured value, how sebody "
+                                               "reacts")
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="cases (default: all)")
     parser.add_argument("--output", type=Path, metavar="FILE.png",
-                        help="draw the page of pictures")
+                        help="draw all cases")
     return parser
 
 

@@ -6,9 +6,10 @@ import argparse
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
-        "bench", help="cost and error of scenes, beside Exudyn where it is installed")
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="all that have one by default")
-    parser.add_argument("--json", action="store_true", help="print JSON in place of a table")
+        "bench", help="measure cost and error of scenes, beside Exudyn where it is installed")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="scenes (default: all with a "
+                                                                   "benchmark)")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
     return parser
 
 

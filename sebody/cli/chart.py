@@ -10,13 +10,13 @@ from sebody.cli.inputs import build_scene, check_distinct, check_picture
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
-        "chart", help="error against computing time of all that a scene can be built from")
+        "chart", help="draw error against computing time of the model variants of a scene")
     parser.add_argument("scene", metavar="SCENE", help="name of a scene or a file, FILE.py")
     parser.add_argument("--output", type=Path, metavar="FILE.png", help="draw it")
     parser.add_argument("--csv", type=Path, metavar="FILE.csv", help="write the points")
     parser.add_argument("--quantity", metavar="NAME",
-                        help="quantity that is compared, such as tip.position; by default the "
-                             "position of the scene's tip")
+                        help="compared quantity, such as tip.position (default: position of the "
+                             "scene's tip)")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",

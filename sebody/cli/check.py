@@ -5,9 +5,10 @@ import argparse
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
-    parser = commands.add_parser("check", help="test the consistency of kernels")
+    parser = commands.add_parser("check", help="check kernels: forces against energies, tangents "
+                                               "against forces")
     parser.add_argument("kernels", nargs="*", metavar="KERNEL",
-                        help="show all criteria of these; a summary of all kernels by default")
+                        help="show all criteria of these kernels (default: summary of all kernels)")
     return parser
 
 

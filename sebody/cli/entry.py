@@ -6,7 +6,7 @@ import signal
 import sys
 import warnings
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TextIO
 
 from sebody.cli import (
     advise,
@@ -54,6 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         finally:
             sys.stdout.flush()          # a closed pipe or full disk may show only here
     except BrokenPipeError:             # of `| head`: there is nobody to tell
+        _discard(sys.stdout)            # whether a part of what was printed is lost already or not
         return _mute(interrupts.ENDED_BY + signal.SIGPIPE)
     except OSError as error:
         what = error.filename or "the output cannot be written"
@@ -84,8 +85,13 @@ def _mute(code: int) -> int:
         try:
             stream.flush()
         except OSError:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+            _discard(stream)
     return code
+
+
+def _discard(stream: TextIO) -> None:
+    """Let all that is printed from now on go nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 class _Version(argparse.Action):

@@ -14,34 +14,37 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser("import", help="make a body file from files of an FE program")
     parser.add_argument("file", type=Path, metavar="FILE",
-                        help="one of the program's files; those beside it are found by its name")
+                        help="one of the files of the FE program; the others are found by name")
     parser.add_argument("--interface", action="append", default=[], metavar="NAME=WHAT",
                         dest="interfaces",
-                        help="a boundary node, may be repeated: a node's label, two of them 1/2 "
-                             "where rotations have a node of their own, rbe2:SET or rbe3:SET of a "
-                             "node set or surface, 'cylinder:x,y,z;axis;radius' of a hole")
+                        help="a boundary node, may be repeated. WHAT is the label of a node, two "
+                             "labels 1/2 where rotations are stored at a second node, rbe2:SET or "
+                             "rbe3:SET for a node set or surface, or "
+                             "'cylinder:x,y,z;axis;radius' for a hole")
     parser.add_argument("--modes", type=int, metavar="N",
                         help="number of internal modes (default 0)")
     parser.add_argument("--accuracy", type=float, metavar="E",
-                        help="in place of --modes: as many as this relative error needs, up to "
-                             "the frequency --up-to")
-    parser.add_argument("--up-to", type=float, metavar="F", help="end of the band of --accuracy")
+                        help="instead of --modes: choose the number of modes for this relative "
+                             "error up to the frequency --up-to")
+    parser.add_argument("--up-to", type=float, metavar="F",
+                        help="highest frequency for --accuracy")
     parser.add_argument("--criterion", metavar="NAME",
-                        help="what --accuracy is of: stiffness, the dynamic stiffness of the "
-                             "interfaces, or frequencies, those of free vibration alone, which "
-                             "takes far fewer modes (default with rubin)")
+                        help="error measured by --accuracy: stiffness (dynamic stiffness of the "
+                             "interfaces, default), or frequencies (of free vibration only, with "
+                             "far fewer modes; default with rubin)")
     parser.add_argument("--method", default="craig-bampton", metavar="NAME",
                         help="craig-bampton (default), guyan, macneal or rubin")
-    parser.add_argument("--format", metavar="NAME", help="kind of the files, guessed by default")
+    parser.add_argument("--format", metavar="NAME", help="format of the files (default: detected)")
     parser.add_argument("--damping", metavar="D[,D...]",
-                        help="part of critical damping of the free vibration modes: of all, or of "
-                             "each from the lowest up, the last also of those beyond")
+                        help="damping ratio of the free vibration modes: one for all modes, or "
+                             "one for each from the lowest up, the last also for higher modes")
     parser.add_argument("--units", default="", metavar="UNITS",
                         help="units of the numbers, such as 'mm t N s'")
     parser.add_argument("--unchecked", action="store_true",
-                        help="write also reduced matrices that no model would take, for inspect")
+                        help="write reduced matrices even if models would refuse them, so that "
+                             "'sebody inspect' can be used")
     parser.add_argument("--lean", action="store_true",
-                        help="leave out shapes and mesh of the FE model, most of the file's size")
+                        help="omit shapes and mesh of the FE model, which make up most of the file")
     parser.add_argument("--output", type=Path, required=True, metavar="BODY.npz",
                         help="body file to write")
     return parser

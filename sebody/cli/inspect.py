@@ -10,15 +10,15 @@ from sebody.errors import InputError
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
-    parser = commands.add_parser("inspect", help="judge a body file, and say what to do")
+    parser = commands.add_parser("inspect", help="check a body file: defects and remedies")
     parser.add_argument("body", type=Path, metavar="BODY.npz", help="a body file")
     parser.add_argument("--output", type=Path, metavar="FILE.png",
-                        help="draw its surface, interfaces and free vibrations")
-    parser.add_argument("--json", action="store_true", help="print JSON in place of a text")
+                        help="draw surface, interfaces and free vibration modes")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of text")
     parser.add_argument("--repair", choices=["rigid-modes"],
-                        help="project the stiffness so that rigid motion costs no force")
+                        help="project the stiffness so that rigid-body motion causes no force")
     parser.add_argument("--save", type=Path, metavar="FILE.npz",
-                        help="where the repaired body goes")
+                        help="file for the repaired body")
     return parser
 
 

@@ -61,7 +61,7 @@ def meanings_of(build: Callable) -> dict[str, str]:
 
 
 def _list_all() -> None:
-    from sebody.kernels.names import ELEMENT
+    from sebody.contract.names import ELEMENT
     from sebody.studies.catalogue import kernels, scenes
 
     print("scenes")
@@ -74,9 +74,11 @@ def _list_all() -> None:
         if kernel.layout:
             print(f"  {kernel.layout:14} {kernel.frame:16} {kernel.inertia}")
     print("  frame 'node' is the converged_mean kernel with all weight on one node\n"
-          "  inertia a: angular velocities in frame axes, b: material, c: displacement field,\n"
-          "  d: rigid part of the motion and rates of deformation\n"
-          "  layout any: every other one; faster or damped: python -m sebody.derive LAYOUT")
+          "  inertia a: angular velocities in frame axes, b: in material axes,\n"
+          "  c: whole displacement field, d: exact rigid-body part and deformation rates\n"
+          "  layout any: used for all layouts that are not listed; for a faster or a damped "
+          "kernel:\n"
+          "  python -m sebody.derive LAYOUT")
     print("\njoints and loads")
     names = ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout)
     print(textwrap.fill(names, 100, initial_indent="  ", subsequent_indent="  "))

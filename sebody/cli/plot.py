@@ -9,15 +9,15 @@ from sebody.cli.inputs import check_distinct, check_picture, labelled_results
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
-        "plot", help="draw quantities of a saved result, or of several to compare")
+        "plot", help="plot quantities of one saved result, or compare several results")
     parser.add_argument("result", metavar="RESULT.npz",
                         help="file written by 'sebody run SCENE --output FILE.npz'; its quantities "
                              "are listed by 'sebody list FILE.npz'")
     parser.add_argument("words", nargs="*", metavar="QUANTITY",
-                        help="tip.position, tip.position.x, tip.velocity.norm, energy, or over "
-                             "each other tip.position.x:y; further files RESULT.npz are compared; "
-                             "an overview by default")
-    parser.add_argument("--spectrum", action="store_true", help="power spectral densities")
+                        help="tip.position, tip.position.x, tip.velocity.norm, energy, or "
+                             "tip.position.x:y for y over x; further files RESULT.npz are "
+                             "compared (default: an overview)")
+    parser.add_argument("--spectrum", action="store_true", help="plot power spectral densities")
     parser.add_argument("--output", type=Path, metavar="FILE.png", required=True,
                         help="png, svg or pdf")
     return parser

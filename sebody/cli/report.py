@@ -9,13 +9,13 @@ from sebody.cli.inputs import check_distinct
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
-        "report", help="put a saved result on one page, with an audit and an animation")
+        "report", help="write a page with audit, plots and animation of a saved result")
     parser.add_argument("result", metavar="RESULT.npz",
                         help="file written by 'sebody run SCENE --output FILE.npz'")
     parser.add_argument("quantities", nargs="*", metavar="QUANTITY",
-                        help="what is plotted, as for 'sebody plot'")
+                        help="quantities to plot, written as for 'sebody plot'")
     parser.add_argument("--output", type=Path, metavar="FILE.html", required=True,
-                        help="a page that needs nothing else")
+                        help="a self-contained page")
     return parser
 
 

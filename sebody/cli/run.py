@@ -21,25 +21,26 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser("run", help="run a scene")
     parser.add_argument("scene", metavar="SCENE",
-                        help="name of a scene, see 'sebody list', or a file of your own, FILE.py")
+                        help="name of a scene, see 'sebody list', or your own FILE.py")
     parser.add_argument("--output", type=Path, metavar="FILE.npz",
                         help="save the result: FILE.npz, or FILE.h5 with h5py")
-    parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the standard picture")
+    parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the standard plot")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--accuracy", type=float, metavar="E",
-                        help="allowed error of the run, of the model's extent and in radians: "
-                             "steps are chosen, --step is the grid of the output")
+                        help="allowed error of the run, relative to the model's characteristic "
+                             "length, and in radians: steps are chosen, --step is the output "
+                             "interval")
     parser.add_argument("--every", type=int, metavar="N", help="keep every N-th step only")
     parser.add_argument("--index", type=int, default=None, metavar="I",
-                        help="2: constraints hold for velocities, too (default 3, with "
-                             "--accuracy 2)")
+                        help="index of the constraints; 2: satisfied for velocities as well "
+                             "(default 3, with --accuracy 2)")
     parser.add_argument("--equilibrium", action="store_true",
-                        help="start at the equilibrium under gravity and the loads of t = 0")
+                        help="start from the equilibrium under gravity and the loads of t = 0")
     parser.add_argument("--save", type=Path, metavar="FILE.npz",
-                        help="save the state to go on from")
+                        help="save the final state for --resume")
     parser.add_argument("--resume", type=Path, metavar="FILE.npz",
-                        help="go on from a saved state, with its step, scheme and accuracy")
+                        help="continue from a saved state, with its step, scheme and accuracy")
     parser.add_argument("--rho", type=float, metavar="R",
                         help="spectral radius of generalized-alpha at infinity (default 0.9)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
@@ -129,9 +130,11 @@ def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
 
 def _start(scene: "Scene", options: argparse.Namespace) -> "Result | None":
     """The state to start from, if it is not the scene's own."""
+    if not options.equilibrium:
+        return None
     from sebody.analysis.statics import equilibrium
 
-    return equilibrium(scene.model) if options.equilibrium else None
+    return equilibrium(scene.model)
 
 
 def _step(scene: "Scene", options: argparse.Namespace) -> float:
@@ -197,5 +200,5 @@ def _check(options: argparse.Namespace, scene: "Scene") -> None:
     if options.resume:
         for name in ("step", "rho", "index", "every", "equilibrium"):
             if getattr(options, name) not in (None, False):
-                raise InputError(f"--resume goes on with the {name} that was saved: leave out "
+                raise InputError(f"--resume continues with the {name} that was saved: leave out "
                                  f"--{name}")

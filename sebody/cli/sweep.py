@@ -21,33 +21,36 @@ KEEP = re.compile(r"^(\w+)\((norm )?([^,]+)(?:,(.+))?\)$")
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
-        "sweep", help="many runs over lists and distributions of parameters")
+        "sweep", help="run a scene for lists and distributions of parameters")
     parser.add_argument("scene", metavar="SCENE", help="name of a scene or a file, FILE.py")
     parser.add_argument("--vary", action="append", default=[], metavar="NAME=VALUES",
-                        help="1,2,5 or 0:8 or 0:1:0.25, ends included; all combinations are run")
+                        help="values 1,2,5 or 0:8 or 0:1:0.25, ends included; all combinations "
+                             "are run")
     parser.add_argument("--sample", action="append", default=[], metavar="NAME=DISTRIBUTION",
                         help="normal(mean,deviation), uniform(low,high), loguniform(low,high), "
                              "triangular(low,mode,high)")
-    parser.add_argument("--runs", type=int, metavar="N", help="number of sampled sets")
-    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the samples")
+    parser.add_argument("--runs", type=int, metavar="N", help="number of random samples")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="seed of the samples")
     parser.add_argument("--sampler", choices=("lhs", "sobol", "random"), default="lhs",
-                        help="Latin hypercube (default), Sobol's sequence or independent numbers")
+                        help="Latin hypercube (default), Sobol sequence or independent samples")
     parser.add_argument("--sobol", type=int, metavar="N",
-                        help="run the design of Sobol's indices, N (parameters + 2) runs, and "
-                             "report them")
+                        help="compute Sobol indices from N (parameters + 2) runs")
     parser.add_argument("--keep", action="append", default=[], metavar="KIND(QUANTITY)",
-                        help="maximum(tip.position), minimum, rms, integral, final, "
-                             "at_time(QUANTITY,T); of the length of vectors maximum(norm ...)")
+                        help="output of every run: maximum(tip.position), minimum, rms, integral, "
+                             "final, at_time(QUANTITY,T); maximum(norm ...) is of the vector "
+                             "length")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         dest="changes", help="a parameter of the scene that does not vary")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--output", type=Path, metavar="SWEEP",
                         help="write SWEEP.npz, with pandas SWEEP.csv or .parquet, with matplotlib "
-                             "SWEEP.png; a sweep that was interrupted goes on from SWEEP.npz")
-    parser.add_argument("--threads", type=int, metavar="N", help="one a processor by default")
-    parser.add_argument("--workers", type=int, metavar="N", help="processes in place of threads")
-    parser.add_argument("--cluster", metavar="ADDRESS", help="workers of a scheduler of Dask")
+                             "SWEEP.png; an interrupted sweep continues from SWEEP.npz")
+    parser.add_argument("--threads", type=int, metavar="N",
+                        help="number of threads (default: one per processor)")
+    parser.add_argument("--workers", type=int, metavar="N",
+                        help="number of processes, instead of threads")
+    parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Dask scheduler")
     return parser
 
 
@@ -139,7 +142,7 @@ def _time(text: str, time: str) -> float:
     try:
         return float(time)
     except ValueError as error:
-        raise InputError(f"--keep {text}: {time.strip()!r} is no time") from error
+        raise InputError(f"--keep {text}: {time.strip()!r} is not a time") from error
 
 
 def _written(table: "Table", stem: Path) -> list[str]:

@@ -6,7 +6,7 @@ import time
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
-    return commands.add_parser("warm", help="compile everything that is shipped")
+    return commands.add_parser("warm", help="compile all shipped kernels and the time loop")
 
 
 def run(options: argparse.Namespace) -> int:

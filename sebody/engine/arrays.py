@@ -9,24 +9,17 @@ from dataclasses import fields
 from functools import cache
 
 import numpy as np
-from numba import types
-from numba.core import cgutils
-from numba.core.typing.templates import AttributeTemplate
-from numba.extending import (
-    NativeValue,
-    infer_getattr,
-    lower_getattr_generic,
-    models,
-    register_model,
-    unbox,
-)
-from numba.np.numpy_support import from_dtype
+from llvmlite import ir
+from numba import from_dtype, types
+from numba.extending import NativeValue, models, register_model, unbox
 
-from sebody.kernels.sources import room_hash
+from sebody.compiler.choice import way
+from sebody.compiler.sources import CODE, room_hash
 
 # part of every compiled type: what is compiled for other sources is never used
-SOURCES = room_hash("kernels", "engine")
+SOURCES = room_hash(*CODE)
 _PLACE = c_char * 0     # has the address of an array, even of an empty one
+_WORD = ir.IntType(64)
 
 
 class Arrays:
@@ -58,8 +51,9 @@ def _view(group: type[Arrays], facts: tuple, sources: str) -> "View":
     """The type of a group, looked up: typing a hundred arrays takes a millisecond."""
     members = [_view(kind, own, sources) if isinstance(own, tuple) else
                types.Array(from_dtype(kind), own, "C") for kind, own in facts]
-    return View(group.__name__, tuple(zip((f.name for f in fields(group)), members, strict=True)),
-                sources)
+    names = [field.name for field in fields(group)]
+    way().show_members(View, names, _kind_of_member, _member)
+    return View(group.__name__, tuple(zip(names, members, strict=True)), sources)
 
 
 class View(types.Type):
@@ -95,7 +89,7 @@ def _size(kind: types.Type) -> int:
 @register_model(View)
 class _Pointer(models.PrimitiveModel):
     def __init__(self, manager, kind):
-        super().__init__(manager, kind, cgutils.intp_t.as_pointer())
+        super().__init__(manager, kind, _WORD.as_pointer())
 
 
 @unbox(View)
@@ -103,40 +97,42 @@ def _unbox(kind, group, c):
     boxed = c.pyapi.object_getattr_string(group, "_address")
     address = c.pyapi.long_as_longlong(boxed)
     c.pyapi.decref(boxed)
-    return NativeValue(c.builder.inttoptr(address, cgutils.intp_t.as_pointer()))
+    return NativeValue(c.builder.inttoptr(address, _WORD.as_pointer()))
 
 
-@infer_getattr
-class _Members(AttributeTemplate):
-    key = View
-
-    def generic_resolve(self, view, name):
-        found = view.place(name)
-        return found and found[1]
+def _kind_of_member(view: View, name: str) -> types.Type | None:
+    found = view.place(name)
+    return found and found[1]
 
 
-@lower_getattr_generic(View)
 def _member(context, builder, view, pointer, name):
+    """Instructions that read a member; of an array its place, and the fields Numba has for it."""
     first, kind = view.place(name)
     if isinstance(kind, View):
-        return cgutils.gep_inbounds(builder, pointer, first)
+        return builder.gep(pointer, [_WORD(first)], inbounds=True)
 
     def word(k):
-        loaded = builder.load(cgutils.gep_inbounds(builder, pointer, first + k))
+        loaded = builder.load(builder.gep(pointer, [_WORD(first + k)], inbounds=True))
         # groups never change: without this every store would make LLVM read the places again
         loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
         return loaded
     array = context.make_array(kind)(context, builder)
     item = context.get_abi_sizeof(context.get_data_type(kind.dtype))
     shape = [word(1 + k) for k in range(kind.ndim)]
-    strides, items = [], cgutils.intp_t(1)
+    strides, items = [], _WORD(1)
     for length in reversed(shape):
-        strides.insert(0, builder.mul(items, cgutils.intp_t(item)))
+        strides.insert(0, builder.mul(items, _WORD(item)))
         items = builder.mul(items, length)
-    null = cgutils.get_null_value
-    array.meminfo, array.parent = null(array.meminfo.type), null(array.parent.type)
-    array.nitems, array.itemsize = items, cgutils.intp_t(item)
+    array.meminfo, array.parent = array.meminfo.type(None), array.parent.type(None)
+    array.nitems, array.itemsize = items, _WORD(item)
     array.data = builder.inttoptr(word(0), array.data.type)
-    array.shape = cgutils.pack_array(builder, shape)
-    array.strides = cgutils.pack_array(builder, strides)
+    array.shape, array.strides = _packed(builder, shape), _packed(builder, strides)
     return array._getvalue()
+
+
+def _packed(builder, words):
+    """An array of words as one value."""
+    packed = ir.ArrayType(_WORD, len(words))(ir.Undefined)
+    for k, word in enumerate(words):
+        packed = builder.insert_value(packed, word, k)
+    return packed

@@ -10,10 +10,10 @@ of the blocks; free slots have ones on the diagonal.
 """
 
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import LANES
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import subtract_block_times, subtract_product
-from sebody.kernels.layout import LANES
-from sebody.kernels.pipeline import compiled
 
 BLOCK = LANES * LANES
 SMALL_PIVOT = 1e-11     # relative to the scaled matrix, whose diagonal is one

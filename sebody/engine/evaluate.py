@@ -4,11 +4,11 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import C_DAMPING, CLOCK, OK, RESIDUAL, VELOCITY
 from sebody.engine.links import place_dependent, pull_back
 from sebody.engine.tables import history_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
-from sebody.kernels.layout import C_DAMPING, CLOCK, OK, RESIDUAL, VELOCITY
-from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import rotate, tangent_operator
 
 

@@ -13,13 +13,8 @@ constraints about equally strong. See `sebody.engine.relaxation`.
 
 import numpy as np
 
-from sebody.engine import elimination
-from sebody.engine.evaluate import run_kernels, set_loads, set_tangent_operators
-from sebody.engine.matrix import clear_matrix, sum_element
-from sebody.engine.relaxation import RELAXATION, spread
-from sebody.engine.vectors import copy
-from sebody.kernels.abi import pointer_to
-from sebody.kernels.layout import (
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import (
     C_CONSTRAINT,
     C_DAMPING,
     C_GEO,
@@ -28,7 +23,12 @@ from sebody.kernels.layout import (
     RECORD_T,
     TANGENT,
 )
-from sebody.kernels.pipeline import compiled
+from sebody.engine import elimination
+from sebody.engine.evaluate import run_kernels, set_loads, set_tangent_operators
+from sebody.engine.matrix import clear_matrix, sum_element
+from sebody.engine.relaxation import RELAXATION, spread
+from sebody.engine.vectors import copy
+from sebody.kernels.abi import pointer_to
 
 PASSES = 2          # the first leaves rounding over RELAXATION, the second its square
 

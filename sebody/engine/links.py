@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.compiler.decorators import compiled
 from sebody.engine.arrays import Arrays
 from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.pipeline import compiled
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,8 @@ and calls it again.
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import OK, RESIDUAL, TANGENT
 from sebody.engine.calls import call_refactorize, call_restart
 from sebody.engine.evaluate import (
     assemble,
@@ -65,8 +67,6 @@ from sebody.engine.step_control import (
     write_between,
 )
 from sebody.engine.vectors import swap
-from sebody.kernels.layout import OK, RESIDUAL, TANGENT
-from sebody.kernels.pipeline import compiled
 
 UNMOVED = 0.03          # share of the tolerance that elements may move and keep their forces
 

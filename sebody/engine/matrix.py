@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import C_MASS, C_STIFFNESS
 from sebody.engine import elimination
 from sebody.engine.links import add_expanded, add_second_order
 from sebody.engine.relaxation import (
@@ -16,8 +18,6 @@ from sebody.engine.relaxation import (
 from sebody.engine.state import EVALUATED, FLOOR, PIVOTED, RELAXED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
-from sebody.kernels.layout import C_MASS, C_STIFFNESS
-from sebody.kernels.pipeline import compiled
 
 SUMMAND = 7             # numbers of an element in System.summands
 ROUNDING = 8.0 * 2.2e-16        # left of a position by rounding, relative to its magnitude

@@ -5,6 +5,8 @@ The factorized matrix is kept in body axes and reused until slow convergence ask
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import C_DAMPING, C_MASS
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.matrix import ROUNDING
 from sebody.engine.relaxation import relaxed_norms
@@ -38,8 +40,6 @@ from sebody.engine.state import (
     TARGET,
     WANTED,
 )
-from sebody.kernels.layout import C_DAMPING, C_MASS
-from sebody.kernels.pipeline import compiled
 
 MAX_ITERATIONS = 12     # of a step
 SLOWEST = 0.95          # contraction rate assumed where none is known, and upper bound of estimates

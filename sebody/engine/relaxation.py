@@ -21,10 +21,10 @@ RELAXATION must stay well above that rounding, which thin bodies increase by 1 /
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import C_MASS
 from sebody.engine import elimination
 from sebody.engine.state import RELAXED
-from sebody.kernels.layout import C_MASS
-from sebody.kernels.pipeline import compiled
 
 RELAXATION = 1e-8       # of R at multipliers, for elimination without row exchanges
 EXCHANGED = 1e-10       # the same for inverses, which rounding spoils less

@@ -12,6 +12,18 @@ the accelerations come from a look ahead: one more correction, in the state a sh
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import (
+    ACCELERATION,
+    C_CONSTRAINT,
+    C_DAMPING,
+    C_GEO,
+    C_MASS,
+    C_STIFFNESS,
+    OK,
+    RESIDUAL,
+    TANGENT,
+)
 from sebody.engine.calls import call_refactorize
 from sebody.engine.evaluate import (
     move_prescribed,
@@ -57,18 +69,6 @@ from sebody.engine.state import (
 )
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_acting
-from sebody.kernels.layout import (
-    ACCELERATION,
-    C_CONSTRAINT,
-    C_DAMPING,
-    C_GEO,
-    C_MASS,
-    C_STIFFNESS,
-    OK,
-    RESIDUAL,
-    TANGENT,
-)
-from sebody.kernels.pipeline import compiled
 
 MOST_CORRECTIONS = 30   # of a restart
 MOST_MATRICES = 6       # likewise

@@ -1,15 +1,17 @@
 """Addresses of the functions that the loop calls by address, see `sebody.engine.calls`."""
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 from numba import typeof, types
 from numpy.typing import NDArray
 
+from sebody.compiler.choice import way
 from sebody.engine.matrix import refactorize
 from sebody.engine.restart import restart
-from sebody.kernels.callees import Function
 
+RETURNS = {refactorize: types.boolean, restart: types.int64}
 RESTARTED = types.float64, types.boolean        # what `restart` is given beside system and state
 REFACTORIZED = types.int64, types.boolean
 
@@ -24,8 +26,11 @@ def addresses(system, state) -> NDArray:
                      _address(restart, *kinds, *RESTARTED)])
 
 
+def compile_routine(function: Callable, kinds: tuple[types.Type, ...]) -> None:
+    """Compile one of these functions for some types of arguments."""
+    _address(function, *kinds)
+
+
 @cache
-def _address(function: Function, *kinds: types.Type) -> int:
-    function.compile(kinds)
-    compiled = function.overloads[kinds]
-    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+def _address(function: Callable, *kinds: types.Type) -> int:
+    return way().address(function, RETURNS[function], kinds)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OK, RECORD
 from sebody.engine.arrays import Arrays
-from sebody.kernels.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OK, RECORD
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
 # phases of the loop: where it continues when it is called again
@@ -23,13 +23,13 @@ NOT_FINITE, SLOW, INACCURATE, GAP = range(max(HALF_TURN, NO_FRAME) + 1,
                                           max(HALF_TURN, NO_FRAME) + 5)
 NO_START = GAP + 1
 REASONS = {
-    HALF_TURN: "a node is rotated by nearly half a turn against its body's frame",
-    NO_FRAME: "the search for a body's frame did not end",
-    NOT_FINITE: "the iteration matrix is singular or the iterate is not finite",
+    HALF_TURN: "a node is rotated by nearly half a revolution relative to its body frame",
+    NO_FRAME: "the iteration for a body frame did not converge",
+    NOT_FINITE: "the iteration matrix is singular or the solution diverged",
     SLOW: "Newton's iteration did not converge",
     INACCURATE: "the error of a step is above the tolerance",
-    GAP: "what the constraints demand cannot be met",
-    NO_START: "no accelerations were found that fit forces and constraints",
+    GAP: "the constraints cannot be satisfied",
+    NO_START: "no accelerations were found that satisfy dynamics and constraints",
 }
 NOTHING, BEND, JUMP = range(3)  # what a step ends at; at a jump of accelerations is a restart
 ASKED, AHEAD = 1, 2     # of a restart: to be done; looking ahead, see `engine.restart`

@@ -5,6 +5,16 @@ The unknowns of a step are the increments dq (rotations: R exp(dTheta)) and the 
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import (
+    C_CONSTRAINT,
+    C_DAMPING,
+    C_GEO,
+    C_MASS,
+    C_STIFFNESS,
+    RECORD_ITERATIONS,
+    RECORD_T,
+)
 from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
 from sebody.engine.newton import SLOWEST, watch_age
 from sebody.engine.state import (
@@ -49,16 +59,6 @@ from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, go_on, set_end
 from sebody.engine.vectors import copy
 from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.layout import (
-    C_CONSTRAINT,
-    C_DAMPING,
-    C_GEO,
-    C_MASS,
-    C_STIFFNESS,
-    RECORD_ITERATIONS,
-    RECORD_T,
-)
-from sebody.kernels.pipeline import compiled
 
 ORTHOGONAL = 8          # steps after which rotation matrices are made orthogonal again
 STEADY = 0.5            # share of a change by which the next one may differ
@@ -105,9 +105,9 @@ def begin_step(system, state, scheme):
 def _steady(system, state):
     """Whether auxiliary accelerations changed in the last step as in the step before, roughly.
 
-    If so, they are predicted to go on changing like that, else to stay as they are: after cut steps
-    and new matrices, too, which come where a motion is not smooth. What Newton's iteration with
-    old matrices leaves is proportional to the error of the prediction.
+    If so, they are predicted to go on changing like that, else to stay as they are: after rejected
+    steps and new matrices, too, which come where a motion is not smooth. The error that Newton's
+    iteration with old matrices leaves is proportional to the error of the prediction.
     """
     constant = linear = 0.0
     for i in range(system.diagonal.size):
@@ -241,4 +241,7 @@ def cut_step(state):
     while clock[CURRENT_STEP] >= tried and (1 << control[LEVEL]) <= FINEST:
         control[LEVEL] += 1
         clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
-    return (1 << control[LEVEL]) <= FINEST
+    if (1 << control[LEVEL]) <= FINEST:
+        return True
+    control[LEVEL] -= 1         # of the finest parts, should the run be resumed
+    return False

@@ -7,6 +7,16 @@ only where much is gained.
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import (
+    A_PART,
+    Q_PART,
+    R_PART,
+    RECORD_ITERATIONS,
+    RECORD_T,
+    RECORD_WORKS,
+    V_PART,
+)
 from sebody.engine.links import place_dependent
 from sebody.engine.state import (
     ADAPTIVE,
@@ -39,16 +49,6 @@ from sebody.engine.state import (
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_powers
 from sebody.kernels.abi import pointer_to
-from sebody.kernels.layout import (
-    A_PART,
-    Q_PART,
-    R_PART,
-    RECORD_ITERATIONS,
-    RECORD_T,
-    RECORD_WORKS,
-    V_PART,
-)
-from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import inverse_tangent_coefficients, rotate
 
 AIM = 0.5               # share of the allowed error that a new step length aims at

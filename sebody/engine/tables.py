@@ -1,8 +1,8 @@
-"""Histories of loads and drives in compiled code."""
+"""Time functions of loads and drives in compiled code."""
 
 import numpy as np
 
-from sebody.kernels.pipeline import compiled
+from sebody.compiler.decorators import compiled
 
 # numbers of a piece: those of its polynomial by ascending powers, then amplitude, angular
 # frequency and phase of its harmonic

@@ -1,6 +1,6 @@
 """Vectors element by element: assignments of whole arrays take Numba seconds to compile."""
 
-from sebody.kernels.pipeline import compiled
+from sebody.compiler.decorators import compiled
 
 
 @compiled

@@ -11,11 +11,11 @@ Bodies with damping tell its power alone: it is taken in the middle of the step,
 ``dq / h``.
 """
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import AT_PORT, ENERGY, POWERS, RESIDUAL
 from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.vectors import copy
 from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.layout import AT_PORT, ENERGY, POWERS, RESIDUAL
-from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import rotate
 
 

@@ -23,7 +23,7 @@ def nodes_in_box(model: FEModel, lower: ArrayLike, upper: ArrayLike,
     lower, upper : (3,), planar (2,)
         Opposite corners [length]; infinite entries leave a side open.
     tolerance : float
-        Relative to the extent of the model.
+        Relative to the characteristic length of the model.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def nodes_on_plane(model: FEModel, point: ArrayLike, normal: ArrayLike,
     ----------
     point, normal : (3,), planar (2,)
     tolerance : float
-        Relative to the extent of the model.
+        Relative to the characteristic length of the model.
 
     Raises
     ------
@@ -75,7 +75,8 @@ def nodes_on_cylinder(model: FEModel, point: ArrayLike, axis: ArrayLike | None, 
     radius : float
         [length]
     tolerance : float
-        Relative to the extent of the model. Nodes in the middle of straight edges lie inside the
+        Relative to the characteristic length of the model. Nodes in the middle of straight edges
+        lie inside the
         cylinder.
 
     Raises

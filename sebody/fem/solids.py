@@ -128,7 +128,7 @@ def _group(number: int, points: NDArray, kind: str, nodes: NDArray, law: NDArray
     if (determinants <= 0).any():
         element = int(np.argwhere(determinants <= 0)[0][0])
         raise InvertedCell(f"cell {element} of kind {kind!r}, nodes {nodes[element].tolist()}, is "
-                           "turned inside out: correct the mesh or the order of its nodes", number,
+                           "inverted: correct the mesh or the order of its nodes", number,
                            element)
     slopes = np.einsum("egki,gai->egak", np.linalg.inv(jacobians), of_reference)
     return nodes, slopes, determinants * weights, law

@@ -180,8 +180,8 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
     ------
     InputError
         No solid elements, a wrong number of nodes, elements without volume or turned inside out in
-        a part of them (a whole one may be mirrored, which changes no strain), or a material that
-        there is not.
+        a part of them (a whole one may be mirrored, which changes no strain), or an
+        invalid material.
     """
     coordinates = inputs.array(coordinates, "coordinates", (None, 3))
     inputs.number(youngs_modulus, "youngs_modulus", above=0)
@@ -199,7 +199,7 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
         volumes = found[-1].volumes()
         _refuse(found[-1], np.abs(volumes).min(axis=1) <= FLAT, "has no volume")
         _refuse(found[-1], (volumes > 0).any(axis=1) & (volumes < 0).any(axis=1),
-                "is turned inside out in a part of it")
+                "is partly inverted")
     if not found:
         raise InputError(f"cells have no solid elements: give cells of the kinds "
                          f"{', '.join(SOLID_KINDS)}")

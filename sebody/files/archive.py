@@ -52,7 +52,7 @@ class Archive:
             if info.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
                 raise ValueError(f"member {name} is packed by method {info.compress_type}")
             if name in self._infos:
-                raise ValueError(f"member {name} is there twice")
+                raise ValueError(f"member {name} occurs twice")
             self._infos[name] = info
             self.headers[name] = self._header(name, info)
 

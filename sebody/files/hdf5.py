@@ -60,7 +60,7 @@ class Group:
     Raises
     ------
     ValueError
-        A member that is no dataset of this file.
+        A member that is not a dataset of this file.
     """
 
     def __init__(self, group):
@@ -72,7 +72,7 @@ class Group:
             plain = isinstance(group.get(name, getlink=True), h5py.HardLink)
             found = group[name] if plain else None
             if not isinstance(found, h5py.Dataset) or found.is_virtual or found.external:
-                raise ValueError(f"member {name} is no dataset of this file")
+                raise ValueError(f"member {name} is not a dataset of this file")
             text = h5py.check_string_dtype(found.dtype) is not None
             self.headers[name] = Header(found.shape, np.dtype("U") if text else found.dtype)
 

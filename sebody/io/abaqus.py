@@ -125,7 +125,7 @@ def _directions(path: Path, number: int, found: list[int]) -> list[int]:
     if any(not 1 <= k <= 6 for k in found[1:]):
         raise fault(path, number, f"DOFs {found}, of which 1 to 6 are those of a body",
                     "reduce a mechanical model without temperatures, and without *SELECT "
-                    "EIGENMODES, whose DOFs the file does not tell apart")
+                    "EIGENMODES, whose DOFs the file does not distinguish")
     return found
 
 
@@ -183,11 +183,11 @@ def _entries(path: Path) -> NDArray:
             raise fault(path, number, "no row of node, DOF, node, DOF, value", _GENERATE)
         if any(x != int(x) for x in row[:4]) or min(row[0], row[2]) < 1 or not (
                 1 <= row[1] <= 6 and 1 <= row[3] <= 6):
-            raise fault(path, number, f"node {row[0]:g}, DOF {row[1]:g}, is none of a body",
+            raise fault(path, number, f"node {row[0]:g}, DOF {row[1]:g}, is not a mechanical DOF",
                         "leave out hybrid elements, Lagrange multipliers and temperatures")
         if abs(row[4]) >= _HELD:
             raise fault(path, number, f"node {row[0]:g}, DOF {row[1]:g}, is fixed",
-                        "take *BOUNDARY off the body, which must be free")
+                        "remove *BOUNDARY: the body must be free")
         found.append(row)
     if not found:
         raise InputError(f"matrix file {path} is empty: {_GENERATE}")

@@ -72,8 +72,8 @@ def full_matrices(path: Path) -> tuple[np.ndarray, sparse.csc_array, sparse.csc_
     wrong = (reference[:, 1] > 5) | (reference[:, 1] < 0)
     if wrong.any():
         row = int(np.argmax(wrong))
-        raise InputError(f"{path}: DOF {reference[row, 1]} of node {reference[row, 0]} is none of "
-                         "a body: leave out temperatures, pressures and Lagrange multipliers")
+        raise InputError(f"{path}: DOF {reference[row, 1]} of node {reference[row, 0]} is not "
+                         "mechanical: leave out temperatures, pressures and Lagrange multipliers")
     return reference, *map(_whole, matrices)
 
 

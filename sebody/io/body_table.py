@@ -93,4 +93,4 @@ def _check_notes(table: Table, notes: dict) -> None:
     checked_materials(body.get("materials", []), f"{table.file}: materials")
     parsed_units(notes["units"], f"{table.file}: units")
     if not all(isinstance(text, str) for pair in notes["provenance"].items() for text in pair):
-        raise table.fault("has a provenance that is no text")
+        raise table.fault("has a provenance that is not a text")

@@ -83,7 +83,7 @@ def _labels(path: Path) -> list[tuple[int, int]]:
     for number, line in enumerate(read_text(path, "DOF file", _REMEDY).splitlines(), 1):
         node, point, direction = line.strip().partition(".")
         if not (point and node.isdecimal() and direction in ("1", "2", "3")):
-            raise fault(path, number, f"{line.strip()!r} is no node.direction with a direction "
+            raise fault(path, number, f"{line.strip()!r} is not node.direction with a direction "
                         "from 1 to 3", "write the matrices of a mechanical model again")
         found.append((int(node), int(direction) - 1))
     if not found:
@@ -93,7 +93,7 @@ def _labels(path: Path) -> list[tuple[int, int]]:
         node, direction = found[twice[1]]
         raise fault(path, twice[1] + 1, f"label {node}.{direction + 1} is that of line "
                     f"{twice[0] + 1}, too", "CalculiX makes solids of beams and shells (B31, B32, "
-                    "S4, S8 ...), whose rows it does not tell apart; use solids, C3D8 or C3D20")
+                    "S4, S8 ...), whose rows it does not distinguish; use solids, C3D8 or C3D20")
     return found
 
 

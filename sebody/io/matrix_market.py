@@ -89,7 +89,8 @@ def _mapping(path: Path) -> list[tuple[int, str]]:
             continue                    # headings
         row, node, kind = int(words[0]), int(words[1]), _DIRECTIONS.get(words[2].upper())
         if kind is None:
-            raise fault(path, number, f"DOF {words[2]} is none of a body", "leave out elements "
+            raise fault(path, number, f"DOF {words[2]} is not a mechanical DOF", "leave out "
+                                                                                 "elements "
                         "with pressures, temperatures and Lagrange multipliers")
         if row in found:
             raise fault(path, number, f"row {row} occurs twice", "export it again")

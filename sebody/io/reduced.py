@@ -69,11 +69,11 @@ def chosen_interfaces(file: BodyFile, labels: Sequence[str], names: Sequence[str
     """
     for label in labels:
         if label not in file.names:
-            raise InputError(f"node {label} is no boundary node of the reduced body: there are "
+            raise InputError(f"node {label} is not a boundary node of the reduced body: there are "
                              f"{', '.join(file.names)}")
     left = [label for label in file.names if label not in labels]
     if left:
-        raise InputError(f"the reduced body has boundary nodes that are no interfaces: "
+        raise InputError(f"the reduced body has boundary nodes that are not interfaces: "
                          f"{', '.join(left)}; name all of them, or reduce with fewer")
     parts = file.parts
     keeps = parts["keeps"]

@@ -279,7 +279,7 @@ def _value(path: Path, number: int, text: str) -> float:
     try:
         value = float(text.upper().replace("D", "E"))
     except ValueError as error:
-        raise fault(path, number, f"{text!r} is no number", "write the file again") from error
+        raise fault(path, number, f"{text!r} is not a number", "write the file again") from error
     if not np.isfinite(value):
         raise fault(path, number, f"{text!r} is not finite", "write the file again")
     return value

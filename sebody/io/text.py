@@ -42,7 +42,7 @@ def table(path: Path, columns: int, what: str, remedy: str) -> NDArray:
 
 
 def _worst_line(path: Path, text: str, columns: int, remedy: str) -> InputError:
-    """The first line that is no row of finite numbers."""
+    """The first line that is not a row of finite numbers."""
     lines = text.splitlines()
     for number, line in enumerate(lines, 1):
         words = line.replace("D", "E").replace("d", "e").split()
@@ -51,7 +51,7 @@ def _worst_line(path: Path, text: str, columns: int, remedy: str) -> InputError:
         except ValueError:
             right = False
         if not right:
-            return fault(path, number, f"{inputs.shown(line)} is no row of {columns} finite "
+            return fault(path, number, f"{inputs.shown(line)} is not a row of {columns} finite "
                          "numbers", remedy)
     return fault(path, len(lines), "the file cannot be read", remedy)
 
@@ -71,7 +71,7 @@ def whole(values: NDArray, path: Path, most: int | None, what: str, remedy: str,
     if wrong.any():
         k = int(np.argmax(wrong))
         upto = "" if most is None else f" to {most}"
-        raise fault(path, first_line + k, f"{what} {values[k]:g} is no number from 1{upto}",
+        raise fault(path, first_line + k, f"{what} {values[k]:g} is not a number from 1{upto}",
                     remedy)
     return values.astype(int)
 

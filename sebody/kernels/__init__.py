@@ -1,1 +1,1 @@
-"""Functions that generated code may call; its signature, search and compilation."""
+"""Functions that generated code may call, its signature, and the loader of kernels."""

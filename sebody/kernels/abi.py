@@ -1,7 +1,7 @@
 """The one signature of every compiled kernel, and how the time loop calls it.
 
 A kernel is called through its address: a call costs a few nanoseconds, and the loop is compiled
-once for all kernels. The contents of the arguments are described in `sebody.kernels.layout`.
+once for all kernels. The contents of the arguments are described in `sebody.contract.layout`.
 
 ===============  =================================================================================
 argument         meaning
@@ -18,12 +18,11 @@ width            number n of unknowns of an element (coordinates, then multiplie
 from collections import namedtuple
 
 from llvmlite import ir
-from numba import types
-from numba.core.errors import TypingError
+from numba import TypingError, types
 from numba.extending import intrinsic
 
-from sebody.kernels.layout import ARGUMENTS, LANES
-from sebody.kernels.pipeline import compiled
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import ARGUMENTS, LANES
 
 
 @compiled

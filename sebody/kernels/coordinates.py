@@ -4,11 +4,10 @@ All of a kind at once: each entry of a matrix is read once for values, rates and
 """
 
 from llvmlite import ir
-from numba.core import cgutils
 from numba.extending import intrinsic
 
+from sebody.contract.layout import LANES, MOST_SLAVED
 from sebody.kernels.instructions import (
-    VECTOR,
     WORD,
     add_product,
     called,
@@ -16,12 +15,12 @@ from sebody.kernels.instructions import (
     load_vector,
     no_sum,
     short_loop,
+    stack_vectors,
     store_vector,
     sums_of_lanes,
     totals,
     whole_vectors,
 )
-from sebody.kernels.layout import LANES, MOST_SLAVED
 
 
 @intrinsic
@@ -126,7 +125,7 @@ def _of_one(rows, builder, b, height):
 def _room(builder):
     """Place of a vector for each slaved coordinate: a number that is written just before a vector
     with it is read keeps the processor waiting, so all are read before the first is written."""
-    return builder.bitcast(cgutils.alloca_once(builder, VECTOR, size=WORD(MOST_SLAVED)),
+    return builder.bitcast(stack_vectors(builder, MOST_SLAVED),
                            ir.DoubleType().as_pointer())
 
 

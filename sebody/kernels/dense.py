@@ -3,6 +3,8 @@
 from numba import types
 from numba.extending import intrinsic
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import LANES
 from sebody.kernels.abi import at, padded
 from sebody.kernels.instructions import (
     FLOATS,
@@ -20,8 +22,6 @@ from sebody.kernels.instructions import (
     totals,
     whole_vectors,
 )
-from sebody.kernels.layout import LANES
-from sebody.kernels.pipeline import compiled
 
 _UNROLLED = 2       # sums over alternate columns: hides the latency of additions
 _VECTORS = 4, 2, 1      # vectors of rows at a time: every factor serves for all of them

@@ -1,14 +1,14 @@
 """Searches for the rotation of a floating frame, called by superelement kernels.
 
-Each returns a status: 0, HALF_TURN where a node is rotated by nearly half a turn against the frame,
+Each returns a status: 0, HALF_TURN where a node is nearly 180 degrees off the frame,
 or NO_FRAME where the search does not end.
 """
 
 import math
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import HALF_TURN, NO_FRAME
 from sebody.kernels.dense import inverse_3
-from sebody.kernels.layout import HALF_TURN, NO_FRAME
-from sebody.kernels.pipeline import compiled
 from sebody.kernels.rotations import (
     NEAR_PI,
     inverse_tangent_coefficients,
@@ -112,6 +112,8 @@ def planar_mean(count, alpha, angles, frame, psi):
     frame[1] = -frame[3]
     return 0
 
+ROUNDING = 1e-15        # rad, of a rotation
+
 
 @compiled
 def best_fit(count, fit, X, alpha, x, frame):
@@ -187,6 +189,138 @@ def planar_fit(count, fit, X, alpha, x, frame):
     frame[3] = across / size
     frame[1] = -frame[3]
     return 0
+
+
+@compiled
+def mean_axes(positions, rotations, n, nodes, alpha, X, Gam, q, R, frame, psi):
+    """The rotation with ``sum Gam_i y_i = 0`` of all coordinates, by Newton from the last iterate.
+
+    Gam is one of a rigid rotation, so the sum itself is a step that converges from afar.
+    """
+    mx = my = mz = 0.0
+    for k in range(3 * (positions + rotations), n):
+        mx += Gam[3 * k] * q[k]
+        my += Gam[3 * k + 1] * q[k]
+        mz += Gam[3 * k + 2] * q[k]
+    for _ in range(60):
+        if relative_rotations(rotations, nodes, R, frame, psi) != 0:
+            return HALF_TURN
+        x, y, z, a, b, c, d, e, f, g, h, i = _turn_of_positions(positions, alpha, X, Gam, q, frame)
+        u, v, w, aa, bb, cc, dd, ee, ff, gg, hh, ii = _turn_of_rotations(
+            rotations, 9 * positions, Gam, psi)
+        x, y, z = x + u + mx, y + v + my, z + w + mz
+        a, b, c = a + aa, b + bb, c + cc
+        d, e, f = d + dd, e + ee, f + ff
+        g, h, i = g + gg, h + hh, i + ii
+        newton = a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g) > 0.1
+        if newton:
+            a, b, c, d, e, f, g, h, i = inverse_3(a, b, c, d, e, f, g, h, i)
+            x, y, z = a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
+        size = x * x + y * y + z * z
+        if not size < 16.0:
+            return NO_FRAME
+        if newton and size < ROUNDING * ROUNDING:   # the frame of this state was found before
+            return 0
+        rotate(frame, 0, x, y, z, frame, 0)
+        if newton and size < 1e-16:         # Newton: the error left is the square of the step
+            return relative_rotations(rotations, nodes, R, frame, psi)
+    return NO_FRAME
+
+
+@compiled
+def _turn_of_positions(count, alpha, X, Gam, q, frame):
+    """Their part of the mean rotation; of its derivative, ``-sum Gam_j skew(r_j)`` by rows."""
+    cx = cy = cz = 0.0
+    for j in range(count):
+        cx += alpha[j] * q[3 * j]
+        cy += alpha[j] * q[3 * j + 1]
+        cz += alpha[j] * q[3 * j + 2]
+    x = y = z = xx = xy = xz = yx = yy = yz = zx = zy = zz = 0.0
+    for j in range(count):
+        a, b, c = q[3 * j] - cx, q[3 * j + 1] - cy, q[3 * j + 2] - cz
+        r = frame[0] * a + frame[3] * b + frame[6] * c
+        s = frame[1] * a + frame[4] * b + frame[7] * c
+        t = frame[2] * a + frame[5] * b + frame[8] * c
+        u, v, w, k = r - X[3 * j], s - X[3 * j + 1], t - X[3 * j + 2], 9 * j
+        x += Gam[k] * u + Gam[k + 3] * v + Gam[k + 6] * w
+        y += Gam[k + 1] * u + Gam[k + 4] * v + Gam[k + 7] * w
+        z += Gam[k + 2] * u + Gam[k + 5] * v + Gam[k + 8] * w
+        xx += Gam[k + 6] * s - Gam[k + 3] * t
+        xy += Gam[k] * t - Gam[k + 6] * r
+        xz += Gam[k + 3] * r - Gam[k] * s
+        yx += Gam[k + 7] * s - Gam[k + 4] * t
+        yy += Gam[k + 1] * t - Gam[k + 7] * r
+        yz += Gam[k + 4] * r - Gam[k + 1] * s
+        zx += Gam[k + 8] * s - Gam[k + 5] * t
+        zy += Gam[k + 2] * t - Gam[k + 8] * r
+        zz += Gam[k + 5] * r - Gam[k + 2] * s
+    return x, y, z, xx, xy, xz, yx, yy, yz, zx, zy, zz
+
+
+@compiled
+def _turn_of_rotations(count, first, Gam, psi):
+    """Their part of the mean rotation; of its derivative, ``sum Gam_j T^-T(psi_j)`` by rows."""
+    x = y = z = xx = xy = xz = yx = yy = yz = zx = zy = zz = 0.0
+    for j in range(count):
+        a, b, c, k = psi[3 * j], psi[3 * j + 1], psi[3 * j + 2], first + 9 * j
+        e = inverse_tangent_coefficients(a * a + b * b + c * c)[0]
+        p, q, r = 1 - e * (b * b + c * c), 0.5 * c + e * a * b, e * a * c - 0.5 * b
+        s, t, u = e * a * b - 0.5 * c, 1 - e * (a * a + c * c), 0.5 * a + e * b * c
+        v, w, o = 0.5 * b + e * a * c, e * b * c - 0.5 * a, 1 - e * (a * a + b * b)
+        x += Gam[k] * a + Gam[k + 3] * b + Gam[k + 6] * c
+        y += Gam[k + 1] * a + Gam[k + 4] * b + Gam[k + 7] * c
+        z += Gam[k + 2] * a + Gam[k + 5] * b + Gam[k + 8] * c
+        xx += Gam[k] * p + Gam[k + 3] * s + Gam[k + 6] * v
+        xy += Gam[k] * q + Gam[k + 3] * t + Gam[k + 6] * w
+        xz += Gam[k] * r + Gam[k + 3] * u + Gam[k + 6] * o
+        yx += Gam[k + 1] * p + Gam[k + 4] * s + Gam[k + 7] * v
+        yy += Gam[k + 1] * q + Gam[k + 4] * t + Gam[k + 7] * w
+        yz += Gam[k + 1] * r + Gam[k + 4] * u + Gam[k + 7] * o
+        zx += Gam[k + 2] * p + Gam[k + 5] * s + Gam[k + 8] * v
+        zy += Gam[k + 2] * q + Gam[k + 5] * t + Gam[k + 8] * w
+        zz += Gam[k + 2] * r + Gam[k + 5] * u + Gam[k + 8] * o
+    return x, y, z, xx, xy, xz, yx, yy, yz, zx, zy, zz
+
+
+@compiled
+def planar_mean_axes(positions, rotations, n, alpha, X, Gam, q, frame, psi):
+    """The same rotation in a plane."""
+    cx = cy = by_modes = 0.0
+    for j in range(positions):
+        cx += alpha[j] * q[2 * j]
+        cy += alpha[j] * q[2 * j + 1]
+    first = 2 * positions
+    for k in range(first + rotations, n):
+        by_modes += Gam[k] * q[k]
+    angle = math.atan2(frame[3], frame[0])
+    for _ in range(60):
+        cosine, sine = math.cos(angle), math.sin(angle)
+        mean, slope = by_modes, 0.0
+        for j in range(positions):
+            a, b = q[2 * j] - cx, q[2 * j + 1] - cy
+            r, s = cosine * a + sine * b, cosine * b - sine * a
+            mean += Gam[2 * j] * (r - X[2 * j]) + Gam[2 * j + 1] * (s - X[2 * j + 1])
+            slope += Gam[2 * j + 1] * r - Gam[2 * j] * s
+        for j in range(rotations):
+            psi[j] = _wrapped(q[first + j] - angle)
+            if not math.cos(psi[j]) > NEAR_PI:
+                return HALF_TURN
+            mean += Gam[first + j] * psi[j]
+            slope += Gam[first + j]
+        step = mean / slope if slope > 0.1 else mean
+        if not abs(step) < 4.0:
+            return NO_FRAME
+        if slope > 0.1 and abs(step) < ROUNDING:    # the frame of this state was found before
+            return 0
+        angle += step
+        if slope > 0.1 and abs(step) < 1e-8:
+            frame[0] = frame[4] = math.cos(angle)
+            frame[3] = math.sin(angle)
+            frame[1] = -frame[3]
+            for j in range(rotations):
+                psi[j] = _wrapped(q[first + j] - angle)
+            return 0
+    return NO_FRAME
 
 
 @compiled

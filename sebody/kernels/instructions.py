@@ -3,7 +3,7 @@
 A function that Numba compiles has a place for its result and one for an exception, both cleared
 where the caller begins, and its status is looked at after every call: with dozens of short calls
 this costs a kernel as much as some of the products. Loops are marked as short, as those of kernels
-are: see `sebody.kernels.pipeline`.
+are: see `sebody.compiler.short_loops`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -11,10 +11,9 @@ from contextlib import contextmanager
 
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
 
-from sebody.kernels.layout import LANES
-from sebody.kernels.pipeline import mark_short
+from sebody.compiler.short_loops import mark_short
+from sebody.contract.layout import LANES
 
 FLOATS, WORD = types.CPointer(types.float64), ir.IntType(64)
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
@@ -93,7 +92,13 @@ def broadcast(builder, number):
 
 def totals(builder, count):
     """Places of vectors that stay in registers."""
-    return [cgutils.alloca_once(builder, VECTOR) for _ in range(count)]
+    return [stack_vectors(builder, 1) for _ in range(count)]
+
+
+def stack_vectors(builder, count):
+    """Place of some vectors, made once where a function begins."""
+    with builder.goto_entry_block():
+        return builder.alloca(VECTOR, WORD(count))
 
 
 def no_sum():

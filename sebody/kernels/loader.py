@@ -1,19 +1,17 @@
 """Find and load generated kernels by name: the shipped ones, then the user's directory."""
 
-import gc
 import os
 import re
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
-from sebody.errors import InputError
-from sebody.kernels.names import (
+from sebody.compiler.collector import without_collector
+from sebody.compiler.sources import TEXT, room_hash
+from sebody.contract.names import (
     ELEMENT,
     IN_PLANE,
     SUPERELEMENT,
@@ -22,7 +20,7 @@ from sebody.kernels.names import (
     layout_variant,
     superelement_name,
 )
-from sebody.kernels.sources import room_hash
+from sebody.errors import InputError
 
 DERIVE = "python -m sebody.derive"
 USER_FORCE = element_name("user_force")      # written by hand, in this room
@@ -34,18 +32,6 @@ def user_directory() -> Path:
     ``SEBODY_KERNELS``, or ``~/.sebody/kernels``.
     """
     return Path(os.environ.get("SEBODY_KERNELS") or os.path.expanduser("~/.sebody/kernels"))
-
-
-@contextmanager
-def without_collector() -> Iterator[None]:
-    """Suspend garbage collection: it takes a quarter of a compilation and frees nothing."""
-    collecting = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if collecting:
-            gc.enable()
 
 
 def find(name: str) -> Path | None:
@@ -64,7 +50,7 @@ def find(name: str) -> Path | None:
         return None
     lines = re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE)
     facts = dict(lines)
-    if facts.get("ROOM") != room_hash("kernels"):
+    if facts.get("ROOM") != room_hash(*TEXT):
         asked = [name.removeprefix(ELEMENT)]
         if name.startswith(SUPERELEMENT):
             asked = [facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA")]

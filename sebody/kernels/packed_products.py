@@ -4,6 +4,8 @@ from contextlib import contextmanager
 
 from numba.extending import intrinsic
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import LANES
 from sebody.kernels.abi import padded
 from sebody.kernels.dense import columns_times
 from sebody.kernels.instructions import (
@@ -16,14 +18,12 @@ from sebody.kernels.instructions import (
     short_loop,
     store_vector,
 )
-from sebody.kernels.layout import LANES
 from sebody.kernels.packed import GROUP, HEAD, WIDTHS
-from sebody.kernels.pipeline import compiled
 
 
 @compiled
 def packed_room(count, rows, columns):
-    """Numbers that a row of packed matrices takes, see `sebody.kernels.layout.packed_size`."""
+    """Numbers that a row of packed matrices takes, see `sebody.contract.layout.packed_size`."""
     width = padded(columns)
     return count * padded(rows) * (width + width // 4) + 2 * width + 1
 

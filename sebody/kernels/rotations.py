@@ -5,7 +5,7 @@ Rotation matrices are nine numbers in row-major order.
 
 import math
 
-from sebody.kernels.pipeline import compiled
+from sebody.compiler.decorators import compiled
 
 NEAR_PI = -0.98     # cosine beyond which the logarithm of a relative rotation is refused
 

@@ -8,9 +8,9 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from sebody.compiler.decorators import compiled, kernel_function
+from sebody.contract.layout import AT_PORT, C_DAMPING, C_STIFFNESS, ENERGY, HEADER, POWERS, TANGENT
 from sebody.kernels.abi import at
-from sebody.kernels.layout import AT_PORT, C_DAMPING, C_STIFFNESS, ENERGY, HEADER, POWERS, TANGENT
-from sebody.kernels.pipeline import compiled, kernel_function
 
 PLANAR = False
 N_POSITIONS = None      # any number

@@ -38,7 +38,7 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     A superelement of one finite element, with the mean of its two rotations as frame, has the
     strain energy of Simo and Reissner's geometrically exact beam: strains of the chord are
     ``Gamma = R_m^T (x_b - x_a) / l - t`` with the rotation R_m half way between those of the nodes,
-    and each node is rotated by half of ``log(R_a^T R_b)`` against R_m. The exact linear stiffness
+    and each node is rotated by half of ``log(R_a^T R_b)`` from R_m. The exact linear stiffness
     does not lock; with no shear factor in the section it is that of Euler and Bernoulli. So beams
     without modes and with as many bodies as elements are the nonlinear reference for
     superelements. They do not stiffen by default: what is of second order within an element

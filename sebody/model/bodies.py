@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
+from sebody.contract.layout import layout_name
 from sebody.errors import InputError
 from sebody.io.body_file import load_body
-from sebody.kernels.layout import layout_name
 from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.frames import check_frame, default_frame, frame_weights, known_frame
 from sebody.model.inertias import chosen_inertia, needs_damped_kernel
@@ -34,9 +34,10 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         Reduced matrices in any axes, or the body file that holds them.
     nodes : iterable of Node or str
         One node for each boundary node of the body, in its order.
-    frame : {'converged_mean', 'mean', 'mean_small', 'node', 'positions'}, optional
+    frame : {'converged_mean', 'mean', 'mean_axes', 'mean_small', 'node', 'positions'}, optional
         By default the rotation of best fit of the positions, 'positions', for bodies with inertia
-        c and three or more positions that are not nearly on a line, else the mean of the nodes'
+        c and three or more positions that are not nearly on a line; mean axes, 'mean_axes', for
+        others of inertia c whose mass is off the line of their nodes; else the mean of the nodes'
         rotations, 'converged_mean'.
     inertia : {'a', 'b', 'c', 'd'}, optional
         By default c, the velocities of the whole displacement field, of bodies that know it:

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
+from sebody.contract.layout import FrameTraits
 from sebody.errors import InputError
 from sebody.generated import options
-from sebody.kernels.layout import FrameTraits
 from sebody.reduction import ReducedBody, body_weights
+from sebody.reduction.mean_rotation import central_inertia
 
 
 class Frame(NamedTuple):
@@ -24,6 +25,10 @@ FRAMES = {name: Frame(name, traits) for name, traits in options.FRAMES.items()}
 # Ratio of the spreads of positions from which on their fit is the default: it follows the least of
 # them, which has little mass in bodies much longer than wide.
 FAR_FROM_A_LINE = 0.2
+# A body is not straight from these on: distance of the centre of mass from the nodes' line over its
+# length, and angle between this line and a principal axis; radius of gyration about it, likewise.
+CROOKED, OFF_LINE = 0.01, 0.15
+SLENDER = 1e-10     # ratio of moments of inertia below which there are no mean axes
 FRAMES["node"] = FRAMES["converged_mean"]._replace(on_one_node=True)    # the mean of one rotation
 
 
@@ -46,20 +51,51 @@ def default_frame(body: ReducedBody, inertia: str | None) -> str:
 
     A frame on rotations follows nodes that have little inertia of rotation. The inertia of option C
     then depends on how far the body is bent, the more the lighter the nodes are against the body.
-    Positions move with more mass.
+    Positions move with more mass; where they are too few, mean axes follow the mass itself. Of
+    straight bodies, which have hardly any inertia about their axis, mean axes follow torsion.
     """
     if body.invariants is None or inertia not in (None, "c") or not body.rotation_nodes:
         return "converged_mean"
     points = body.coordinates[list(body.position_nodes)]
-    if len(points) < 3:
-        return "converged_mean"
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    return "positions" if spread[1] > FAR_FROM_A_LINE * spread[0] else "converged_mean"
+    if len(points) > 2:
+        spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        if spread[1] > FAR_FROM_A_LINE * spread[0]:
+            return "positions"
+    return "mean_axes" if mass_off_line(body) else "converged_mean"
+
+
+def mass_off_line(body: ReducedBody) -> bool:
+    """Whether the mass of a body is off the line of its nodes, so that it is not straight.
+
+    Then the centre of mass is off this line, or the line is no principal axis of inertia, or the
+    radius of gyration about it is large. In a plane only the centre of mass is known.
+    """
+    points = body.coordinates[list(body.position_nodes)]
+    if len(points) < 2:
+        return False
+    axis = np.linalg.svd(points - points.mean(axis=0))[2][0]
+    length, arm = np.ptp(points @ axis), body.centre_of_mass - points.mean(axis=0)
+    if np.linalg.norm(arm - arm @ axis * axis) > CROOKED * length:
+        return True
+    if body.planar or body.invariants is None:
+        return False
+    J = body.invariants.about(body.centre_of_mass).J0 / body.total_mass
+    about = axis @ J @ axis
+    turned = np.linalg.norm(J @ axis - about * axis)
+    return bool(turned > CROOKED * (np.trace(J) - about) / 2 or about > (OFF_LINE * length)**2)
 
 
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:
     """Refuse a frame that the kept triplets cannot define."""
     traits = FRAMES[frame].traits
+    if traits.modes:
+        moments = np.linalg.eigvalsh(central_inertia(body))
+        if not moments[0] > SLENDER * moments[-1]:
+            listed = ", ".join(f"{moment:.3g}" for moment in moments)
+            raise InputError(f"superelement {name!r} has hardly any inertia about an axis (moments "
+                             f"{listed} about its centre of mass), so the frame {frame!r} cannot "
+                             "see rotations about it: use 'converged_mean'")
+        return
     if traits.needs_rotations:
         if not body.rotation_nodes:
             others = [repr(n) for n, f in FRAMES.items() if not f.traits.needs_rotations]

@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 
 from sebody import inputs
+from sebody.compiler.user_functions import UserFunction, compile_force, compile_history
 from sebody.errors import InputError
-from sebody.kernels.user_functions import UserFunction, compile_force, compile_history
 from sebody.model.outside import defaults, is_helper, refuse, values_read
 
 OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")       # arguments

@@ -1,6 +1,6 @@
-"""Histories of loads and motions of drives: pieces of formulas, or functions of a user.
+"""Time functions of loads and drives: pieces of formulas, or functions of a user.
 
-A history of pieces is on each of its intervals a polynomial of degree five at most plus a harmonic:
+A time function of pieces is on each interval a polynomial of at most degree five plus a harmonic:
 see `History`. Loads need the value alone, drives its first two derivatives, too.
 """
 
@@ -17,12 +17,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.kernels.layout import CLOCK
-from sebody.kernels.user_functions import UserFunction, compile_history
+from sebody.compiler.user_functions import UserFunction, compile_history
+from sebody.contract.layout import CLOCK
 from sebody.model.functions import compilable, compiled_history
 from sebody.model.history_rows import linear, table
 
-LOAD, MOTION = "load history", "motion of a drive"
+LOAD, MOTION = "time function of a load", "motion of a drive"
 COEFFICIENTS = 6        # most of a polynomial
 SMALL = 1e-9            # jump of a value or rate, relative to its size, that is rounding
 NEAR = 1e-8             # distance at which a function is looked at beside a corner, relative to it
@@ -152,7 +152,7 @@ class History:
 
 
 def history(source: Source) -> History:
-    """A load history from None (1), a number, a table, a function of time or a ready profile.
+    """A time function from None (1), a number, a table, a Python function or a ready profile.
 
     A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; two
     rows of one time are a jump. A function is compiled, of a tuple of a function and its rates the

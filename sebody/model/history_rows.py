@@ -1,4 +1,4 @@
-"""Tables of histories: rows (t, value), linear between them, two of one time for a jump."""
+"""Tables of time functions: rows (t, value), linear between rows, two at one time for a jump."""
 
 from collections.abc import Sequence
 
@@ -45,7 +45,7 @@ def table(source: ArrayLike, what: str, jumping: bool = False) -> tuple[NDArray,
 
 def linear(times: NDArray, values: NDArray
            ) -> tuple[tuple[float, ...], tuple[tuple[float, float], ...], tuple[float, ...]]:
-    """Times and pieces of a history of rows, and the times at which it bends or jumps."""
+    """Times and pieces of a table of rows, and the times at which its slope or value jumps."""
     if len(times) > 1 and times[0] == times[1]:
         times, values = np.append(times[0] - BEFORE, times), np.append(values[0], values)
     begins = np.append(np.diff(times) > 0.0, True)      # all rows but those before a jump
@@ -59,7 +59,7 @@ def linear(times: NDArray, values: NDArray
 
 
 def rows_of(times: Sequence[float], pieces: Sequence[Sequence[float]]) -> NDArray | None:
-    """The table that `linear` makes these pieces of, (n, 2); None of another history."""
+    """The table that `linear` makes these pieces of, (n, 2); None of another time function."""
     if any(any(piece[2:]) for piece in pieces) or any(pieces[-1][1:]):
         return None
     found = [(times[0], pieces[0][0])]

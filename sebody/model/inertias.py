@@ -70,7 +70,7 @@ def _check_stiffening(name: str, body: ReducedBody, inertia: str, frame: str) ->
                          "out, or stiffening")
     if not body.invariants.stiffens:
         raise InputError(f"{what} needs a geometric stiffness, and the FE model of the body has "
-                         "none, or none that matters: give it as "
+                         "none, or a negligible one: give it as "
                          "FEModel(geometric_stiffness=...), or divide the body")
 
 

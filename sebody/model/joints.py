@@ -185,7 +185,7 @@ def distance(model: Mechanism, node: Node | str, to: Node | str,
     length = np.linalg.norm(b.point - a.point)
     if not length > NEAR * model.size():
         raise InputError(f"distance between {a.name!r} and {b.name!r} is zero: use a spherical "
-                         "joint for nodes that start together")
+                         "joint for nodes that coincide")
     rod = Equations(model.kind_of("distance"), positions(a, b), {"length": length}, 1)
     return _joint(model, "distance", _named(model, name, "distance", a), a, b, [rod], None)
 

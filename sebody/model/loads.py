@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Sequence
 from numpy.typing import ArrayLike
 
 from sebody import inputs
+from sebody.contract.names import body_load_kind
 from sebody.errors import InputError
-from sebody.kernels.names import body_load_kind
 from sebody.model.frames import FRAMES
 from sebody.model.functions import compiled_force
 from sebody.model.histories import History, clock, history
@@ -60,7 +60,7 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
 def mode_force(model: Mechanism, body: str, mode: int, factor: float,
                amplitude: ArrayLike | Callable[[float], float] | History | None = None,
                name: str | None = None) -> Element:
-    """Force on an internal mode of a superelement: `factor` times a history.
+    """Force on an internal mode of a superelement: `factor` times a time function.
 
     A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
     """

@@ -84,7 +84,7 @@ class Mechanism:
                      for t in (n.position, n.rotation) if t is not None}.values())
 
     def size(self) -> float:
-        """Extent of the model, at least one unit of length."""
+        """Characteristic length of the model, at least one unit of length."""
         return max([1.0, *(np.abs(n.point).max() for n in self.nodes.values())])
 
     def elements(self) -> Iterator[Superelement | Element | Joint | Motion]:

@@ -31,7 +31,7 @@ class Model(Mechanism):
         """The model in words and tables, to be checked before a run.
 
         Unknowns and what they are of, masses, bodies, nodes and their state, joints, loads; bodies
-        that nothing ties to the ground.
+        that are not connected to the ground.
         """
         return described(self)
 

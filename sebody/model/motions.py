@@ -1,12 +1,12 @@
-"""Motions of drives: histories with two rates, that do not jump but in the second."""
+"""Motions of drives: time functions with two derivatives, of which only the second may jump."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from numbers import Number
 
 from sebody import inputs
+from sebody.compiler.user_functions import UserFunction
 from sebody.errors import InputError
-from sebody.kernels.user_functions import UserFunction
 from sebody.model.derivatives import rates_of
 from sebody.model.functions import compiled_history
 from sebody.model.histories import (

@@ -101,7 +101,7 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
         rate = check(model, value, f"initial rate of {moving.name}")
         if not moving.solved and np.any(rate):
             raise InputError(f"initial rate of {moving.name} is {value}, but it is fixed, "
-                             "prescribed or hangs on another node: leave it out")
+                             "prescribed or follows another node: leave it out")
         rates.append((moving, rate))
     for moving, rate in rates:
         moving.rate, moving.given = rate, True

@@ -8,7 +8,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import Node
 
-NEAR = 1e-9     # of the size of the model: nodes of a joint start together
+NEAR = 1e-9     # of the size of the model: nodes of a joint coincide
 
 
 def pair(model: Mechanism, node: Node | str, to: Node | str | None, what: str,
@@ -25,7 +25,7 @@ def pair(model: Mechanism, node: Node | str, to: Node | str | None, what: str,
 
 
 def check_together(model: Mechanism, a: Node, b: Node, what: str) -> None:
-    """Refuse nodes that start apart."""
+    """Refuse nodes that do not coincide."""
     if np.abs(b.point - a.point).max() > NEAR * model.size():
-        raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} start apart: give both the "
+        raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} do not coincide: give both the "
                          "same point")

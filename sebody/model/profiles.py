@@ -1,4 +1,4 @@
-"""Ready histories for drives and loads alike: each has exact rates and compiles nothing.
+"""Predefined time functions of drives and loads: they have exact rates and compile nothing.
 
 All but `harmonic` begin at `start` with the value `origin`, keep it before, and keep their last
 value afterwards. For drives this is the displacement or angle, which counts from where the model
@@ -148,14 +148,14 @@ def piecewise(*parts: tuple[float, History | float]) -> History:
     InputError
         No parts, times that do not increase, a compiled function.
     """
-    what = "parts of a piecewise history"
+    what = "parts of a piecewise function"
     if not parts:
         raise InputError(f"{what} are missing: give pairs (time, profile)")
     times, profiles = [], []
     for part in parts:
-        pair = items(part, "part of a piecewise history", "give a pair (time, profile)")
+        pair = items(part, "part of a piecewise function", "give a pair (time, profile)")
         if len(pair) != 2:
-            raise InputError(f"part of a piecewise history is {shown(part)}: give a pair (time, "
+            raise InputError(f"part of a piecewise function is {shown(part)}: give a pair (time, "
                              "profile)")
         times.append(number(pair[0], "time of a part"))
         profiles.append(_profile(pair[1]))
@@ -171,10 +171,10 @@ def piecewise(*parts: tuple[float, History | float]) -> History:
 def _profile(given: object) -> History:
     if isinstance(given, History):
         if given.functions:
-            raise InputError("part of a piecewise history is a compiled function: give a ready "
+            raise InputError("part of a piecewise function is a compiled function: give a ready "
                              "profile or a number")
         return given
-    return History((0.0,), ((number(given, "part of a piecewise history",
+    return History((0.0,), ((number(given, "part of a piecewise function",
                                     remedy="give a ready profile or a number"),),))
 
 

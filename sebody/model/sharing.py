@@ -13,7 +13,7 @@ def hold(model: Mechanism, node: Node, kind: str) -> Triplet:
     """Fix a triplet of a node, which must not be a dependent position."""
     held = triplet(node, kind)
     if held.root is not None:
-        raise InputError(f"{held.name} hangs on another node by a rigid link: fix or move "
+        raise InputError(f"{held.name} follows another node by a rigid link: fix or move "
                          f"{held.root.name} and its rotation instead")
     held.fixed = True
     model.connections.append(Connection(kind, node, None, spare=True))
@@ -21,9 +21,9 @@ def hold(model: Mechanism, node: Node, kind: str) -> Triplet:
 
 
 def can_share(one: Triplet, other: Triplet) -> bool:
-    """Whether two triplets can be one: at most one of them is fixed or hangs on another node.
+    """Whether two triplets can be one: at most one of them is fixed or follows another node.
 
-    Two that are fixed at one place and not moved are one already. One that hangs on the other by
+    Two that are fixed at one place and not moved are one already. One that follows the other by
     links closes a loop.
     """
     if one is other:

@@ -28,12 +28,12 @@ def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float 
     Raises
     ------
     InputError
-        Numbers that are negative, or nodes that start together.
+        Numbers that are negative, or nodes that coincide.
     """
     a, b = pair(model, node, known(model, to), "spring", ("position",))
     start = np.linalg.norm(b.point - a.point)
     if not start > 0:
-        raise InputError(f"spring: nodes {a.name!r} and {b.name!r} start together, so it has "
+        raise InputError(f"spring: nodes {a.name!r} and {b.name!r} coincide, so it has "
                          "no direction: use a bushing")
     length = start if length is None else length
     _check("spring", stiffness=stiffness, cubic=cubic, damping=damping, length=length)
@@ -78,7 +78,7 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     Raises
     ------
     InputError
-        Coefficients that are negative, no rotation, or nodes that do not start together.
+        Coefficients that are negative, no rotation, or nodes that do not coincide.
     """
     a, b = pair(model, node, to, "bushing")
     check_together(model, a, b, "bushing")

@@ -46,10 +46,10 @@ def described(model: Mechanism) -> str:
     masses += [float(body.constants["mass"]) for body in model.rigid_bodies.values()]
     lines = [summary(model),
              f"unknowns  {nodes + modes + equations}: {nodes} of nodes, {modes} of modes, "
-             f"{equations} of the equations of joints",
+             f"{equations} of joint equations",
              f"mass      {sum(masses):.6g}"]
     if loose := [name for group in untied(model) for name in group]:
-        lines.append("free      " + ", ".join(loose) + ": nothing ties them to the ground")
+        lines.append("free      " + ", ".join(loose) + ": not connected to the ground")
     return "\n\n".join(["\n".join(lines), *(text(*one) for one in _tables(model))])
 
 
@@ -103,7 +103,7 @@ def _joints(model: Mechanism) -> list[tuple]:
     return [(joint.name, joint.kind, joint.node.name,
              joint.to.name if nodes.get(joint.to.name) is joint.to else "the ground",
              str(joint.multipliers) if joint.multipliers else
-             "none: its nodes share coordinates, or they are fixed")
+             "none: its nodes share coordinates or are fixed")
             for joint in model.joints]
 
 

@@ -1,4 +1,4 @@
-"""Which bodies nothing ties to the ground."""
+"""Which bodies are not connected to the ground."""
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -9,7 +9,7 @@ from sebody.model.parts import Element, Superelement, Triplet
 
 
 def untied(model: Mechanism) -> list[list[str]]:
-    """Names of the bodies that nothing ties to the ground, those that hang together in one list.
+    """Names of the bodies that are not connected to the ground, connected ones in one list.
 
     Ties are fixed and prescribed positions, joints, springs and forces of users on positions, and
     nodes that bodies share.

@@ -77,7 +77,7 @@ def _stiffening_notes(fe_model: FEModel, extra: Stiffening | None) -> list[str]:
     if extra is None or fe_model.geometric_stiffness is None:
         return []
     if not len(extra.Q) + len(extra.lam):
-        return ["stiffening by stresses: none that matters"]
+        return ["stiffening by stresses: negligible"]
     rest = "; the others change little" if len(extra.lam) < extra.motions else ""
     return [f"stiffening by stresses: {len(extra.Q)} load modes, {len(extra.lam)} of "
             f"{extra.motions} resultants of second order{rest}"]

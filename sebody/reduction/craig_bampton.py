@@ -57,7 +57,7 @@ def craig_bampton(
     loads : mapping of str to (n_dofs,), optional
         Loads on the FE DOFs by name, see `sebody.fem.loads`; applied with `Model.body_load`.
     residual_modes : bool
-        Further internal modes that make the static answer to every load exact.
+        Further internal modes that make the static response to every load exact.
 
     Raises
     ------

@@ -53,7 +53,7 @@ def named_vectors(loads: Mapping[str, ArrayLike], size: int, entries: str) -> di
 
 def with_residual_modes(component: ComponentModes, interior: ClampedInterior,
                         mass: sparse.csc_array, forces: NDArray) -> ComponentModes:
-    """The modes with those that make the static answers to forces (n, k) exact.
+    """The modes with those that make the static responses to forces (n, k) exact.
 
     A residual mode is the answer of the clamped body without its part in the vibration modes: what
     is left is orthogonal to these in mass and stiffness (R.R. Craig, Structural Dynamics, 1981).

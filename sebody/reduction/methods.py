@@ -14,7 +14,7 @@ rigid motions of the body. What tells the methods apart are the internal shapes 
 Rubin's and MacNeal's bases are rigid motions R, elastic modes T of the free body and residual
 attachment modes, the answers to boundary forces F less what the modes answer. With inertia relief,
 ``(I - M R R^T) F``, these answers span, beside R, the constraint modes (forces in equilibrium) and
-the static answers of the clamped body to the loads M R (the others). With constraint modes Psi and
+static responses of the clamped body to the loads M R (the others). With constraint modes Psi and
 boundary values L the same space is that of Psi, ``T - Psi L T`` and those answers.
 
 R.J. Guyan, AIAA J. 3, 1965; R.R. Craig and M.C.C. Bampton, AIAA J. 6, 1968; R.H. MacNeal, Comput.
@@ -78,7 +78,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     loads : mapping of str to (n_dofs,), optional
         Loads on the FE DOFs by name, see `sebody.fem.loads`; applied with `Model.body_load`.
     residual_modes : bool
-        For 'craig-bampton' and 'guyan': further internal modes that make the static answer to every
+        For 'craig-bampton' and 'guyan': internal modes that make the static response to every
         load exact.
     judged : bool
         Note up to which frequencies the modes are good ('craig-bampton', 'guyan', 'rubin').

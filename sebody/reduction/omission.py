@@ -7,7 +7,7 @@ Leaving out the modes above the n-th leaves out
     E(w) = w^4 sum_{j > n} p_j p_j^T / (w_j^2 - w^2),
 
 positive semidefinite below the next mode and growing with w. Beside the modes computed, sums over
-all others are known: with ``Y = M Psi - M Phi p`` and the static answer S of the clamped body,
+all others are known: with ``Y = M Psi - M Phi p`` and the static response S of the clamped body,
 
     sum p p^T / w_j^2 = Y^T S Y,    sum p p^T / w_j^4 = Y^T S M S Y,
 

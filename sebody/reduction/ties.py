@@ -25,7 +25,7 @@ class Ties:
     independent : (n_dofs,) of int
         Independent DOF of each FE DOF; -1 on rigid faces.
     lengths : (size,)
-        1 for translations, the extent of the model for rotations.
+        1 for translations, the characteristic length for rotations.
     rigid : (size, 6), planar (size, 3)
         Rigid motions times `lengths`, rotations by 1 / extent about the middle of the model.
     """

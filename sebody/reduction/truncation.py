@@ -18,7 +18,7 @@ def truncated(body: ReducedBody, modes: int) -> ReducedBody:
 
     The body is that of a reduction with fewer modes: fixed-interface modes are nested, if those of
     one frequency stay together. The static
-    answer of the modes left out goes to the static shapes of the recovery. What stiffens is
+    response of the omitted modes goes to the static shapes of the recovery. What stiffens is
     projected on the modes that stay; a new reduction may choose and turn load modes and resultants
     differently. Damping is projected, too: it is not made anew from damping ratios.
 
@@ -80,7 +80,7 @@ def _truncated_recovery(body: ReducedBody, size: int) -> Recovery:
 
 
 def _static(body: ReducedBody, size: int) -> NDArray:
-    """Static answers of the modes left out, under the loads of `Recovery.static`.
+    """Static responses of the omitted modes, under the loads of `Recovery.static`.
 
     ``sum phi (phi^T load) / omega^2``: the loads of boundary accelerations make the coupling of
     the reduced mass on the modes, those of spins make h, see `sebody.reduction.static_correction`.

@@ -1,7 +1,7 @@
 """What a summary says of kernels: where one made for the layout would pay."""
 
+from sebody.contract.names import layout_variant
 from sebody.kernels.loader import derive_command, load
-from sebody.kernels.names import layout_variant
 from sebody.model.mechanism import Mechanism
 
 # unknowns of a body up to which a kernel with its counts as constants takes a fifth to a half less

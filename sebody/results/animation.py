@@ -77,8 +77,8 @@ def animate(result: Result, output: str | Path | None = None, *quantities: str, 
             file.write(text.encode())
         return path
     if quantities:
-        raise InputError(f"a film shows no plots, such as of {quantities[0]}: make a page (.html), "
-                         "or leave the quantities out")
+        raise InputError(f"a film cannot show plots, such as of {quantities[0]}: make a page "
+                         "(.html), or leave the quantities out")
     drawn = scenery(result, film.MOST_FRAMES, colour == "von_mises", reference)
     duration = drawn.t[-1] - drawn.t[0]
     speed = speed or max(speed_of(drawn.t), duration / LONGEST)
@@ -108,8 +108,8 @@ def _check_colour(result: Result, colour: str) -> None:
     drawn = {name: one for name, one in shapes.items() if one is not None and one.cells}
     if colour == "displacement" and not drawn:
         raise InputError("colour is 'displacement', but no body of the model has the cells of an "
-                         "FE model, on which it would be seen: leave it out")
+                         "FE model, which colours need: leave colour out")
     if colour == "von_mises" and not any(one.stress for one in drawn.values()):
-        raise InputError("colour is 'von_mises', but no body of the model knows its stresses "
+        raise InputError("colour is 'von_mises', but the stresses of all bodies are unknown "
                          f"({', '.join(drawn) or 'none has cells'}): give FE models with a "
                          "material or stress=, or leave it out")

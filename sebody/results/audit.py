@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import rotational
-from sebody.kernels.layout import ENERGIES
+from sebody.contract.layout import ENERGIES
 from sebody.model.extent import extent
 from sebody.model.parts import Element, Node, Superelement
 from sebody.results import energy_balance
 from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording, record_counts
 
-DRIFT = 1e-5        # constraints, of the model's extent or rad: a thousand times a step's tolerance
+DRIFT = 1e-5        # constraints, of the model's size or rad: a thousand times a step's tolerance
 GOOD = 0.2          # of a limit, up to which a number is good
 IMPULSE = 0.05      # share of the impulse exchanged, as of energies
 RATES = 1e-3        # rates of constraints, of the largest speed: as errors of a step may be
@@ -39,7 +39,7 @@ def audit(result: Recording) -> list[Finding]:
     if result.error is not None:
         found.append(Finding("error in time", f"{result.error:.2g} of the tolerance",
                              "good" if result.error <= 1 else "bad",
-                             "estimated from the difference of two runs; allowed is 1"))
+                             "estimated from the difference of two runs; limit 1"))
     return found
 
 
@@ -72,9 +72,9 @@ def _completion(result: Recording) -> Finding:
 def _energy(result: Recording) -> Finding:
     balance = result.energy_balance()
     return Finding("energy", f"{balance:.2e}", _verdict(balance / energy_balance.LIMIT),
-                   f"largest drift over the energy exchanged; limit {energy_balance.LIMIT:g}. "
-                   "Numerical damping and long steps take energy: a smaller step or a larger rho "
-                   "keeps it")
+                   f"largest drift / energy exchanged; limit {energy_balance.LIMIT:g}. "
+                   "Numerical damping and long steps dissipate energy: use a smaller step or a "
+                   "larger rho")
 
 
 def _momentum(result: Recording, what: str) -> Finding:
@@ -86,11 +86,11 @@ def _momentum(result: Recording, what: str) -> Finding:
     exchanged = max(_integral(t, np.abs(moment if angular else total)).max(), held, 1e-300)
     value = np.abs(defect).max() / exchanged
     sampled = doubt.max() / exchanged
-    reason = ("change less the impulse of all forces from outside, over the impulse exchanged; "
+    reason = ("(change - impulse of all external forces) / impulse exchanged; "
               f"limit {IMPULSE:g}")
     if value > GOOD * IMPULSE and sampled > SAMPLED * value:
         return Finding(what, f"{value:.2e}", "not judged", f"{reason}. The recorded states are too "
-                       f"far apart to integrate the forces (by {sampled:.1e}): keep more of them")
+                       f"far apart to integrate the forces (error {sampled:.1e}): keep more states")
     return Finding(what, f"{value:.2e}", _verdict(value / IMPULSE),
                    f"{reason}. Smaller steps improve it")
 
@@ -100,15 +100,15 @@ def _constraints(result: Recording) -> list[Finding]:
     residuals = result.constraint_residuals.max(axis=0)
     off, rate = residuals[0] / size, residuals[1] / max(_fastest(result, size), 1e-300)
     return [Finding("constraints", f"{off:.1e}", _verdict(off / DRIFT),
-                    f"largest residual over the model's extent; limit {DRIFT:g}. A smaller "
-                    "tolerance of the scheme improves it"),
+                    f"largest residual / characteristic length; limit {DRIFT:g}. A smaller "
+                    "tolerance of the scheme reduces it"),
             Finding("rates of constraints", f"{rate:.1e}", _verdict(rate / RATES),
-                    f"largest residual over the largest speed; limit {RATES:g}. Index 2 keeps them "
-                    "at rounding")]
+                    f"largest residual / largest speed; limit {RATES:g}. Index 2 reduces it to "
+                    "rounding errors")]
 
 
 def _fastest(result: Recording, size: float) -> float:
-    """Largest speed of a coordinate, of rotations at the model's extent."""
+    """Largest speed of a coordinate, of rotations at the characteristic length."""
     moving = np.abs(result.recorded("v")).max(axis=0)
     turning = rotational(result.model, result.numbering)
     multipliers = [first + k for constraint in result.model.constraints

@@ -36,7 +36,7 @@ def warning(balance: float, adaptive: bool = False) -> str:
     """
     if balance <= LIMIT:
         return ""
-    reason = ("steps within the tolerance do not keep it; take a smaller tolerance, or a larger rho"
-              if adaptive else "the step is too long, or numerical damping takes energy that "
-              "matters; take a smaller step, a larger rho, or simulate_within")
+    reason = ("steps within the tolerance do not conserve energy; take a smaller tolerance, or a "
+              "larger rho" if adaptive else "the step is too long, or numerical damping "
+              "dissipates energy; take a smaller step, a larger rho, or simulate_within")
     return f"energy balance {balance:.2g} of the energy exchanged (limit {LIMIT:g}): {reason}"

@@ -42,7 +42,7 @@ def envelope(field: FieldStates, quantity: str, static: bool,
     if reference is not None:
         if quantity != "displacement":
             raise InputError(f"reference is {reference!r}, but {quantity} has none: leave it out, "
-                             "it is that of displacements")
+                             "only displacements have a reference")
         read = _displacement(reference)
     value, step = np.full(field.count, -np.inf), np.zeros(field.count, dtype=int)
     sign = -1.0 if quantity == "smallest_principal" else 1.0

@@ -24,7 +24,7 @@ class Field(FieldStates):
     along the axes of the body's floating frame, displacements along those of the undeformed body
     that they are measured from, see `displacement`. Stresses are (xx, yy, zz, yz, zx, xy), those of
     solids along the axes of the FE model, those of beams along the axes of the section, of its
-    most stressed fibre. They contain the static answer of the modes left out to the inertia of the
+    most stressed fibre. They contain the static response of the omitted modes to the inertia of the
     body; without it, ``static=False``, stresses near the boundary converge slowly with the modes.
 
     Parameters

@@ -28,8 +28,8 @@ class FieldStates:
         bodies = recording.model.bodies
         name = inputs.choice(name, "superelement", bodies) if bodies else _no_bodies(name)
         if bodies[name].body.recovery is None:
-            raise InputError(f"body {name!r} is made of reduced matrices alone, so it knows "
-                             "nothing of what is inside: reduce its FE model, by craig_bampton or "
+            raise InputError(f"body {name!r} has reduced matrices only, so fields inside it are "
+                             "unknown: reduce its FE model, by craig_bampton or "
                              "import_body, or give its ReducedBody recovery=, the shapes of the "
                              "FE nodes")
         if not len(recording.rows):
@@ -187,4 +187,4 @@ def _cross(spin: NDArray, vectors: NDArray) -> NDArray:
 
 def _no_bodies(name: str) -> str:
     raise InputError(f"the model has no superelement, so there is no field of {name!r}: rigid "
-                     "bodies have histories of their nodes alone")
+                     "bodies have results at their nodes only")

@@ -129,7 +129,7 @@ def _pictures(drawn: Scenery, title: str, frames: NDArray, colour: str | None
         painter.draw(eye, bodies.solids(k), marks.links(k))
         clock.set_text(f"t = {drawn.t[k]:.4g} {drawn.units.time if drawn.units else ''}".rstrip())
         if values:
-            values.set_text(f"now at most {short(bodies.most)}")
+            values.set_text(f"maximum now {short(bodies.most)}")
         marks.draw(k)
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[..., :3].copy()

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import RECORD
 from sebody.errors import InputError
-from sebody.kernels.layout import RECORD
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement
 from sebody.results.recording import Recording, record_counts
 
@@ -96,9 +96,9 @@ def multipliers(recording: Recording, name: str) -> NDArray:
     """Multipliers of the equations of a joint, (n, m)."""
     equations = joints(recording)[name].constraints
     if not equations:
-        raise InputError(f"joint {name!r} takes no equation, so it has no multipliers: what it "
-                         "joins is shared or fixed; the force on a fixed node is its reaction, "
-                         f"that of the joint {name}.force")
+        raise InputError(f"joint {name!r} has no equations and so no multipliers, since its nodes "
+                         "share coordinates or are fixed; the force on a fixed node is its "
+                         f"reaction, the force of the joint is {name}.force")
     firsts = [(recording.numbering.multipliers[id(c)], c.multipliers) for c in equations]
     q = recording.unique_rows[:, RECORD.slices(record_counts(recording.numbering))["q"]]
     return q[:, [first + k for first, count in firsts for k in range(count)]]

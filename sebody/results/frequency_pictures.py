@@ -46,7 +46,7 @@ def save_response(path: str | Path, load: str, omega: NDArray, answers: Mapping[
             axis.margins(x=0.0)
             if not axis.lines:
                 axis.set_yticks([])
-                axis.text(0.5, 0.5, "does not respond", transform=axis.transAxes, ha="center",
+                axis.text(0.5, 0.5, "no response", transform=axis.transAxes, ha="center",
                           color=PALE)
             _add_legend(axis)
         axes[-1].set(title="phase", ylabel="phase [degrees]", ylim=(-190, 190),
@@ -68,11 +68,11 @@ def save_campbell(path: str | Path, speeds: NDArray, omega: NDArray, growth: NDA
             lower.plot(speeds, growth[:, k], **line)
         top = 1.05 * omega.max(initial=0.0)
         _draw_orders(upper, speeds, top)
-        upper.set(title="angular frequencies in rotating axes", ylim=(0.0, top or 1.0),
+        upper.set(title="natural frequencies in the rotating frame", ylim=(0.0, top or 1.0),
                   ylabel="angular frequency [rad/time]")
         _add_legend(upper)
         least = STILL * (top or 1.0)        # rounding of undamped modes is not drawn
-        lower.set(title="real parts of the eigenvalues: above zero the motion grows",
+        lower.set(title="real parts of the eigenvalues: unstable above zero",
                   ylabel="real part [1/time]", xlabel="speed of rotation [rad/time]",
                   ylim=(1.1 * min(growth.min(), -least), 1.1 * max(growth.max(), least)))
         lower.axhline(0.0, color=PALE, linewidth=0.8, zorder=1)

@@ -97,7 +97,7 @@ def hot_spots(field: Field, count: int, apart: float, units: Units | None) -> Ho
     Raises
     ------
     InputError
-        A count or distance that there is not, or a body without stresses.
+        An invalid count or distance, or a body without stresses.
     """
     count = inputs.integer(count, "number of hot spots", least=1)
     apart = inputs.number(apart, "apart", least=0)

@@ -1,8 +1,8 @@
 """Multipliers of redundant constraints: of all that exert the same forces, those of least norm.
 
-The norm is the root of the sum of the squares of all forces and of all moments over a length, that
-of the model's extent, which makes it the same in all units and in all orientations. Every equation
-of a joint gives a force or a moment of the size of its multiplier.
+The norm is the root of the sum of the squares of all forces and of all moments over a
+characteristic length of the model, which makes it the same in all units and all orientations.
+Every equation of a joint gives a force or a moment of the size of its multiplier.
 """
 
 import numpy as np

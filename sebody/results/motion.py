@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.motions import Motions, motions
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import MOTION, OK, RECORD, RESIDUAL, Counts
 from sebody.errors import InputError
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
-from sebody.kernels.layout import MOTION, OK, RECORD, RESIDUAL, Counts
-from sebody.kernels.pipeline import compiled
 from sebody.model.parts import Superelement
 from sebody.results.recording import Recording, record_counts
 

@@ -1,6 +1,6 @@
 """Bodies, nodes, links, signs and loads as the page of an animation reads them.
 
-Lengths are of the model's extent, places from its middle.
+Lengths are relative to the characteristic length, places from its middle.
 """
 
 from typing import NamedTuple
@@ -19,7 +19,7 @@ SEEN = 1e-5             # of the model's extent: smaller steps of a place are no
 
 
 class Measure(NamedTuple):
-    """The extent of a model, and where its middle is."""
+    """The characteristic length of a model, and its middle."""
 
     size: float
     middle: NDArray

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import ENERGIES
 from sebody.errors import InputError
-from sebody.kernels.layout import ENERGIES
 from sebody.model.parts import Triplet
 from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
@@ -96,9 +96,9 @@ def _of_field(recording: Recording, body: str, quantity: str) -> InputError:
                           "shapes of its FE model; reduce it from the FE model, or import it with "
                           "its mesh")
     node = f"{body}.node{recovery.number(0)}"
-    return InputError(f"'{body}.{quantity}' is unknown: the FE nodes of a body have it, as in "
-                      f"'{node}.{quantity}'; in a state all of them, result.field({body!r})."
-                      f"{quantity}(t=...)"
+    return InputError(f"'{body}.{quantity}' is unknown: it is a quantity of FE nodes, such as "
+                      f"'{node}.{quantity}'; for all FE nodes at one time use "
+                      f"result.field({body!r}).{quantity}(t=...)"
                       + ("; the largest over the run result.field("
                          f"{body!r}).envelope({quantity!r})" if quantity in ENVELOPES else ""))
 

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, kept_frames
+from sebody.contract.layout import ENERGIES, RECORD
 from sebody.engine.state import State
 from sebody.engine.system import System
-from sebody.kernels.layout import ENERGIES, RECORD
 from sebody.model.mechanism import Mechanism
 from sebody.model.tables import summary
 from sebody.results.balance import Balance

@@ -3,7 +3,7 @@
 A body that is held at a node is compared with the undeformed body that has the position and the
 rotation of this node, so the support does not move. Bodies that are welded together, such as the
 parts of a beam, are measured from one node, so displacements are continuous from part to part. A
-body that nothing holds is compared with the undeformed body on its floating frame.
+body without support or joint is compared with the undeformed body on its floating frame.
 """
 
 from collections.abc import Hashable, Iterator

@@ -98,8 +98,8 @@ def _warnings(result: Result) -> str:
     """What the run has warned of; each names its remedy."""
     said = [*([result.failure] if result.failure else []), *result.warnings,
             *result.cautions]
-    said += [f"bodies {', '.join(bodies)} run on a general kernel: one of the layout's own is "
-             f"faster, made by {command}" for command, bodies in result.advice.items()]
+    said += [f"bodies {', '.join(bodies)} use a general kernel: for a faster, specific kernel run "
+             f"{command}" for command, bodies in result.advice.items()]
     if not said:
         return "<p>None.</p>"
     return "<ul>" + "".join(f"<li>{escape(one)}</li>" for one in said) + "</ul>"
@@ -111,7 +111,7 @@ def _drift(result: Result) -> Panel:
     balance = total - result["energy.external_work"]
     labels = (with_unit(label, name, result.units) for label, name in (("time", "t"),
                                                                        ("energy", "energy")))
-    return Panel("energy drift: all energies less the work of loads", *labels, [
+    return Panel("energy drift: total energy - work of loads", *labels, [
         Curve("", result.t, balance - balance[0])])
 
 
@@ -137,7 +137,7 @@ def _unknowns(result: Result) -> str:
     rows = [(part, count, _why(part, owners)) for part, count in counts.items()]
     fixed = numbering.total - numbering.free
     text = (f"<p>{numbering.free} unknowns; {fixed} coordinates are fixed, prescribed or at the "
-            "end of rigid links, so they are none.</p>" if fixed else
+            "end of rigid links, so they are not unknowns.</p>" if fixed else
             f"<p>{numbering.free} unknowns.</p>")
     return text + table(("of", "unknowns", "because"), rows)
 
@@ -154,8 +154,8 @@ def _why(part: str, owners: dict[str, list[str]]) -> str:
     if part.startswith("modes of "):
         return "amplitudes of the internal modes that the reduction has kept"
     if part.startswith("multipliers of "):
-        return "an equation each, as the nodes it joins cannot share these coordinates"
+        return "one per equation of the joint, whose nodes cannot share these coordinates"
     nodes = owners.get(part, [])
-    shared = f"; {', '.join(nodes)} share it, which takes no equation" * (len(nodes) > 1)
+    shared = f"; shared by {', '.join(nodes)} without an equation" * (len(nodes) > 1)
     return f"the {part.rpartition('.')[2]} is neither fixed nor prescribed{shared}"
 

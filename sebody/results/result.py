@@ -83,12 +83,12 @@ class Result(Recording):
 
     @property
     def steps(self) -> int:
-        """Accepted steps, cut ones included."""
+        """Accepted steps, those of reduced size included."""
         return int(self.counters[STEPS])
 
     @property
     def cuts(self) -> int:
-        """Steps that were cut because Newton's iteration did not converge."""
+        """Rejected steps: Newton's iteration did not converge, and the step was made smaller."""
         return int(self.counters[CUTS])
 
     @property
@@ -264,7 +264,7 @@ class Result(Recording):
         """A few lines: steps, iterations, time, balances, works, changes of the initial state."""
         lines = [
             f"unknowns             {self.numbering.free}",
-            f"steps                {self.steps} ({self.cuts} cut), to t = {self.t[-1]:.6g}",
+            f"steps                {self.steps} ({self.cuts} rejected), to t = {self.t[-1]:.6g}",
             f"iterations per step  {self.iterations_per_step:.2f} "
             f"({self.matrices} iteration matrices)",
             f"time per step        {self.microseconds_per_step:.2f} us in the compiled loop",
@@ -273,14 +273,14 @@ class Result(Recording):
             f"{_vector(self['angular_momentum'][-1])}",
         ]
         if self.numbering.multipliers:
-            lines.append(f"constraints          off by at most "
-                         f"{self['constraints.position'].max():.1e}, their rates by "
+            lines.append(f"constraints          largest residual "
+                         f"{self['constraints.position'].max():.1e}, of their rates "
                          f"{self['constraints.velocity'].max():.1e}")
         lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
                   for k, name in enumerate(self.numbering.port_names)]
         if self.error is not None:
             lines.insert(2, f"error                {self.error:.2f} of the tolerance, estimated; "
-                            f"{1e3 * self.all_seconds:.3g} ms with the coarser runs before")
+                            f"{1e3 * self.all_seconds:.3g} ms including the coarser runs")
         if self.start and self.start.changed:
             lines.append("solved for           initial velocity of "
                          + ", ".join(f"{name} (by {change:.3g})"
@@ -289,8 +289,8 @@ class Result(Recording):
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
                          + f"; multipliers of {', '.join(self.start.shared)} are not unique, given "
                          f"are those of least norm (moments divided by {arm(self.model):.4g})")
-        lines += [f"general kernel       of {', '.join(bodies)}: one of the layout's own is "
-                  f"faster, made by {command}"
+        lines += [f"general kernel       used for {', '.join(bodies)}: for a faster, specific "
+                  f"kernel run {command}"
                   for command, bodies in self.advice.items()]
         lines += [f"caution              {text}" for text in self.cautions]
         lines += [f"WARNING              {message}" for message in self.warnings]

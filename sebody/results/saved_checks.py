@@ -14,9 +14,9 @@ import numpy as np
 
 from sebody import inputs
 from sebody.assembly.numbering import Numbering
+from sebody.compiler.user_functions import UserFunction
+from sebody.contract.layout import ENERGIES, RECORD
 from sebody.errors import InputError
-from sebody.kernels.layout import ENERGIES, RECORD
-from sebody.kernels.user_functions import UserFunction
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 from sebody.reduction import ReducedBody
@@ -167,7 +167,7 @@ def check_numbering(model: Any, numbering: Any) -> None:
     ends += [numbering.multipliers.get(id(c), total + 1) + c.multipliers
              for c in model.constraints]
     if max(ends, default=0) > total or min(numbering.triplets.values(), default=0) < 0:
-        raise ValueError("a coordinate is none of the model's")
+        raise ValueError("a coordinate does not belong to the model")
     if len(numbering.histories) != len(numbering.port_names):
         raise ValueError("a power port has no name")
     if sorted(numbering.rotations.values()) != list(range(len(numbering.rotations))):

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering
+from sebody.contract.layout import RECORD_T
 from sebody.engine.state import CONTROLS
 from sebody.errors import InputError
 from sebody.files.arrays import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.files.members import Member, Table
 from sebody.files.reading import existing
-from sebody.kernels.layout import RECORD_T
 from sebody.model.mechanism import Mechanism
 from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces

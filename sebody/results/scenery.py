@@ -81,7 +81,7 @@ def scenery(result: Result, most: int, stressed: bool = False, reference: str | 
     """
     if len(result.rows) < 2:
         raise InputError(f"the result holds {len(result.rows)} recorded state"
-                         f"{'s' * (len(result.rows) != 1)}, which make no animation: run the "
+                         f"{'s' * (len(result.rows) != 1)}, too few for an animation: run the "
                          "model to a later time")
     states = thinned(len(result.rows), most)
     model = result.model
@@ -141,7 +141,8 @@ def _bodies(result: Result, states: NDArray, size: float, reference: str | None
     if reference is not None and not measured:
         known = {node.name for body in model.bodies.values() for node in welded.candidates(body)}
         raise InputError(f"displacements cannot be measured from {reference!r}: give a node of a "
-                         f"flexible body, {', '.join(sorted(known)) or 'which are none'}, or "
+                         f"flexible body, "
+                         f"{', '.join(sorted(known)) or 'of which there are none'}, or "
                          "'frame', the floating frame of each body")
     found = (flexible(result, body, states, size, welded,
                       reference if body.name in measured else None)

@@ -5,7 +5,7 @@ The displacements whose stresses are taken are those of the reduced coordinates,
 * Coordinates that follow in second order shorten a bent body without straining it, so they are
   left out. With inertia option C the resultants ``s_e = lam_e E_e^T y + y^T Ghat_e y / 2`` carry
   what bending adds to them: y moves on by ``S^+ E_e y^T Ghat_e y / 2``.
-* The static answer of the modes left out to the body's inertia and weight, and to the loads on the
+* The static response of the omitted modes to the body's inertia and weight, and to the loads on the
   body itself, is added, see `sebody.reduction.static_correction`.
 """
 
@@ -37,7 +37,7 @@ class Stresses:
     gravity : (D,)
         In global axes.
     loads : (n, loads of the body), optional
-        Their amplitudes in all recorded states, if the static answer of the modes left out is
+        Their amplitudes in all recorded states, if the static response of the omitted modes is
         added.
 
     Raises
@@ -51,7 +51,7 @@ class Stresses:
         self._body, self._motion, self._gravity = body, motion, gravity
         self._recovery: Recovery = body.body.recovery
         if not self._recovery.stress:
-            raise InputError(f"body {body.name!r} knows no stresses: "
+            raise InputError(f"body {body.name!r} has no known stresses: "
                              f"{body.body.lacks['stresses']}")
         own = self._recovery.stress
         self._solids = [one for one in own if isinstance(one, SolidStress)]
@@ -131,7 +131,7 @@ class Stresses:
                 return self._amplitudes[0] @ one.modes[own[-1]].T
         fibres = self.fibres_of_node(node)
         if not fibres.shape[1]:
-            raise InputError(f"body {self._body.name!r} knows no stress at node "
+            raise InputError(f"the stress of body {self._body.name!r} is unknown at node "
                              f"{self._recovery.called(node)}: no element with a known stress has "
                              "this node")
         worst = von_mises(fibres).argmax(axis=1)

@@ -8,8 +8,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from sebody.contract.names import PREFIXES
 from sebody.kernels.loader import user_directory
-from sebody.kernels.names import PREFIXES
 from sebody.spelling import unknown
 
 

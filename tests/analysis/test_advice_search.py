@@ -192,7 +192,7 @@ def test_a_body_with_a_node_that_keeps_its_rotation_alone_is_looked_at():
 
 
 def test_a_scene_that_fails_says_when_and_what_to_do():
-    with pytest.raises(SimulationError, match="stopped at t = 0.0.*results up to there are"):
+    with pytest.raises(SimulationError, match="stopped at t = 0.0.*results up to this time are"):
         advise(arm(torque=1e9), H, T_END, "tip.position", 1e-2)
 
 

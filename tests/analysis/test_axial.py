@@ -110,7 +110,8 @@ def test_straight_rods_lose_their_stiffness_at_the_limit(options):
         assert stable.omega.min() > 0.0
         with pytest.raises(SimulationError, match=r"the equilibrium at 1 of the load is unstable: "
                            r"body 'rod' folds up in its frame under tension .* \(limit .*\), as "
-                           "its stiffness does not grow with tension: divide it in two, or take "
+                           "its stiffness does not grow with tension: divide the body in two, or "
+                           "take "
                            "inertia='c'"):
             equilibrium(pulled(1.02 * limit, **options)[0], 1)
 
@@ -147,7 +148,7 @@ def test_clamped_rods_stretch_rightly_and_warn(backwards):
     assert message.startswith(
         "tension 5 in body 'rod' counts 1.7 times as much as its own bending stiffness (limit a "
         "third), which does not depend on it: bending is off by a tenth and more, and under 3 the "
-        "body folds up in its frame unless its ends are clamped; divide it in two, or take "
+        "body folds up in its frame unless its ends are clamped; divide the body in two, or take "
         "inertia='c'")
 
 
@@ -161,7 +162,7 @@ def test_compression_is_warned_of(inertia):
     result, (message,) = said(lambda: equilibrium(model))
     assert message.startswith("compression 2.47 in body 'rod' counts 0.82 times as much as its own "
                               "bending stiffness (limit a third)")
-    assert "and it does not buckle where it should; divide it in two" in message
+    assert "and it does not buckle where it should; divide the body in two" in message
     angle = Rotation.from_matrix(result["node 0.rotation"][-1]).magnitude()
     k = np.sqrt(EULER / 4.0)
     beam = moment * np.tan(k / 2.0) / k       # M tan(k L / 2) / k E I of a beam

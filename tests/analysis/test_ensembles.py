@@ -179,7 +179,7 @@ def test_failed_runs_keep_their_reason_and_their_data(hinged):
     found = hinged.run({"base.angular_velocity": spins, "motor.amplitude": [1.0, 1.0, 1e9]}, T_END,
                        {"tip": "tip.position", "end": final("tip.position")})
     assert list(found.done) == [True, False, False]
-    assert "does not fit the joints" in found.failures[1] and np.isnan(found["tip"][1]).all()
+    assert "contradicts joints, drives" in found.failures[1] and np.isnan(found["tip"][1]).all()
     assert found.failures[2].startswith("stopped at t = ")
     assert 0 <= found.reached[2] < T_END
     steps = round(found.reached[2] / H)

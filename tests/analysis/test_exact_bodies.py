@@ -85,7 +85,7 @@ def test_a_plate_on_four_interfaces(frame, error):
 
 
 def test_lateral_buckling():
-    """A thin cantilever under a dead tip load, 4.0126; eight modes, four of them in torsion."""
+    """A thin cantilever under a fixed-direction tip load, 4.0126; eight modes, four in torsion."""
     thin = replace(SLENDER, axial=1e6, bending_y=1e3, inertia_x=2e-6, inertia_y=1e-6,
                    inertia_z=1e-6)
     body = with_torsion(thin, 24, 4, 4)

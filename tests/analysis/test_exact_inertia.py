@@ -109,7 +109,7 @@ def test_shaft_at_half_its_frequency():
     spin = (0.5 * first, 0.0, 0.0)
     omega = modes(equilibrium(model, 1, spin=spin), spin).omega / first
     for expected in (0.5, 1.5):
-        assert np.min(np.abs(omega - expected)) < 2e-4     # the modes left out: 1e-4
+        assert np.min(np.abs(omega - expected)) < 2e-4     # the omitted modes: 1e-4
 
 
 def test_stretch_of_an_arm_that_turns():

@@ -10,6 +10,7 @@ import sys
 import pytest
 
 from sebody.analysis import first_run
+from sebody.compiler.first_run import longest_first
 from sebody.kernels.loader import find
 
 SPY = """
@@ -43,14 +44,14 @@ print(len(result.t), sorted(set(compiled)))
 """
 # a kernel that takes half a second, and processes for it all the same
 KERNEL = SPY + """
-from sebody.analysis import first_run
-from sebody.analysis import workers
+from sebody.analysis.first_run import compile_missing
+from sebody.compiler import first_run, workers
 from sebody.kernels.loader import load
 first_run.WORTH_IT = 0.0
 if "broken" in sys.argv:
-    workers.__name__ = "sebody.analysis.no_such_module"
+    workers.__name__ = "sebody.compiler.no_such_module"
 for _ in range(2):
-    first_run.compile_missing(["element_planar_force"])
+    compile_missing(["element_planar_force"])
 print(load("element_planar_force").kernel.address > 0, "element_planar_force" in compiled)
 """
 LINE = "compiling 1 kernel in "
@@ -111,13 +112,10 @@ def test_small_tasks_are_not_worth_processes(run):
     assert out == "True True" and not said
 
 
-def test_what_others_wait_for_begins_first(monkeypatch):
+def test_what_others_wait_for_begins_first():
     """A long kernel goes beside the parts of the loop; the loop begins before what is short."""
-    given = []
-    monkeypatch.setattr(first_run.workers, "call_all", lambda tasks, report: given.extend(tasks))
     kernels = {name: find(name) for name in ("element_force", "superelement_f2_converged_mean_c")}
-    first_run._compile(kernels, list(first_run.PARTS), 30.0, None)
-    names = [task.name for task in given]
+    names = [task.name for task in longest_first(first_run._jobs(kernels, list(first_run.PARTS)))]
     assert sorted(names) == sorted([*kernels, *first_run.PARTS])
     for name, part in first_run.PARTS.items():
         assert all(names.index(before) < names.index(name) for before in part.after)

@@ -40,7 +40,7 @@ def arm(count: int = 6, held: bool = True) -> Model:
 
 
 def recorded_of(model: Model, h: float, t_end: float, quantities=(), frequencies=()) -> Recorded:
-    """A run of a model, as the indicators see that of the richest one."""
+    """A run of a model, as the indicators see that of the reference model."""
     result = simulate(model, h, t_end)
     sizes = [float(np.linalg.norm(result[name] - result[name][0], axis=1).max())
              for name in quantities]

@@ -49,7 +49,8 @@ def test_ctrl_c_in_python_keeps_what_there_is(stepwise, tmp_path):
     def progress(fraction):
         if fraction > 0.3:
             raise KeyboardInterrupt
-    with pytest.raises(Interrupted, match="interrupted at t = 0.16: results up to there are kept"
+    with pytest.raises(Interrupted, match="interrupted at t = 0.16: results up to this time are "
+                                          "kept"
                        ) as caught:
         simulate(hinged_beam.build(modes=2, elements=4).model, 0.01, 0.5, progress=progress)
     result = caught.value.result
@@ -86,7 +87,8 @@ def test_within_a_tolerance_the_last_whole_run_is_kept(stepwise):
         if seen and fraction < seen[-1] == 1.0:     # the second run
             raise KeyboardInterrupt
         seen.append(fraction)
-    with pytest.raises(Interrupted, match="interrupted at t = .*kept is the run before"
+    with pytest.raises(Interrupted, match="interrupted at t = .*the result is that of the "
+                                          "previous run"
                        ) as caught:
         simulate_within(scene.model, 0.01, 0.2, Tolerance(1e-3), progress=progress)
     assert caught.value.result.t[-1] == pytest.approx(0.2)
@@ -112,8 +114,8 @@ def test_the_loop_returns_several_times_a_second(monkeypatch, of_a_step):
 
 
 def test_an_end_off_the_grid_is_said():
-    with pytest.warns(LimitWarning, match="t = 0.126 is no multiple of the step 0.01: the run ends "
-                                          "at t = 0.13"):
+    with pytest.warns(LimitWarning, match="t = 0.126 is not a multiple of the step 0.01: the run "
+                                          "ends at t = 0.13"):
         result = small().run_to(0.126).result()
     assert result.t[-1] == pytest.approx(0.13, rel=1e-14)
     assert any("no multiple of the step" in line for line in result.summary().splitlines())

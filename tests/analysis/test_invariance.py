@@ -5,9 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sebody import Model, Simulation, generalized_alpha, simulate
+from sebody.contract.layout import ENERGY, STRAIN
 from sebody.engine import evaluate
 from sebody.fem import Section, frame, straight_beam
-from sebody.kernels.layout import ENERGY, STRAIN
 from sebody.reduction import craig_bampton
 
 EXACT = generalized_alpha(tolerance=1e-13)
@@ -27,7 +27,7 @@ def section(length=1.0, mass=1.0, time=1.0):
 
 def scene(kind="converged_mean", place=IDENTITY, shift=ZERO, axes=IDENTITY, order=(0, 1),
           units=(1.0, 1.0, 1.0), inertia=None):
-    """A free body thrown and twisted by dead loads; `place` turns the whole scene.
+    """A free body thrown and twisted by fixed-direction loads; `place` turns the whole scene.
 
     `axes` turns (and the shift moves) the axes its matrices are given in, `order` permutes the
     nodes. The frame 'positions' gets a body with three translation-only nodes and two full ones.

@@ -154,10 +154,11 @@ def test_equilibria_and_small_motion_are_warned_of_the_limit(frame):
     for messages in turning((0, 0, 1), 1.01 * limit, frame=frame, torsion=0.01):
         assert len(messages) == 1 and messages[0].startswith(
             f"spin {1.01 * limit:.3g} rad/s is above the limit {limit:.3g} of body 'blade'")
-        assert messages[0].endswith("divide it in two, or take inertia='c'")
+        assert messages[0].endswith("divide the body in two, or take inertia='c'")
     plain = {"frame": frame, "inertia": "c", "stiffened": False}
     limit = limit_of(blade(modes=4, **plain), (0, 0, 1))
-    assert all(messages[0].endswith("divide it in two, or give its FE model a geometric stiffness")
+    assert all(messages[0].endswith("divide the body in two, or give its FE model a geometric "
+                                    "stiffness")
                for messages in turning((0, 0, 1), 1.01 * limit, **plain))
     assert turning((1, 0, 0), 2 * limit, **plain) == ([], [])
     assert turning((0, 0, 1), 6.0, frame=frame, inertia="c", torsion=1e-3) == ([], [])
@@ -192,7 +193,7 @@ def test_fast_spins_without_stiffening_are_warned_of(option):
         assert len(messages) == 1
         assert "'blade' spins at 0.914 rad/s, more than a quarter of 3.52, the body's first f" in (
             messages[0])
-        assert "frequencies are off by a per cent and more; divide it in two, or" in messages[0]
+        assert "frequencies are off by a per cent and more; divide the body in two" in messages[0]
 
 
 def test_a_blade_with_soft_torsion_is_warned_of_before_it_diverges():

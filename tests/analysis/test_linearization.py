@@ -229,8 +229,8 @@ def test_damped_oscillator():
 
 def test_matrices_are_derivatives_of_the_forces():
     """About a moving, deformed state: stiffness and damping of its instant by differences."""
+    from sebody.contract.layout import RESIDUAL
     from sebody.engine.evaluate import assemble, to_body_axes
-    from sebody.kernels.layout import RESIDUAL
     run = Simulation(hinged_beam.build(elements=4).model, 0.01).run_to(3.0)
     found = linearize(run)
     state, n = run.state, run.numbering.free

@@ -14,9 +14,9 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Model, Simulation, generalized_alpha, simulate
 from sebody.analysis import equilibrium, linearize, modes, resume, save_state, vibrations
+from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import assemble, to_body_axes
 from sebody.fem import StiffnessSection, frame, planar_beam, straight_beam
-from sebody.kernels.layout import RESIDUAL
 from sebody.reduction import craig_bampton
 
 EXACT = generalized_alpha(1.0, 1e-11)       # undamped

@@ -220,7 +220,8 @@ def test_a_body_of_reduced_matrices_says_once_how_fast_it_may_spin():
     found = equilibrium(blade(turn=TURN, inertia=None), 2, spin=spin)
     assert found.model.bodies["arm"].inertia == "d"
     said = (r"body 'arm' spins at 1\.2 rad/s, more than a quarter of 3\.52, .*: its stiffness does "
-            "not grow with the spin, .*; divide it in two, or reduce it from an FE model with its "
+            "not grow with the spin, .*; divide the body in two, or reduce it from an FE model "
+            "with its "
             "mass")
     with pytest.warns(LimitWarning, match=said) as caught:
         modes(found, spin)

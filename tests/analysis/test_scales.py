@@ -58,7 +58,7 @@ def test_variable_steps_at_the_origin_and_far_from_it(place, length):
 def test_nothing_has_a_length(place):
     """A point without anything: one unit of length, which is said; an absolute error is better."""
     model = pushed(place, inertia=False)
-    with pytest.warns(LimitWarning, match="nothing in the model has a length: errors of positions "
+    with pytest.warns(LimitWarning, match="the model has no characteristic length: errors of "
                       r"are relative to one unit of length; .* Tolerance\(1e-3, position=1e-6\)"):
         result = simulate(model, 0.5, 10.0, tolerance=Tolerance(1e-5))
     t = result.t

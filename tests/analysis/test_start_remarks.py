@@ -1,4 +1,4 @@
-"""What is said of a start: velocities given and demanded, bodies that nothing ties."""
+"""What is said of a start: velocities given and demanded, bodies without support."""
 
 import io
 import warnings
@@ -54,15 +54,15 @@ def arm():
 def test_a_velocity_that_contradicts_a_drive_names_both():
     model = arm()
     model.initial_velocity("a", angular=5.0)
-    with pytest.raises(InputError, match=r"the given initial velocity of a.rotation, \(5\), does "
-                                         r"not fit the joints, drives .* which demand \(2\): "):
+    with pytest.raises(InputError, match=r"the given initial velocity of a.rotation, \(5\), "
+                                         r"contradicts joints, drives .* which demand \(2\): "):
         Simulation(model, 0.01)
     model = arm()
     model.rigid_velocity((0, 0), 5.0)
     messages, run = said(model)
     assert len(messages) == 1
-    assert messages[0].startswith("joints and drives demand other initial velocities than "
-                                  "rigid_velocity gave: a.rotation 2 in place of 5; give ")
+    assert messages[0].startswith("rigid_velocity contradicts the initial velocities that joints "
+                                  "and drives demand: a.rotation 2 in place of 5; give ")
     assert run.result()["a.angular_velocity"][0] == pytest.approx(2.0)
     model = arm()
     model.rigid_velocity((0, 0), 2.0)
@@ -235,8 +235,8 @@ def test_bodies_that_nothing_ties_are_said():
     model = hung()
     assert untied(model) == [["arm"], ["weight"]]
     message, = said(model)[0]
-    assert message == ("nothing ties bodies 'arm', 'weight' to the ground, so gravity makes them "
-                       "fall: join them to another body or fix a node, unless they are meant to "
+    assert message == ("bodies 'arm', 'weight' are not connected to the ground and fall under "
+                       "gravity: join them to another body or fix a node, unless they are meant to "
                        "fall")
     model.torsion_spring("arm end", 1.0, to="weight end")       # which does not hold its place
     assert untied(model) == [["arm"], ["weight"]]
@@ -259,7 +259,8 @@ def test_whatever_ties_a_body_counts(tie):
     tie(model)
     assert untied(model) == [["weight"]]
     message, = said(model)[0]
-    assert message.startswith("nothing ties body 'weight' to the ground, so gravity makes it fall")
+    assert message.startswith("body 'weight' is not connected to the ground and falls under "
+                              "gravity")
 
 
 def test_nothing_is_said_of_what_is_thrown_or_flies_without_gravity():

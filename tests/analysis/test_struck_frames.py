@@ -5,12 +5,25 @@ import warnings
 import numpy as np
 import pytest
 from scipy.linalg import eigh
-from struck_frames import Struck, at_random, cross, energies, ring, t_frame, u_frame, vibration
+from struck_frames import (
+    SECTION,
+    TURN,
+    Struck,
+    at_random,
+    cross,
+    energies,
+    ring,
+    t_frame,
+    u_frame,
+    vibration,
+)
 
 from sebody import LimitWarning, Model, SimulationError, simulate
 from sebody.analysis.quality import growth
 from sebody.fem import StiffnessSection, frame, planar_beam, straight_beam
+from sebody.model.frames import default_frame
 from sebody.reduction import craig_bampton
+from sebody.results.motion import body_motion
 
 # Energy of a step is off by the square of its length times the frequencies it resolves, back and
 # forth. What it may drift by is the loss of nonlinear beams at the same step and as much again.
@@ -53,12 +66,32 @@ def test_bodies_with_positions_off_a_line_have_their_frame_on_them():
     def chosen(struck, **options):
         return struck.model(**options).bodies["frame"].frame
     assert chosen(t_frame(0)) == "positions"
-    assert chosen(u_frame(0)) == "converged_mean"       # two positions
+    assert chosen(u_frame(0)) == "mean_axes"            # two positions
     assert chosen(t_frame(0), inertia="d") == chosen(t_frame(0), inertia="b") == "converged_mean"
     assert chosen(t_frame(0), frame="node") == "node"
     straight = Struck(np.array([[0, 0, 0], [0.5, 0, 0], [1.0, 0, 0]]), [(0, 1), (1, 2)], [0, 1, 2],
                       0)
     assert chosen(straight) == "converged_mean"
+    assert chosen(straight._replace(kept=[0, 2])) == chosen(straight._replace(kept=[1])) == (
+        "converged_mean")
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_bodies_of_two_nodes_that_are_not_straight_have_mean_axes(planar):
+    """Bent to one side, in an S or not at all; wherever they are and in any units."""
+    def chosen(heights, scale=1.0):
+        x = np.linspace(0, 1, len(heights))
+        points = scale * np.column_stack([x, heights, np.zeros(len(x))]) + [3, -2, 0]
+        members = [(k, k + 1) for k in range(len(x) - 1)]
+        model = frame(points[:, :2] if planar else points @ TURN.T, members, SECTION, 2)
+        body = craig_bampton(model, [(0, "full"), (len(x) - 1, "full")], 2)
+        return default_frame(body, None)
+    for scale in (1.0, 20.0):
+        assert chosen([0, 0, 0, 0, 0], scale) == "converged_mean"
+        assert chosen([0, 0.03, 0.04, 0.03, 0], scale) == "mean_axes"
+        # what is known of the mass in a plane is its centre alone
+        assert chosen([0, 0.04, 0, -0.04, 0], scale) == (
+            "converged_mean" if planar else "mean_axes")
 
 
 def test_slaved_rates_count_by_their_rigid_part():
@@ -99,10 +132,24 @@ def told(run):
     return [str(one.message) for one in found]
 
 
-def test_frames_that_cannot_follow_positions_warn():
-    said = told(lambda: simulate(u_frame().model(), 1e-3, 0.05))
+def test_frames_on_rotations_of_bodies_that_are_not_straight_warn():
+    said = told(lambda: simulate(u_frame().model(frame="converged_mean"), 1e-3, 0.05))
     assert any("whose frame follows the rotations of its nodes" in one
-               and "keep the position of a node off the line" in one for one in said)
+               and "take the frame 'mean_axes'" in one for one in said)
+    assert not [one for one in told(lambda: simulate(u_frame().model(), 1e-3, 0.05))
+                if "follows" in one or "on a line" in one]
+
+
+def test_mean_axes_have_no_moment_of_momentum():
+    """Of a run, by the reduced mass alone; of other frames one of the size of the terms."""
+    struck = u_frame()
+    body, model = struck.body(), struck.model()
+    result = simulate(model, 5e-4, 0.03)
+    rigid = body.rigid_modes_about(body.centre_of_mass)[:, 3:]
+    y = body_motion(result, model.bodies["frame"], slice(-1, None)).y[0]
+    assert np.abs(y).max() > 0.01
+    about = rigid.T @ body.mass
+    assert np.abs(about @ y).max() < 1e-12 * np.abs(about * y).sum()
 
 
 def test_a_corner_that_keeps_its_position_is_the_remedy():

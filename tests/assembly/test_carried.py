@@ -8,8 +8,8 @@ from sebody import Model
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.carried import carried_constants
+from sebody.contract.layout import ENERGY, KINETIC, STRAIN
 from sebody.fem import StiffnessSection, frame, planar_beam, straight_beam
-from sebody.kernels.layout import ENERGY, KINETIC, STRAIN
 from sebody.kernels.loader import load
 from sebody.reduction import craig_bampton
 from sebody.studies.check import states

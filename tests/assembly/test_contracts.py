@@ -9,8 +9,8 @@ from sebody import InputError, Model, simulate
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.build import build
+from sebody.contract.layout import INDEX, Row
 from sebody.fem import Section, straight_beam
-from sebody.kernels.layout import INDEX, Row
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.histories import history
 from sebody.reduction import ReducedBody, craig_bampton
@@ -92,8 +92,8 @@ def a_body_that_works(m):
                         "kernels with python -m sebody.derive, or reinstall sebody"),
     (more_multipliers, "it has 9 unknowns and the kernel 8; it has 3 multipliers and the kernel 2"),
     (fewer_triplets, "'hinge' .*element_parallel: .*it has 1 rotation matrices and the kernel 2"),
-    (no_history, "'drive' .*element_turn_drive: it has no history and the kernel reads one"),
-    (a_history, "'hinge' .*element_coincident: it has a history and the kernel reads none"),
+    (no_history, "'drive' .*element_turn_drive: it has no time function, but the kernel reads one"),
+    (a_history, "'hinge' .*element_coincident: it has a time function, but the kernel reads none"),
     (short_row, "'spring' .*element_torsion_spring: constants: the kernel reads k, k3, c, rest, n, "
                 "m; given are k, k3, c, rest, n:"),
     (misspelt, "the kernel reads k, k3, c, rest, n, m; given are k, k3, c, rest, n, axis"),

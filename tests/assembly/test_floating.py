@@ -11,8 +11,7 @@ from sebody import InputError, Model
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.floating import determining, floating_constants, frame_conditions
-from sebody.fem import Section
-from sebody.kernels.layout import (
+from sebody.contract.layout import (
     ENERGY,
     KINETIC,
     RESIDUAL,
@@ -20,6 +19,7 @@ from sebody.kernels.layout import (
     floating_counts,
     superelement_counts,
 )
+from sebody.fem import Section
 from sebody.kernels.loader import load
 from sebody.kernels.packed import unpack
 from sebody.reduction.invariants import InertiaInvariants

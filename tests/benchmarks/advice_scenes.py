@@ -31,7 +31,7 @@ class AdviceScene:
     shows : str
         What it is meant to show, in a sentence.
     build : callable
-        Makes the model as a user would; the richest one follows from it.
+        Makes the model as a user would; the reference model follows from it.
     h, t_end : float
         Usual step and end [s].
     quantities : tuple of str

@@ -2,7 +2,7 @@
 
     python tests/benchmarks/bench_advise.py [--json] [--keep FILE] [SCENE ...]
 
-Errors are measured anew, against the richest model with sixteen times as many steps, extrapolated;
+Errors are measured against the reference model with sixteen times as many steps, extrapolated;
 times are the processor's in the quickest of several runs that take turns. With `--keep` scenes that
 are done are read from the file, and an interrupted run goes on with the next one.
 """
@@ -115,7 +115,7 @@ def ratios(found: dict) -> dict:
             row["seconds"] / row["least seconds"] for row in cases),
         "the same over the least by luck": _spread(
             row["seconds"] / row["by luck"] for row in cases),
-        "search, in runs of the richest, median and most": _spread(
+        "search, in runs of the reference, median and most": _spread(
             row["search"] for row in cases),
         "the same with set-up of models": _spread(row["search with set-up"] for row in cases),
         "predicted over confirmed within 3": _share(predictions),
@@ -137,7 +137,8 @@ def _share(predictions: list[float]) -> float:
 def table(found: dict) -> str:
     """The page's tables."""
     lines = ["| scene | tolerance | chosen | error predicted / confirmed / measured | ms, of that "
-             "the least | least of all | search, runs of the richest: loop / all | richest, given "
+             "the least | least of all | search, runs of the reference: loop / all | reference, "
+             "given "
              "ms |", "|---|---|---|---|---|---|---|---|"]
     for name, one in found.items():
         star = "" if one["tuning"] else " *"

@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody import Model, Simulation
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import RESIDUAL, TANGENT
 from sebody.fem import Section
 from sebody.kernels.abi import Arguments, call_kernel
-from sebody.kernels.layout import RESIDUAL, TANGENT
-from sebody.kernels.pipeline import compiled
 
 SECTION = Section(area=9.0, inertia_y=6.75, inertia_z=6.75, torsion=11.387,
                   youngs_modulus=2.1e6, poisson_ratio=0.3, density=7.8e-3)

@@ -11,11 +11,11 @@ import time
 from statistics import median
 
 from sebody import simulate
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import RESIDUAL, TANGENT
+from sebody.contract.names import general_layout, superelement_name
 from sebody.kernels.abi import call_kernel
-from sebody.kernels.layout import RESIDUAL, TANGENT
 from sebody.kernels.loader import load
-from sebody.kernels.names import general_layout, superelement_name
-from sebody.kernels.pipeline import compiled
 from sebody.scenes import hinged_beam, planar_hinged_beam
 from sebody.studies.check.states import arguments, difference, evaluate
 from sebody.studies.check.superelements import superelement_case

@@ -17,7 +17,7 @@ import numpy as np
 from bench_inertia import arguments, nanoseconds
 
 from sebody import Model, Simulation
-from sebody.kernels.layout import RESIDUAL
+from sebody.contract.layout import RESIDUAL
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from many_interfaces import (

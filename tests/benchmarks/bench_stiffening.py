@@ -51,7 +51,7 @@ Values = dict[str, float]
 
 
 def frequencies(model: Model, spin: np.ndarray, exact: Values, unit: float = 1.0) -> Values:
-    """Nearest to exact ones; the rate of growth in place of all where motion grows."""
+    """Nearest to exact ones; the real part of the eigenvalue in place of all where motion grows."""
     found = modes(equilibrium(model, 2, spin=spin), spin)
     if found.growth.max() > GROWTH * min(exact.values()) / unit:
         return {name: np.nan for name in exact}
@@ -144,7 +144,7 @@ def column(load: str, low: float, high: float) -> Callable[[dict], Values]:
 
 
 def sideways(option: dict) -> Values:
-    """Dead tip load of a thin cantilever; four modes in bending, four in torsion."""
+    """Fixed-direction tip load of a thin cantilever; four modes in bending, four in torsion."""
     thin = replace(SLENDER, axial=1e6, bending_y=1e3, inertia_x=2e-6, inertia_y=1e-6,
                    inertia_z=1e-6)
     body = with_torsion(thin, 24, 4, 4)
@@ -212,7 +212,7 @@ def strip(option: dict) -> Values:
 
 
 def soft_blade(option: dict) -> Values:
-    """Largest rate of growth over the highest frequency, spins 1 to 6."""
+    """Largest real part of an eigenvalue over the highest frequency, spins 1 to 6."""
     found = {}
     for torsion in (0.1, 0.01, 1e-3):
         section = replace(SLENDER, torsion=torsion, inertia_x=2e-6, inertia_y=1e-6,

@@ -6,19 +6,19 @@ table. Four rules save runs; no indicator of advise is used.
 1. Choices run in the order of predicted time, that of the poorest model with the same step and of
    each part's form beside it, all measured. They end where the rest is predicted to take `SLACK`
    times as long as the cheapest that was found.
-2. A form that alone, beside the richest forms of the other parts and with the same step, errs by
+2. A form that alone, beside the reference forms of the other parts and with the same step, errs by
    `SPOILS` times the tolerance is left out, and so are forms whose errors alone do as the root of
    the sum of their squares: errors of several parts do not take one another away.
 3. In a model of several parts a form is left out if another form of its part takes less time and
    errs less alone.
-4. Forms that miss the tolerance with a step with which the richest model errs by less than `FINE`
+4. Forms that miss the tolerance with a step with which the reference model errs by less than `FINE`
    of it do not run with other steps: the step is not what they miss it by.
 
 As `advise` does, the search wants a choice to be within the tolerance with half its step, too;
 what is so by luck is counted apart.
 
 Planar models, shared and dropped triplets are to change nothing but the time: they are taken
-where they can be made, agree with the richest model and take less time.
+where they can be made, agree with the reference model and take less time.
 """
 
 import heapq
@@ -31,7 +31,7 @@ import numpy as np
 from sebody.analysis.advice.changes import Builder, Choice, Step
 from sebody.analysis.advice.forms import Form, Part, parts_of
 from sebody.analysis.advice.laboratory import FINER, SHORTER
-from sebody.analysis.advice.quantities import Quantities, Values, changes_of, difference
+from sebody.analysis.advice.quantities import Quantities, Values, difference, sizes_of
 from sebody.analysis.advice.search import LONGER
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
@@ -93,11 +93,11 @@ class BruteForce:
         self.fine = Step(self.h / max(FINER))
         self.exact = {"shared": False, "dropped": False, "planar": False}
         self.reference, self.own_error = self._reference()
-        self.sizes = changes_of(self.reference.histories)
+        self.sizes = sizes_of(self.reference)
 
     @property
     def richest(self) -> Choice:
-        """The richest model with the shortest step."""
+        """The reference model with the shortest step."""
         return Choice(tuple(part.richest for part in self.parts), self.fine)
 
     def _steps(self) -> list[Step]:
@@ -108,12 +108,13 @@ class BruteForce:
                 *(Step(self.h, local) for local in LOCAL)]
 
     def _reference(self) -> tuple[Values, float]:
-        """The richest model, extrapolated in the step, and the estimate of its error."""
+        """The reference model, extrapolated in the step, and the estimate of its error."""
         coarse, fine = (self._values(self.richest._replace(step=Step(self.h / k)))[0]
                         for k in (FINEST, 2 * FINEST))
         best = Values([b + (b - a) / 3.0 for a, b in zip(coarse.histories, fine.histories,
-                                                        strict=True)], fine.frequencies)
-        return best, difference(fine, best, changes_of(best.histories), (1, 1))
+                                                        strict=True)],
+                      fine.frequencies, fine.measures)
+        return best, difference(fine, best, sizes_of(best), (1, 1))
 
     def _values(self, choice: Choice) -> tuple[Values, float, float]:
         """Quantities of a run, the step of their grid, and its time."""
@@ -125,7 +126,7 @@ class BruteForce:
         if self._frequencies and choice.forms not in self._of_forms:
             self._of_forms[choice.forms] = self._frequencies.of(result, self.h).frequencies
         histories = self._histories.of(result, self.h).histories
-        return (Values(histories, self._of_forms.get(choice.forms, [])),
+        return (Values(histories, self._of_forms.get(choice.forms, []), self._histories.measures),
                 max(choice.step.h, self.h), seconds)
 
     def run(self, choice: Choice) -> Found:
@@ -146,7 +147,8 @@ class BruteForce:
             result = begun(model, step, self.h).run_to(self.t_end).result()
         frequencies = (self._frequencies.of(result, self.h).frequencies if self._frequencies
                        else [])
-        return difference(Values(self._histories.of(result, self.h).histories, frequencies),
+        return difference(Values(self._histories.of(result, self.h).histories, frequencies,
+                                 self._histories.measures),
                           self.reference, self.sizes, (1, max(round(step.h / self.h), 1)))
 
     def explore(self, tolerance: float) -> None:
@@ -174,7 +176,7 @@ class BruteForce:
                                            for i, one in enumerate(choice.forms)))
 
     def _alone(self, k: int, form: Form, step: Step, whole: Values) -> float:
-        """Error of a form of one part, against the richest with the same step."""
+        """Error of a form of one part, against the reference with the same step."""
         try:
             values, _, _ = self._values(self._with(self.richest._replace(step=step), k, form))
             return difference(values, whole, self.sizes, (1, 1))

@@ -53,7 +53,7 @@ def test_a_body_with_a_defect(tmp_path, capsys):
     assert "verdict: the body cannot be used" in capsys.readouterr().out
     assert main(["inspect", str(body), "--repair", "rigid-modes", "--save",
                  str(tmp_path / "good.npz")]) == 2
-    assert "this is no loss of digits" in capsys.readouterr().err
+    assert "this is not a loss of digits" in capsys.readouterr().err
 
 
 def test_modes_by_frequencies_and_damping_of_each(tmp_path, capsys):

@@ -34,7 +34,7 @@ def test_run_saves_and_draws(tmp_path, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "hinged-beam: the paper's hinged beam, spun up by a torque at its base"
     assert lines[1] == "unknowns             15"
-    assert lines[2] == "steps                50 (0 cut), to t = 0.5"
+    assert lines[2] == "steps                50 (0 rejected), to t = 0.5"
     assert lines[-2:] == [f"histories            {output}", f"picture              {picture}"]
 
 
@@ -74,7 +74,7 @@ def test_run_with_other_parameters(capsys):
                      "--set", "modes=0", "--set", "elements=4", "--set", "frame=node"]) == 0
     out = capsys.readouterr().out
     assert "unknowns             11" in out
-    assert "steps                20 (0 cut), to t = 0.1" in out
+    assert "steps                20 (0 rejected), to t = 0.1" in out
 
 
 def test_run_with_an_accuracy(capsys):
@@ -87,7 +87,7 @@ def test_run_stops_and_goes_on(tmp_path, capsys):
     state = tmp_path / "state.npz"
     assert main(["run", "hinged-beam", "--t-end", "0.2", "--save", str(state)]) == 0
     assert main(["run", "hinged-beam", "--t-end", "0.5", "--resume", str(state)]) == 0
-    assert "steps                50 (0 cut), to t = 0.5" in capsys.readouterr().out
+    assert "steps                50 (0 rejected), to t = 0.5" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("arguments, message", [
@@ -108,8 +108,8 @@ def test_run_stops_and_goes_on(tmp_path, capsys):
     (["hinged-beam", "--accuracy", "-1"], "tolerance relative is -1.0: give a number >= 0"),
     (["hinged-beam", "--accuracy", "1e-3", "--save", "a.npz"], "--accuracy repeats the run with"),
     (["hinged-beam", "--resume", "none.npz"], "restart file none.npz does not exist"),
-    (["hinged-beam", "--resume", "a.npz", "--step", "1"], "--resume goes on with the step that"),
-    (["hinged-beam", "--resume", "a.npz", "--rho", "1"], "--resume goes on with the rho that"),
+    (["hinged-beam", "--resume", "a.npz", "--step", "1"], "--resume continues with the step that"),
+    (["hinged-beam", "--resume", "a.npz", "--rho", "1"], "--resume continues with the rho that"),
     (["hinged-beam", "--save", "state.txt"], "restart file state.txt must end in .npz"),
     (["hinged-beam", "--index", "0"], "index is 0: use 3, or 2 for the stabilised form"),
     (["hinged-beam", "--index", "1"], "index is 1: use 3, or 2 for the stabilised form"),
@@ -236,7 +236,7 @@ def test_example_of_the_readme(capsys):
     code = re.search(r"```python\n(.*?)```", text, re.S).group(1)
     names = {}
     exec(code, names)
-    assert "steps                3000 (0 cut), to t = 30" in capsys.readouterr().out
+    assert "steps                3000 (0 rejected), to t = 30" in capsys.readouterr().out
     result = names["result"]
     text += (ROOT / "sebody" / "model" / "README.md").read_text()
     assert len(result.t) == len(reference("hinged_beam")["t"])

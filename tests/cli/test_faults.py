@@ -44,7 +44,7 @@ def test_a_signal_ends_the_run_and_keeps_its_results(tmp_path, capsys, monkeypat
     monkeypatch.setattr(progress.Progress, "close", lambda bar: send(bar, 1.0))
     assert main([*LONG, *files(tmp_path)]) == code
     out, err = capsys.readouterr()
-    assert re.search(r"^error: interrupted at t = .*: results up to there are kept$", err, re.M)
+    assert re.search(r"^error: interrupted at t = .*: results up to this time are kept$", err, re.M)
     assert f"histories            {tmp_path / 'out.npz'}" in out
     assert signal.getsignal(number) != interrupts._note
     monkeypatch.undo()

@@ -118,7 +118,8 @@ def test_errors_in_a_file_are_named_with_their_line(folder, capsys, text, messag
      "give a value of type float, such as 9.81"),
     (["hinged-beam", "--every", "0"], "output_every is 0: give a whole number"),
     (["hinged-beam", "--every", "2", "--accuracy", "1e-3"], "with --accuracy --step is the grid"),
-    (["hinged-beam", "--every", "2", "--resume", "a.npz"], "--resume goes on with the every that"),
+    (["hinged-beam", "--every", "2", "--resume", "a.npz"], "--resume continues with the every "
+                                                           "that"),
 ])
 def test_arguments_that_do_not_fit(folder, capsys, arguments, message):
     assert main(["run", *arguments]) == 2

@@ -6,6 +6,14 @@ import inspect
 import pytest
 import sympy as sp
 
+from sebody.contract.layout import (
+    SUPERELEMENT_CONSTANTS,
+    Part,
+    axes_of,
+    packed_size,
+    superelement_counts,
+    whole_vectors,
+)
 from sebody.derive.form import counts, functions
 from sebody.derive.form.arrays import Entry, Place, constant, pointed, scratch
 from sebody.derive.form.functions import Function
@@ -27,14 +35,6 @@ from sebody.derive.passes.fold import folded
 from sebody.derive.passes.operations import operations
 from sebody.derive.passes.uses import uses
 from sebody.derive.printing.numba.expressions import whole_code
-from sebody.kernels.layout import (
-    SUPERELEMENT_CONSTANTS,
-    Part,
-    axes_of,
-    packed_size,
-    superelement_counts,
-    whole_vectors,
-)
 
 n, i, j, N = counts.n, counts.i, counts.j, counts.N
 TABLE = [value for value in vars(functions).values() if isinstance(value, Function)]

@@ -2,10 +2,10 @@
 
 import pytest
 
+from sebody.contract.names import superelement_name
 from sebody.derive.kernels.layouts import Layout, LayoutError
 from sebody.derive.kernels.superelement import superelement
 from sebody.derive.names import kernel_of
-from sebody.kernels.names import superelement_name
 
 
 @pytest.mark.parametrize("name, positions, rotations, first_rotation, first_mode", [

@@ -14,6 +14,7 @@ from sebody.derive.form.steps import (
     Shift,
     Solve,
     Stage,
+    Sum,
     Values,
     search,
 )
@@ -79,9 +80,9 @@ def test_common_subexpressions_are_numbered_through():
 
 def equation(q, weight, matrix):
     """``sum weight (matrix rate - Om) = 0``."""
-    return Solve("mean", q.Om0, "rotation",
-                 q.alpha_r.symbols[0] * (matrix * q.Om0.symbols - q.Om.symbols), sp.zeros(3, 1),
-                 "B", invert=True, weight=weight)
+    summand = q.alpha_r.symbols[0] * (matrix * q.Om0.symbols - q.Om.symbols)
+    return Solve("mean", q.Om0, (Sum("rotation", summand),), sp.zeros(3, 1), "B", invert=True,
+                 weight=weight)
 
 
 def test_solve_with_a_sum_that_is_known():
@@ -91,6 +92,19 @@ def test_solve_with_a_sum_that_is_known():
     assert found[1] == "rhs_x = rhs_y = rhs_z = 0.0"
     assert found[-3:] == ["Om0_x = (0.5)*rhs_x", "Om0_y = (0.5)*rhs_y", "Om0_z = (0.5)*rhs_z"]
     assert not any("B_" in line or "inverse_3" in line for line in found)
+
+
+def test_solve_with_sums_over_several_carriers():
+    """Each in a loop of its own, into one matrix and one right-hand side."""
+    q, text, _ = printer()
+    modal = q.vm.symbols[0] * q.R0.symbols[:, 0]
+    sums = *equation(q, None, sp.eye(3)).sums, Sum("mode", modal)
+    found = text(equation(q, None, sp.eye(3))._replace(sums=sums))
+    loops = [line for line in found if line.startswith("for ")]
+    assert loops == ["for j in range(N_ROTATIONS):", "for k in range(MODES, n):"]
+    assert found.count("rhs_x = rhs_y = rhs_z = 0.0") == 1
+    assert found[-3] == "Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z"
+    assert "    rhs_x += -R0_xx*vm" in found[found.index(loops[1]):]
 
 
 def test_solve_with_a_matrix_to_be_inverted():

@@ -12,10 +12,11 @@ from plain_kernels import evaluated, executed
 from scipy.spatial.transform import Rotation
 
 from sebody import Model, Simulation
+from sebody.contract.layout import MOTION, RESIDUAL, FrameTraits
 from sebody.derive.compiler import Variant, compile_kernel, file_name
 from sebody.derive.form.counts import FIRST_ROTATION, ROTATIONS
 from sebody.derive.form.functions import RELATIVE_ANGLES, RELATIVE_ROTATIONS
-from sebody.derive.form.steps import Solve, Stage, search
+from sebody.derive.form.steps import Solve, Stage, Sum, search
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
@@ -32,7 +33,6 @@ from sebody.derive.printing.numba.options import options_text
 from sebody.derive.symbolic.rotations import cross
 from sebody.fem import Section, planar_beam
 from sebody.generated import options as generated
-from sebody.kernels.layout import MOTION, RESIDUAL, FrameTraits
 from sebody.model import frames
 from sebody.reduction import craig_bampton
 from sebody.studies.check.motions import motion_case
@@ -94,7 +94,7 @@ def secant(q):
         return matrix * (of.symbols - origin.symbols + cross(r, rate.symbols))
 
     def solved(rate, of, origin, invert):
-        return Solve("weighted rates", rate, "position", equation(rate, of, origin),
+        return Solve("weighted rates", rate, (Sum("position", equation(rate, of, origin)),),
                      sp.zeros(3, 1), "B", invert=invert)
     back = equation(q.wp, q.dx, q.dx0)
     own = sp.Matrix.hstack(*[back.diff(s) if isinstance(s, sp.Symbol) else sp.zeros(3, 1)
@@ -108,9 +108,11 @@ def secant(q):
                 *inverse_tangent_values(q, q.psi, (q.e0, q.e1))),
         velocity=(origin_stage(q, q.v0, q.vs), solved(q.Om0, q.vs, q.v0, True)),
         variation=(solved(q.dth0, q.dx, q.dx0, False),),
-        pull=(pulled_back(q, own.T * q.wp.symbols, back, "position"),),
+        pull=(pulled_back(q, (Sum("position", own.T * q.wp.symbols),),
+                          (Sum("position", back),)),),
         work=virtual_work, position=-conjugate_to(work, q.dx.symbols),
-        origin=-conjugate_to(work, q.dx0.symbols), rotation=sp.zeros(3, 1), condition=condition(q))
+        origin=-conjugate_to(work, q.dx0.symbols), rotation=sp.zeros(3, 1),
+        conditions=(condition(q),))
 
 
 def condition(q):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits, InertiaTraits, Part
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import pointed, scratch
 from sebody.derive.form.functions import CLEAR, INVERSE_3, PACKED_TIMES
@@ -32,7 +33,6 @@ from sebody.derive.printing.numba.expressions import code
 from sebody.derive.printing.numba.imports import import_lines
 from sebody.derive.printing.numba.statements import lines
 from sebody.derive.symbolic.rotations import skew
-from sebody.kernels.layout import FrameTraits, InertiaTraits, Part
 
 x, y, z = sp.symbols("x y z")
 
@@ -113,11 +113,11 @@ def test_imports_are_what_is_used_sorted_and_wrapped():
     assert import_lines(used) == (
         "from math import sin, sqrt\n\nfrom sebody.kernels.abi import at, padded\n"
         "from sebody.kernels.dense import inverse_3\n"
-        "from sebody.kernels.pipeline import kernel_function")
+        "from sebody.compiler.decorators import kernel_function")
     many = ("AT_CONSTANTS", "ACCELERATION", "VELOCITY", "C_STIFFNESS", "C_CONSTRAINT", "HEADER")
     wide = kernel(*(Return(counts.agreed(name)) for name in many))
     assert import_lines(wide, ("SUPERELEMENT_CONSTANTS",), ("Part",)).split("\n")[:-1] == [
-        "from sebody.kernels.layout import (", "    ACCELERATION,", "    AT_CONSTANTS,",
+        "from sebody.contract.layout import (", "    ACCELERATION,", "    AT_CONSTANTS,",
         "    C_CONSTRAINT,", "    C_STIFFNESS,", "    HEADER,", "    SUPERELEMENT_CONSTANTS,",
         "    VELOCITY,", "    Part,", ")"]
 

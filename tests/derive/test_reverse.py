@@ -10,6 +10,7 @@ import sympy as sp
 from plain_kernels import evaluated, executed
 from transposed_kernels import ROUNDING, element_error, superelement_error
 
+from sebody.contract.layout import TANGENT
 from sebody.derive.compiler import Variant, compile_kernel
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import scratch
@@ -19,7 +20,6 @@ from sebody.derive.form.steps import Product, Repeat, Shift, Stage, call
 from sebody.derive.formulas import arrays
 from sebody.derive.passes.reverse import Reversal, transposed_forms
 from sebody.derive.symbolic.variation import DerivationError
-from sebody.kernels.layout import TANGENT
 from sebody.kernels.loader import load
 from sebody.studies.check.states import evaluate
 from sebody.studies.check.superelements import superelement_case

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
+from sebody.contract.layout import Part
 from sebody.derive.compiler import Variant, compile_kernel, file_name, statements_of
 from sebody.derive.form import steps
 from sebody.derive.form.arrays import constant, scratch
 from sebody.derive.formulas.frames import converged_mean
 from sebody.derive.formulas.inertia import option_b
 from sebody.derive.kernels import linearize, options, superelement
-from sebody.kernels.layout import Part
 
 ROOT = Path(__file__).parents[2]
 # each imports from those before it

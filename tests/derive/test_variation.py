@@ -214,13 +214,13 @@ def test_wrong_gradient_of_a_constraint(monkeypatch):
 
 
 def test_dead_torque_turns_in_material_axes():
-    """``d(R^T m) = (R^T m) x dTheta``: what the second-order term of a dead torque must be."""
+    """``d(R^T m) = (R^T m) x dTheta``: second-order term of a fixed-direction torque."""
     torque = elements.linearized(forces.torque(False, False))
     block, = torque.blocks
     R, m = block.state.symbols, torque.constants[0].symbols
     amplitude, c_stiffness = sp.symbols("amplitude c_stiffness")
     expected = -amplitude * c_stiffness * rotations.skew(R.T * m) * block.direction.symbols
-    check_same("dead torque", sp.Matrix(torque.linear), expected, [R])
+    check_same("fixed-direction torque", sp.Matrix(torque.linear), expected, [R])
 
 
 def test_out_of_plane_component_is_refused():

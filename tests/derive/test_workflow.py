@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from sebody.compiler.sources import TEXT, room_hash
 from sebody.derive.compiler import compile_kernel
-from sebody.kernels.sources import room_hash
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = {"sebody": "", "derive": "derive", "generated": "generated", "examples": "scenes"}
@@ -229,7 +229,7 @@ def test_change_a_function_that_a_kernel_reaches_through_another(original, tmp_p
      "elimination", "0.666667", "0.5"),
     # constants of other files
     ("kernels/rotations.py", "NEAR_PI = -0.98", "NEAR_PI = 0.98", "near_half_a_turn", "0", "1"),
-    ("kernels/layout.py", "LANES = 4 ", "LANES = 8 ", "column", "4", "8"),
+    ("contract/layout.py", "LANES = 4 ", "LANES = 8 ", "column", "4", "8"),
     ("engine/state.py", "FINEST = 4096 ", "FINEST = 2 ", "cut", "True True", "True False"),
 ], ids=["log_map", "subtract_product", "NEAR_PI", "LANES", "FINEST"])
 def test_compiled_functions_follow_what_they_call(original, tmp_path, file, old, new, name, before,
@@ -244,7 +244,7 @@ def test_shipped_kernels_name_no_version_of_the_runtime():
     """Only those that are kept elsewhere do, where nothing else says that they are outdated."""
     texts = [path.read_text() for path in (ROOT / "generated").glob("*_*.py")]
     assert len(texts) > 70 and not any("ROOM" in text for text in texts)
-    assert f'ROOM = "{room_hash("kernels")}"' in compile_kernel("planar_force", shipped=False)
+    assert f'ROOM = "{room_hash(*TEXT)}"' in compile_kernel("planar_force", shipped=False)
 
 
 def test_one_kernel_of_the_catalogue(original, tmp_path):

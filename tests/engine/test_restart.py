@@ -22,11 +22,11 @@ from sebody import (
 from sebody.analysis import Ensemble, linearize, resume, save_state
 from sebody.assembly import batches
 from sebody.assembly import build as assembly
+from sebody.compiler.sources import TEXT, room_hash
 from sebody.engine.state import MATRICES, PIVOTED
 from sebody.fem import Section, straight_beam
 from sebody.fem.loads import line_load
 from sebody.kernels import loader
-from sebody.kernels.sources import room_hash
 from sebody.model.parts import Element, positions
 from sebody.reduction import craig_bampton, reduce
 
@@ -365,12 +365,13 @@ GRIP = '''
 from math import sqrt
 
 from sebody.kernels.abi import at
-from sebody.kernels.layout import AT_CONSTANTS, C_CONSTRAINT, HEADER, OK, TANGENT, Part
-from sebody.kernels.pipeline import kernel_function
+from sebody.contract.layout import AT_CONSTANTS, C_CONSTRAINT, HEADER, OK, TANGENT, Part
+from sebody.compiler.decorators import kernel_function
 
 PLANAR, N_POSITIONS, N_ROTATIONS, MULTIPLIERS, WIDTH = False, 1, 0, 0, 4
 CONSTANTS = (Part("mu", (), ""), Part("N0", (), ""), Part("e", (3,), ""))
 INERTIAL = POWER = DRIVEN = False
+MEMORY = 0
 WORK_ROWS, OPERATIONS = 0, {"residual": (0, 0, 0, 0), "column": (0, 0, 0, 0)}
 ROOM = "HASH"
 
@@ -403,7 +404,7 @@ def test_forces_that_depend_on_multipliers(how, tmp_path, monkeypatch):
 
     A pressure on it sets in at 0.5: accelerations are constant on either side, so all is exact.
     """
-    text = GRIP.replace("HASH", room_hash("kernels"))
+    text = GRIP.replace("HASH", room_hash(*TEXT))
     (tmp_path / "element_grip.py").write_text(text)
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
     monkeypatch.setattr(loader, "load", loader.load.__wrapped__)       # not remembered

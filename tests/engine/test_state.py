@@ -5,11 +5,11 @@ import pytest
 
 from sebody import Simulation
 from sebody.analysis.tolerance import Tolerance
+from sebody.contract import layout
+from sebody.contract.layout import COEFFICIENTS, RECORD
 from sebody.engine import state as codes
 from sebody.engine.loop import advance
 from sebody.engine.state import CHOSEN, ITERATIONS, REASONS, RECORDED, Record
-from sebody.kernels import layout
-from sebody.kernels.layout import COEFFICIENTS, RECORD
 from sebody.scenes import chain, heavy_top, hinged_beam
 
 

@@ -82,7 +82,7 @@ def held(model, section_dofs=6):
 
 
 def critical_load(model, force):
-    """Lowest factor of a dead load at which the clamped beam buckles, from linear prestress."""
+    """Lowest buckling factor of a fixed-direction load on the clamped beam, by linear prestress."""
     width = model.dofs_per_node
     K, _ = held(model, width)
     u = np.concatenate([np.zeros(width), np.linalg.solve(K, force[width:])])

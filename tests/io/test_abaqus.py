@@ -69,9 +69,10 @@ def test_interfaces_name_and_order_the_nodes(substructure):
     last = len(order) - 1
     np.testing.assert_array_equal(body.stiffness[:3, :3],
                                   whole.stiffness[3 * last:3 * last + 3, 3 * last:3 * last + 3])
-    with pytest.raises(InputError, match="boundary nodes that are no interfaces: "):
+    with pytest.raises(InputError, match="boundary nodes that are not interfaces: "):
         import_body(path, {"a": order[0]})
-    with pytest.raises(InputError, match="node 77 is no boundary node of the reduced body: there"):
+    with pytest.raises(InputError, match="node 77 is not a boundary node of the reduced body: "
+                                         "there"):
         import_body(path, {"a": 77})
     with pytest.raises(InputError, match="reduced already: leave modes out"):
         import_body(path, modes=3)

@@ -123,7 +123,7 @@ def test_sections_of_listed_elements(decks, sets):
      "have the orientation OR, which the deck does not have"),
     (SECTION, "*ELEMENT, TYPE=US3, ELSET=SHELL\n77, 1, 2, 3\n" + SECTION,
      "stiffening, and no stresses in some",
-     "1 of 5 elements are US3, which are no solids known here"),
+     "1 of 5 elements are US3, which are not known solids"),
     ("2.1E5, 0.3\n", "2.1E4, 0.3\n", "stresses or stiffening",
      r"another strain energy than the stiffness, by 90\.0%: the deck is not that of the matrices"),
     ("2.1E5, 0.3\n", "1.6E5, 0.3\n", "stresses or stiffening",
@@ -167,18 +167,20 @@ def test_stresses_of_masses_and_springs_are_not_missed(decks):
     ("TYPE=C3D8,", "TYPE=B31,", r"makes solids of beams, shells and plane elements \(B31\)"),
     ("TYPE=C3D8,", "TYPE=CPS6,", "delete elements of surfaces and lines that the mesher has"),
     ("*NSET, NSET=RIGHT\n", "*NSET, NSET=RIGHT\nRIGHT, ", "node set RIGHT has itself as a member"),
-    ("*NSET, NSET=RIGHT\n", "*NSET, NSET=RIGHT\nFAR, ", "'FAR' is no label and no set of nodes"),
+    ("*NSET, NSET=RIGHT\n", "*NSET, NSET=RIGHT\nFAR, ", "'FAR' is neither a label nor a set of "
+                                                        "nodes"),
     ("*SURFACE, NAME=LEFT\n1, S6\n", "*SURFACE, NAME=LEFT\n1, S7\n",
      "there is no face 'S7' of the element: give S1 to S6"),
     ("*SURFACE, NAME=LEFT\n1, S6\n", "*SURFACE, NAME=LEFT\n9, S1\n",
-     "element 9 of the surface is no solid of the deck"),
+     "element 9 of the surface is not a solid of the deck"),
     ("2.1E5, 0.3\n", "2.1E5, 0.5\n", r"has the numbers 210000, 0\.5, by which some strain has no"),
     ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", r"\*ELASTIC, TYPE=ORTHO has 2 numbers: give 9"),
     (SECTION, "*ORIENTATION, NAME=O\n1,0,0,2,0,0\n" + SECTION, "which make no axes: give two"),
     (SECTION, "*ELSET, ELSET=A, GENERATE\n1, 4, 0\n" + SECTION, "the step of GENERATE is 0"),
     ("3, 9, 13, 15, 11, 10, 14, 16, 12", "3, 9, 11, 15, 13, 10, 12, 16, 14",
-     "element 3 of the deck is turned inside out or has no volume: correct the order"),
-    (SECTION, "*TIE, NAME=T\nLEFT, NEAR\n" + SECTION, r"\*TIE of surface NEAR, which there is not"),
+     "element 3 of the deck is inverted or has no volume: correct the order"),
+    (SECTION, "*TIE, NAME=T\nLEFT, NEAR\n" + SECTION, r"\*TIE of surface NEAR, which does not "
+                                                      r"exist"),
 ])
 def test_refused_with_the_true_reason(decks, old, new, said):
     with pytest.raises(InputError, match=said):
@@ -201,7 +203,7 @@ def test_included_data(decks):
                     + "\n*ELEMENT" + rest)
     assert read_deck(path).nodes == read_deck(decks / "loose.inp").nodes
     (folder / "nodes.txt").write_text("1, 2, x, 3\n")
-    with pytest.raises(InputError, match=r"nodes\.txt, line 1: 'x' is no number"):
+    with pytest.raises(InputError, match=r"nodes\.txt, line 1: 'x' is not a number"):
         read_deck(path)
 
 

@@ -185,7 +185,8 @@ def test_too_few_modes_are_refused(tmp_path):
         import_body(path, {"a": 7})
     for spoilt, said in ((lines[:-30], "is cut off|ends within"),
                          (lines[:40], "it is cut off|ends within"),
-                         ([line.replace("mass =", "mass = x") for line in lines], "is no number"),
+                         ([line.replace("mass =", "mass = x") for line in lines], "is not a "
+                                                                                  "number"),
                          (["text"], "is cut off")):
         path.write_text("\n".join(spoilt))
         with pytest.raises(InputError, match=said):

@@ -7,8 +7,8 @@ import pytest
 from numba import njit, typeof
 from numba.core.errors import TypingError
 
+from sebody.contract.layout import ARGUMENTS, RESIDUAL
 from sebody.kernels.abi import Arguments, call_kernel
-from sebody.kernels.layout import ARGUMENTS, RESIDUAL
 
 
 @njit

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import padded_columns, whole_vectors
 from sebody.kernels.abi import hidden, pointer_to
 from sebody.kernels.coordinates import all_to_free, follow, follow_changes
-from sebody.kernels.layout import padded_columns, whole_vectors
-from sebody.kernels.pipeline import compiled
 
 
 @compiled

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import LANES, padded_columns, whole_vectors
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.dense import (
     add_block_times,
@@ -12,8 +14,6 @@ from sebody.kernels.dense import (
     block_times,
     rows_times,
 )
-from sebody.kernels.layout import LANES, padded_columns, whole_vectors
-from sebody.kernels.pipeline import compiled
 
 EPS = np.finfo(float).eps
 

@@ -5,8 +5,8 @@ import sys
 import pytest
 
 from sebody import InputError
+from sebody.compiler.sources import TEXT, room_hash
 from sebody.kernels import loader
-from sebody.kernels.sources import room_hash
 
 KERNEL = '''LAYOUT = "planar-f9"
 FRAME = "mean"
@@ -55,7 +55,7 @@ def test_missing_kernels(mine):
 
 
 def test_kernel_of_the_user(mine):
-    (mine / f"{NAME}.py").write_text(KERNEL.format(room=room_hash("kernels")))
+    (mine / f"{NAME}.py").write_text(KERNEL.format(room=room_hash(*TEXT)))
     assert loader.superelement_kernel_name("planar-f9", "mean", "a", 2) == NAME
     assert loader.load(NAME).TOUCHED
 

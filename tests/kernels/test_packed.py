@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import packed_size, whole_vectors
 from sebody.kernels.abi import pointer_to
-from sebody.kernels.layout import packed_size, whole_vectors
 from sebody.kernels.packed import pack, unpack
 from sebody.kernels.packed_products import (
     add_packed,
@@ -14,7 +15,6 @@ from sebody.kernels.packed_products import (
     packed_times,
     to_free,
 )
-from sebody.kernels.pipeline import compiled
 
 
 @compiled

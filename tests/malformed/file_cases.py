@@ -185,16 +185,16 @@ CALCULIX = {
     "no labels": Case("se.dof does not exist: run ccx with *FREQUENCY", gone("se.dof")),
     "empty stiffness": Case("se.sti is empty", empty("se.sti")),
     "cut within a line": Case("line 459: the file ends within a line", cut("se.sti", 0.613)),
-    "cut within a number": Case("e' is no row of 3 finite numbers", cut("se.mas", 1 - 2e-4)),
+    "cut within a number": Case("e' is not a row of 3 finite numbers", cut("se.mas", 1 - 2e-4)),
     "cut between lines": Case("row 48 of 48 has no diagonal entry, the file is cut off",
                               lines_of("se.sti", lambda lines: lines[:-1])),
     "mass cut": Case("has no diagonal entry", lines_of("se.mas", lambda lines: lines[:100])),
     "NaN": Case("se.sti, line 7: ", lines_of("se.sti", lambda ls: [*ls[:6], "1 2 nan", *ls[6:]])),
-    "text": Case("se.sti, line 1: 'STIFFNESS' is no row of 3", lines_of(
+    "text": Case("se.sti, line 1: 'STIFFNESS' is not a row of 3", lines_of(
         "se.sti", lambda lines: ["STIFFNESS", *lines])),
     "four columns": Case("se.mas, line 3: ", lines_of(
         "se.mas", lambda ls: [*ls[:2], ls[2] + " 0.0", *ls[3:]])),
-    "row zero": Case("se.sti, line 2: row or column 0 is no number from 1 to 48", lines_of(
+    "row zero": Case("se.sti, line 2: row or column 0 is not a number from 1 to 48", lines_of(
         "se.sti", lambda ls: [ls[0], "0 2 1.0", *ls[1:]])),
     "row of a fraction": Case("se.sti, line 1: row or column 1.5", lines_of(
         "se.sti", lambda ls: ["1.5 1 1.0", *ls[1:]])),
@@ -207,9 +207,9 @@ CALCULIX = {
         "se.dof", lambda ls: [*ls[:4], "10.2", *ls[5:]])),
     "label of no node": Case("se.dof, line 2: node 11 is not in the deck", lines_of(
         "se.dof", lambda ls: [ls[0], "11.2", *ls[2:]])),
-    "label as a number": Case("'1.0e1' is no node.direction", lines_of(
+    "label as a number": Case("'1.0e1' is not node.direction", lines_of(
         "se.dof", lambda ls: ["1.0e1", *ls[1:]])),
-    "temperatures": Case("se.dof, line 1: '10.0' is no node.direction", lines_of(
+    "temperatures": Case("se.dof, line 1: '10.0' is not node.direction", lines_of(
         "se.dof", lambda ls: ["10.0", *ls[1:]])),
     "labels missing": Case("row 48, but ", lines_of("se.dof", lambda ls: ls[:-1])),
     "empty labels": Case("se.dof is empty", empty("se.dof")),
@@ -221,12 +221,12 @@ CALCULIX = {
     "a deck without nodes": Case("has no *NODE", empty("se.inp")),
     "a node at two places": Case("se.inp, line 3: node 10 has two places",
                                  replaced("se.inp", "20, ", "10, ")),
-    "a label that is none": Case("se.inp, line 2: 'ten' is no label",
+    "a label that is none": Case("se.inp, line 2: 'ten' is not a label",
                                  replaced("se.inp", "10, ", "ten, ")),
-    "a place that is none": Case("se.inp, line 2: 'x' is no number",
+    "a place that is none": Case("se.inp, line 2: 'x' is not a number",
                                  replaced("se.inp", "10, 0.0", "10, x")),
-    "an element cut": Case("is no label", replaced("se.inp", "E\n1, ", "E\n1, E, ")),
-    "a rigid body of nothing": Case("'FACE' is no label and no set of nodes", lines_of(
+    "an element cut": Case("is not a label", replaced("se.inp", "E\n1, ", "E\n1, E, ")),
+    "a rigid body of nothing": Case("'FACE' is neither a label nor a set of nodes", lines_of(
         "se.inp", lambda ls: [*ls, "*RIGID BODY, NSET=FACE, REF NODE=10"])),
     "a rigid body without node": Case("*RIGID BODY has no REF NODE", lines_of(
         "se.inp", lambda ls: [*ls, "*RIGID BODY, NSET=LEFT"])),
@@ -234,7 +234,7 @@ CALCULIX = {
         "se.inp", lambda ls: [*ls, "*INCLUDE, INPUT=mesh.inp"])),
     "a circle of includes": Case("is included by itself", lines_of(
         "se.inp", lambda ls: [*ls, "*INCLUDE, INPUT=se.inp"])),
-    "a set of a set there is not": Case("'FAR' is no label", lines_of(
+    "a set of a set there is not": Case("'FAR' is neither a label", lines_of(
         "se.inp", lambda ls: [*ls, "*NSET, NSET=NEW", "FAR"])),
     "an unknown node": Case("no node with the label 77; labels near it are 70, 80, 90", options={
         "interfaces": {"a": 77}}),
@@ -288,7 +288,7 @@ MATRIX_MARKET = {
         "se.mapping", "\n2 10", "\n1 10")),
     "a DOF twice": Case("gives rows 1 and 2 the same DOF, x of node 10", replaced(
         "se.mapping", "2 10 UY", "2 10 UX")),
-    "temperatures": Case("se.mapping, line 3: DOF TEMP is none of a body", replaced(
+    "temperatures": Case("se.mapping, line 3: DOF TEMP is not a mechanical DOF", replaced(
         "se.mapping", "3 10 UZ", "3 10 TEMP")),
     "a mapping cut": Case("but ", lines_of("se.mapping", lambda ls: ls[:-1])),
     "a mapping with a hole": Case("se.mapping has no row 5", lines_of(
@@ -339,7 +339,7 @@ SUBSTRUCTURE = {
         "interfaces": {"a": "4/7"}}),
     "sets": Case("the body is reduced already, so write a=NODE", options={
         "interfaces": {"a": "rbe2:ALL"}}),
-    "a node left out": Case("boundary nodes that are no interfaces: 7", options={
+    "a node left out": Case("boundary nodes that are not interfaces: 7", options={
         "interfaces": {"a": 4}}),
     "modes": Case("are reduced already: leave modes out", options={"modes": 4}),
 }

@@ -53,7 +53,7 @@ foreign = (OTHER, "node 'a' is of another model: use that of this one")
 lacks_place = ("turn", "node 'turn' has no position: make it with keeps='full'")
 lacks_turn = ("place", "node 'place' has no rotation: make it with keeps='full'")
 itself = ("a", "node 'a' is joined to itself: give two nodes")
-apart = ("b", "nodes 'a' and 'b' start apart: give both the same point")
+apart = ("b", "nodes 'a' and 'b' do not coincide: give both the same point")
 
 
 def axis(what: str) -> list:
@@ -70,11 +70,12 @@ def names(default: str) -> list:
 
 def histories() -> list:
     """Wrong histories of a load."""
-    return [*have("load history has shape", [1.0, 2.0], [(0.0, 1.0, 2.0)]),
-            *are("load history", NAN, INF, True, 1j, also=": give "),
-            *have("load history", "abc", [("0", "1")], [(0, 1), (1,)], [(0.0, 1j)], {}, []),
-            *have("load history contains NaN or infinite", [(0.0, NAN)], [(0.0, INF)]),
-            *have("times of a load history must increase", [(1.0, 0.0), (0.0, 1.0)])]
+    return [*have("time function of a load has shape", [1.0, 2.0], [(0.0, 1.0, 2.0)]),
+            *are("time function of a load", NAN, INF, True, 1j, also=": give "),
+            *have("time function of a "
+                  "load", "abc", [("0", "1")], [(0, 1), (1,)], [(0.0, 1j)], {}, []),
+            *have("time function of a load contains NaN or infinite", [(0.0, NAN)], [(0.0, INF)]),
+            *have("times of a time function of a load must not decrease", [(1.0, 0.0), (0.0, 1.0)])]
 
 
 BODIES = {
@@ -218,7 +219,7 @@ LOADS = {
     "gravity": Right(Model.gravity, {"field": Z}, {"field": vectors("gravity", 3)}),
     "spring": Right(Model.spring, {"node": "a", "to": "b", "stiffness": 1.0}, {
         "node": nodes(lacks_place),
-        "to": nodes(itself, ("c", "nodes 'a' and 'c' start together")),
+        "to": nodes(itself, ("c", "nodes 'a' and 'c' coincide")),
         "stiffness": not_negative("spring: stiffness"), "damping": not_negative("spring: damping"),
         "length": [pair for pair in not_negative("spring: length") if pair[0] is not None],
         "cubic": not_negative("spring: cubic"), "name": names("spring at a")}),

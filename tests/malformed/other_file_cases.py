@@ -84,7 +84,7 @@ OTHERS = {
         "negative rows": Case("nrow = -6", replaced("body.SID_FEM", "nrow = 6", "nrow = -6")),
         "rows of a fraction": Case("nrow = 6.5", replaced(
             "body.SID_FEM", "nrow = 6", "nrow = 6.5")),
-        "rows in words": Case("'six' is no number", replaced(
+        "rows in words": Case("'six' is not a number", replaced(
             "body.SID_FEM", "nrow = 6", "nrow = six")),
         "an unknown structure": Case("structure = 9", replaced(
             "body.SID_FEM", "structure = 3", "structure = 9")),
@@ -117,7 +117,7 @@ OTHERS = {
             *ls[:4], "1 2 1e999", *ls[5:]])),
         "rows of 1e300": Case("row 1e+300, but ", lines_of("se.sti", lambda ls: [
             *ls[:4], "1e300 2 1.0", *ls[5:]])),
-        "binary": Case("is no row of 3 finite numbers", lambda folder: (
+        "binary": Case("is not a row of 3 finite numbers", lambda folder: (
             folder / "se.sti").write_bytes(bytes(range(256)) * 20)),
         "a pipe for the mass": Case("is a pipe or a device", lambda folder: fifo(
             folder / "se.mas")),

@@ -41,7 +41,7 @@ def _numbering(said: dict) -> list:
 BODY = {
     "NaN in the shapes": Packed("holds numbers in recovery.shapes that are not finite (nan at "
                                 "[3, 2])", entry("recovery.shapes", (3, 2), np.nan)),
-    "infinity in the static answer": Packed("in recovery.static that are not finite", entry(
+    "infinity in the static response": Packed("in recovery.static that are not finite", entry(
         "recovery.static", (0, 0), np.inf)),
     "a row too few": Packed("has recovery.shapes of shape (17, 12), in place of (18, any)", member(
         "recovery.shapes", lambda old: old[:-1])),
@@ -124,7 +124,7 @@ BODY = {
         "notes", lambda said: said["body"].update({"materials": [3]}))),
     "a material of negative speed": Packed("speed of sound of material 'M' is -1.0", text(
         "notes", lambda said: said["body"].update({"materials": [["M", -1.0, 2.0]]}))),
-    "a provenance of numbers": Packed("has a provenance that is no text", text(
+    "a provenance of numbers": Packed("has a provenance that is not a text", text(
         "notes", lambda said: said.update({"provenance": {"source": 3}}))),
     "a provenance that is a list": Packed("has [] for its provenance", text(
         "notes", lambda said: said.update({"provenance": []}))),
@@ -153,7 +153,7 @@ BODY = {
     "more than any memory": Packed("member mass has", lambda path: claims(path, "mass", 2**40)),
     "an encrypted member": Packed("member mass is encrypted", encrypted("mass")),
     "another packing": Packed("member mass is packed by method 14", method("mass", 14)),
-    "a member twice": Packed("member mass is there twice", twice("mass")),
+    "a member twice": Packed("member mass occurs twice", twice("mass")),
     "objects": Packed("member mass has", arrays(lambda found: found.update(
         {"mass": np.array([None, {}], dtype=object)}))),
     "indefinite mass": Packed("mass is indefinite", member("mass", lambda old: -old)),

@@ -127,12 +127,12 @@ PROFILES = {
                      [(0, 0), (1, "2")], [(1, 0), (0, 0)], [(0, 0), (0, 1)], [(0, 0), None]),
         "rates": have("rates is", None, 1.0, "ab", (0.0, NAN), (0.0,), (0.0, 1j))}),
     "piecewise": Right(lambda parts: piecewise(*parts), {"parts": [(0, 1.0), (1, 2.0)]}, {
-        "parts": [*have("part of a piecewise history", [3], [(0,)], [(0, "a")], [(0, None)],
+        "parts": [*have("part of a piecewise function", [3], [(0,)], [(0, "a")], [(0, None)],
                         [(0, with_corners(lambda t: t, [1.0]))], [None]),
                   *have("time of a part is", [("0", 1.0)], [(NAN, 1.0)], [(None, 1.0)]),
-                  *have("times of parts of a piecewise history must increase",
+                  *have("times of parts of a piecewise function must increase",
                         [(1, 1.0), (0, 2.0)], [(0, 1.0), (0, 2.0)]),
-                  ([], "parts of a piecewise history are missing")]}),
+                  ([], "parts of a piecewise function are missing")]}),
 }
 RUNS = {
     "generalized_alpha": Right(generalized_alpha, {"rho": 0.9}, {
@@ -141,7 +141,7 @@ RUNS = {
         "alpha": are("alpha", *NO_NUMBER, 0.1, -0.5, also=": HHT needs a value"), **SCHEME}),
     "with_corners": Right(with_corners, {"function": lambda t: t, "corners": [1.0]}, {
         "function": [*are("function", None, 3, "sin", also=": give a function of time"),
-                     *have("load history", np.linalg.norm, lambda a, b: a)],
+                     *have("time function of a load", np.linalg.norm, lambda a, b: a)],
         "corners": have("corners are", None, "abc", 3.0, [[1.0]], [NAN], ["1"])}),
     "Simulation": Right(Simulation, {"model": Shared.model, "h": 0.1}, {
         "model": NO_MODEL, "h": STEP, "scheme": NO_SCHEME,

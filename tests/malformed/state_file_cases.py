@@ -10,7 +10,7 @@ RESTART = {
         "control", lambda old: old.astype(str))),
     "control of fractions": Packed("holds float64 in control", member(
         "control", lambda old: old + 0.25)),
-    **{f"control {k} too large": Packed(f"in control at {k}, where 0 to", entry(
+    **{f"control {k} too large": Packed(f"in control at {k}, outside 0 to", entry(
         "control", k, 10**15)) for k in (0, 1, 2, 3, 6, 7, 14, 17, 18, 21, 22)},
     "another time": Packed("holds the time 77 after 4 steps of 0.05", entry("clock", 0, 77.0)),
     "NaN time": Packed("holds numbers in clock that are not finite", entry("clock", 0, np.nan)),
@@ -42,7 +42,7 @@ RESTART = {
     "settings of brackets": Packed("brackets are nested deeper than 100", raw(
         "settings", "[" * 300_000)),
     "settings that are a list": Packed("is damaged or no restart file", raw("settings", "[]")),
-    "another version": Packed("is of version 7, this program writes 2", text(
+    "another version": Packed("is of version 7, this program writes 3", text(
         "settings", lambda said: said.update({"version": 7}))),
     "a negative step at the start": Packed("the time step is -0.05", text(
         "settings", lambda said: said.update({"h": -0.05}))),
@@ -56,7 +56,7 @@ RESTART = {
         "settings", lambda said: said.update({"seconds": -1}))),
     "a scheme of texts": Packed("scheme: alpha_m is 'a'", text(
         "settings", lambda said: said.update({"scheme": list("abcdefg")}))),
-    "a scheme with a number too few": Packed("that there is not", text(
+    "a scheme with a number too few": Packed("has an unknown scheme", text(
         "settings", lambda said: said["scheme"].clear())),
     "a scheme that diverges": Packed("scheme: beta is -1", text(
         "settings", lambda said: said["scheme"].__setitem__(2, -1))),

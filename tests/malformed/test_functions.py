@@ -192,7 +192,7 @@ def test_a_pulse_between_steps_is_said():
     for force, value, at in ((load(rows), "5", "0.22"),
                              (load(with_corners(pulse, [0.21, 0.24])), "1", "0.225")):
         with pytest.warns(LimitWarning, match=f"push is {value} at t = {at}, between two steps of "
-                                              "0.1 that see 0 and 0: take steps"):
+                                              "0.1, at which it is 0 and 0: choose steps"):
             simulate(ball(force), 0.1, 0.5)
         with warnings.catch_warnings():
             warnings.simplefilter("error", LimitWarning)

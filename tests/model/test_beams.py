@@ -8,8 +8,8 @@ from helpers import order
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
+from sebody.contract.layout import ENERGY, STRAIN
 from sebody.engine import evaluate
-from sebody.kernels.layout import ENERGY, STRAIN
 from sebody.scenes import hinged_beam, slider_crank, spherical_beam_strong, spin_up
 from sebody.scenes.hinged_beam import SECTION, TORQUE
 from sebody.studies import references

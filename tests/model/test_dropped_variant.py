@@ -176,7 +176,7 @@ def test_what_is_needed_is_said():
 
     cases = [
         (lambda m: m.torque("tip", TURN[2], name="twist"), "tip.rotation is needed by 'twist'"),
-        (lambda m: m.fix("tip", "rotation"), "tip.rotation is fixed, prescribed or hangs"),
+        (lambda m: m.fix("tip", "rotation"), "tip.rotation is fixed, prescribed or follows"),
         (lambda m: m.rigid_body("lump", "tip", 1.0, (1, 1, 1)), "needed by 'lump'"),
         (node_on_it, "tip.rotation is needed by"),
         (neighbour, "tip.rotation is needed by superelement 'twin'"),

@@ -7,12 +7,12 @@ from sebody import InputError, Model, generalized_alpha, simulate
 from sebody.assembly.batches import make_batches
 from sebody.assembly.build import work_size
 from sebody.assembly.numbering import number
+from sebody.contract.layout import ENERGY, RESIDUAL, TANGENT
+from sebody.contract.names import ANY, general_layout, layout_variant, superelement_name
 from sebody.derive.kernels.manifest import SUPERELEMENTS
 from sebody.fem import frame as fe_frame
 from sebody.fem import planar_beam, straight_beam
-from sebody.kernels.layout import ENERGY, RESIDUAL, TANGENT
 from sebody.kernels.loader import load
-from sebody.kernels.names import ANY, general_layout, layout_variant, superelement_name
 from sebody.model.frames import FRAMES
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -34,7 +34,7 @@ GRAVITY = (0.0, -40.0, 0.0)
 
 
 def test_what_is_shipped():
-    assert len(GENERAL) == 18 and len(SPECIAL) == 16
+    assert len(GENERAL) == 20 and len(SPECIAL) == 16
 
 
 @pytest.mark.parametrize("layout, floating, inertia", SPECIAL, ids=lambda x: x)
@@ -122,7 +122,7 @@ def test_a_summary_says_once_where_a_kernel_of_its_own_would_pay():
         place(model, f"more{k} ", reduced(keeps, 2, line), (0, 100 + 50 * k))
     lines = simulate(model, 0.01, 0.02).summary().splitlines()
     assert [line for line in lines if line.startswith("general kernel")] == [
-        f"general kernel       of {bodies}: one of the layout's own is faster, made by "
+        f"general kernel       used for {bodies}: for a faster, specific kernel run "
         f"python -m sebody.derive {variant}:converged_mean:c" for bodies, variant in (
             ("long, more0 ", "planar-f4m2"), ("mixed", "planar-t2r1m0"))]
 
@@ -151,11 +151,11 @@ def test_scratch_memory_is_that_of_the_nodes():
 
 def test_a_specialised_kernel_of_the_user_comes_first(monkeypatch, tmp_path):
     """Found by name, not run."""
-    from sebody.kernels.sources import room_hash
+    from sebody.compiler.sources import TEXT, room_hash
 
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
     kernel = tmp_path / "superelement_f5_converged_mean_c.py"
-    kernel.write_text(f'ROOM = "{room_hash("kernels")}"')
+    kernel.write_text(f'ROOM = "{room_hash(*TEXT)}"')
     model = Model()
     place(model, "long", beam(["full"] * 5), (0, 0, 0))
     assert model.element("long").kernel == "superelement_f5_converged_mean_c"

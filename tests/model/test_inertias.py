@@ -63,12 +63,13 @@ def test_a_body_on_positions_alone():
 
 @pytest.mark.parametrize("fe_model, options, message", [
     (unstressed, {}, "'arm': stiffening needs a geometric stiffness, and the FE model of the body "
-                     r"has none, or none that matters: give it as FEModel\(geometric_stiffness"),
+                     r"has none, or a negligible one: give it as FEModel\(geometric_stiffness"),
     (matrices, {}, "'arm': stiffening needs the mass, modes and geometric stiffness of the FE "
                    "model, and the body has reduced matrices alone: reduce it from a model, or"),
     (beam, {"inertia": "b"}, "'arm': stiffening is a part of inertia 'c', not of 'b': leave"),
     (beam, {"frame": "mean"}, "'arm': stiffening needs a frame that depends on the state alone, "
-                              "which 'mean' does not: use one of converged_mean, node, positions")])
+                              "which 'mean' does not: use one of converged_mean, mean_axes, node, "
+                              "positions")])
 def test_stiffening_that_cannot_be_had(fe_model, options, message):
     with pytest.raises(InputError, match=message):
         placed(fe_model(), stiffening=True, **options)

@@ -218,10 +218,10 @@ def test_driven_slide():
     (lambda m: m.cylindrical("a", (0, 0, 0), to="b"), "axis of the cylindrical joint at 'a' is"),
     (lambda m: m.prismatic("a", AXIS, to="second"), "prismatic: node 'second' is off the axis"),
     (lambda m: m.distance("a", "b"), "distance between 'a' and 'b' is zero: use a spheric"),
-    (lambda m: m.weld("a", to="first"), "weld: nodes 'a' and 'first' start apart"),
+    (lambda m: m.weld("a", to="first"), "weld: nodes 'a' and 'first' do not coincide"),
     (lambda m: m.drive_angle("a", (turn, turn, turn)), "second function is not the derivative"),
     (lambda m: m.move("first", (0, 0, 0), DRIVE), "motion of first.position has the direction"),
-    (lambda m: m.move("a", (0, 0, 1), DRIVE), "a.position hangs on another node by a rigid link"),
+    (lambda m: m.move("a", (0, 0, 1), DRIVE), "a.position follows another node by a rigid link"),
     (lambda m: (m.move("first", (0, 0, 1), DRIVE, "rotation"),
                 m.move("first", (0, 1, 0), DRIVE, "rotation")), "is moved about an axis already"),
     (lambda m: Model(planar=True).universal("a", AXIS, ACROSS), "universal joint: the model is"),
@@ -286,5 +286,5 @@ def test_constraints_that_contradict_each_other():
     model.drive_angle(base, DRIVE)
     model.drive_angle(base, (lambda t: t, lambda t: 1.0, lambda t: 0.0))
     with pytest.raises(InputError, match=r"violates 'angle at base( \(2\))?' by "
-                                         ".*no velocities fit this joint|contradict"):
+                                         ".*no velocities satisfy all joints|contradict"):
         Simulation(model, 1e-3)

@@ -102,7 +102,8 @@ def test_joint_inputs():
     model = two_links(planar=True)
     with pytest.raises(InputError, match="share a position|share their position"):
         model.spherical("elbow", "elbow2")
-    with pytest.raises(InputError, match="nodes 'base' and 'tip' start apart: give both the same"):
+    with pytest.raises(InputError, match="nodes 'base' and 'tip' do not coincide: give both the "
+                                         "same"):
         model.revolute("base", to="tip")
-    with pytest.raises(InputError, match="start apart: give both the same point"):
+    with pytest.raises(InputError, match="do not coincide: give both the same point"):
         model.spherical("base", "tip")

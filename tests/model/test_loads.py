@@ -30,16 +30,19 @@ def two_nodes():
 
 
 @pytest.mark.parametrize("table, message", [
-    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a load history must not decrease, after t = 2 "
+    ([(0.0, 1.0), (2.0, 1.0), (1.0, 3.0)], "times of a time function of a load must not decrease, "
+                                           "after t = 2 "
                                            "they do: sort the rows"),
     ([(0.0, 1.0), (3.0, 2.0), (3.0, 1.0), (3.0, 0.0)],
-     "load history has more than two rows at t = 3: give the value before a jump and the value "
+     "time function of a load has more than two rows at t = 3: give the value before a jump and "
+     "the value "
      "after it"),
-    ([1.0, 2.0], r"load history has shape \(2,\): give rows \(t, value\)"),
-    ([(0.0, 1.0, 2.0)], r"load history has shape \(1, 3\): give rows"),
-    ([], "load history has shape .*: give rows"),
-    (np.nan, "load history is nan: give a finite number"),
-    ([(0.0, np.nan)], "load history contains NaN or infinite entries: give finite numbers"),
+    ([1.0, 2.0], r"time function of a load has shape \(2,\): give rows \(t, value\)"),
+    ([(0.0, 1.0, 2.0)], r"time function of a load has shape \(1, 3\): give rows"),
+    ([], "time function of a load has shape .*: give rows"),
+    (np.nan, "time function of a load is nan: give a finite number"),
+    ([(0.0, np.nan)], "time function of a load contains NaN or infinite entries: give finite "
+                      "numbers"),
     ([(np.inf, 1.0)], "NaN or infinite entries"),
 ])
 def test_wrong_tables(table, message):
@@ -57,7 +60,8 @@ def returns_nothing(t):
 
 @pytest.mark.parametrize("function", [opens_a_file, returns_nothing, lambda t: 1j * t])
 def test_function_that_cannot_be_compiled(function):
-    with pytest.raises(InputError, match=f"load history '{function.__name__}' cannot be compiled: "
+    with pytest.raises(InputError, match=f"time function of a load '{function.__name__}' cannot "
+                                         f"be compiled: "
                                          "use only arithmetic, math and numpy in it"):
         history(function)
 
@@ -67,7 +71,7 @@ def test_function_that_cannot_be_compiled(function):
     pytest.param(functools.partial(max, 1.0), id="partial"),
     pytest.param("abc", id="text"), pytest.param([(0, 1), (1,)], id="ragged rows")])
 def test_histories_to_be_refused(source):
-    with pytest.raises(InputError, match="load history"):
+    with pytest.raises(InputError, match="time function of a load"):
         history(source)
 
 
@@ -292,7 +296,7 @@ def test_a_force_keeps_the_defaults_of_further_arguments():
 @pytest.mark.parametrize("function, arguments", [
     (lambda t, u: t, "t, u"), (lambda t, u, F=1.0: t, "t, u, F")])
 def test_further_arguments_without_a_value_are_named(function, arguments):
-    with pytest.raises(InputError, match=f"load history '<lambda>' has the arguments "
+    with pytest.raises(InputError, match=f"time function of a load '<lambda>' has the arguments "
                                          rf"\({arguments}\): give a function of \(t\); further "
                                          "arguments need defaults"):
         history(function)

@@ -5,8 +5,8 @@ import pytest
 
 from sebody import InputError, Model
 from sebody.assembly.build import build, number
+from sebody.contract.layout import FrameTraits, layout_name
 from sebody.fem import Section, frame, planar_beam, straight_beam
-from sebody.kernels.layout import FrameTraits, layout_name
 from sebody.model import frames
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes.hinged_beam import SECTION
@@ -64,7 +64,7 @@ def place(nodes=("base", "tip"), body=None, **options):
     (place(["tip", "base"]), "superelement 'b': the nodes do not lie where the body's boundary "
                              "nodes are .off by .*: pass rotation=, the matrix that turns FE"),
     (place(["base", "base"]), "the nodes do not lie where the body's boundary nodes are"),
-    (place(frame="mine"), "frame 'mine' is unknown: use one of converged_mean, mean, mean_small"),
+    (place(frame="mine"), "frame 'mine' is unknown: use one of converged_mean, mean, mean_axes"),
     (place(inertia="z"), "inertia 'z' is unknown: use one of a, b"),
     (place(frame="positions"), "lie on a line, so the frame 'positions' cannot see rotations "
                                "about it: use 'converged_mean'"),
@@ -162,10 +162,11 @@ def test_massless_body():
                                               "its direction"),
     (lambda m: m.revolute("base", (0, 1)), "axis of the revolute joint at 'base' is .0, 1.: give"),
     (lambda m: m.revolute("base", (0, 0, np.nan)), "axis of .* give 3 finite numbers"),
-    (lambda m: m.revolute("base", to="tip"), "revolute joint: nodes 'base' and 'tip' start apart: "
+    (lambda m: m.revolute("base", to="tip"), "revolute joint: nodes 'base' and 'tip' do not "
+                                             "coincide: "
                                              "give both the same point"),
     (lambda m: m.revolute("base", to="far"), "node 'far' is unknown"),
-    (lambda m: m.spherical("base", "tip"), "'base' and 'tip' start apart: give both the same"),
+    (lambda m: m.spherical("base", "tip"), "'base' and 'tip' do not coincide: give both the same"),
     (lambda m: m.spherical("base", "base"), "node 'base' is joined to itself: give two nodes"),
     (lambda m: (m.node("twin", (0, 0, 0), at="base"), m.spherical("base", "twin")),
      "nodes 'base' and 'twin' share their position already: leave the joint out"),

@@ -151,9 +151,9 @@ def test_joints_without_equations():
     assert model.element("pin") is joint and joint.multipliers == 0 and not joint.constraints
     model.fix("b")
     model.fix("d")
-    with pytest.raises(InputError, match="joint 'pin' takes no equation, so it has no multipliers: "
-                                         "what it joins is shared or fixed; the force on a fixed "
-                                         "node is its reaction"):
+    with pytest.raises(InputError, match="joint 'pin' has no equations and so no multipliers, "
+                                         "since its nodes share coordinates or are fixed; the "
+                                         "force on a fixed node is its reaction"):
         simulate(model, 1e-2, 0.02)["pin.multipliers"]
 
 

@@ -253,7 +253,7 @@ def test_what_cannot_be_compiled_in_is_refused_in_words(function, said):
     with pytest.raises(InputError) as caught:
         history(function)
     message = str(caught.value)
-    assert message.startswith(f"load history {said}")
+    assert message.startswith(f"time function of a load {said}")
     assert "\n" not in message and len(message) < 400 and "nopython" not in message
 
 

@@ -151,10 +151,10 @@ def test_profiles_of_any_numbers_drive():
     (lambda: spline([(0.0, 1.0)]), r"table is .*: give at least two rows \(t, value\) or"),
     (lambda: spline([(0.0, 1.0), (0.0, 2.0)]), "times of a table must increase"),
     (lambda: spline(3.0), "table is 3.0: give at least two rows"),
-    (lambda: piecewise(), "parts of a piecewise history are missing: give pairs"),
+    (lambda: piecewise(), "parts of a piecewise function are missing: give pairs"),
     (lambda: piecewise((0, 1, 2)), r"is \(0, 1, 2\): give a pair \(time, profile\)"),
     (lambda: piecewise((1, 0.0), (0, 1.0)), r"times of parts .* must increase: they are \[1.0, 0"),
-    (lambda: piecewise((0, "up")), "part of a piecewise history is 'up': give a ready profile or"),
+    (lambda: piecewise((0, "up")), "part of a piecewise function is 'up': give a ready profile or"),
     (lambda: piecewise((0, with_corners(plain, []))), "is a compiled function: give a ready"),
 ])
 def test_what_is_refused(make, message):

@@ -219,9 +219,9 @@ def test_hanging_body_equals_an_explicit_joint():
     (lambda m: m.attach("a", (0, 0, 1), "a"), "node 'a' exists already"),
     (lambda m: m.attach("c", (0, 0, 1), "half"), "node 'half' has no rotation"),
     (lambda m: (m.attach("c", (0, 0, 1), "a"), m.fix("c", "position")),
-     "c.position hangs on another node by a rigid link: fix or move a.position and its rotation"),
+     "c.position follows another node by a rigid link: fix or move a.position and its rotation"),
     (lambda m: (m.attach("c", (0, 0, 1), "a"), m.initial_velocity("c", (1, 0, 0))),
-     "initial rate of c.position is .*, but it is fixed, prescribed or hangs on another node"),
+     "initial rate of c.position is .*, but it is fixed, prescribed or follows another node"),
 ])
 def test_wrong_bodies_and_links(action, message):
     model = Model()
@@ -234,12 +234,13 @@ def test_wrong_bodies_and_links(action, message):
 def test_a_point_mass_leaves_a_rotation_without_mass():
     model = Model()
     model.point_mass("ball", model.node("a", (0, 0, 0)), 1.0)
-    with pytest.raises(InputError, match="a.rotation belongs to no body, so nothing holds it"):
+    with pytest.raises(InputError, match="the rotation of node 'a' is not connected to anything"):
         Simulation(model, 0.01)
     model = Model()
     hinge = model.node("hinge", (0, 0, 0))
     model.fix(hinge, "position")
     model.point_mass("ball", model.attach("bob", (1, 0, 0), hinge), 1.0)
-    with pytest.raises(InputError, match="mass is singular at hinge.rotation.0.: nothing with mass "
-                                         "moves with it; give it a mass"):
+    with pytest.raises(InputError, match="mass matrix is singular: hinge.rotation.0. moves no "
+                                         "mass; add "
+                                         "mass or inertia there"):
         Simulation(model, 0.01)

@@ -129,9 +129,9 @@ def test_follower_torque_stays_in_the_body():
     (lambda m: m.spring("a", "a"), "spring: node 'a' is joined to itself"),
     (lambda m: m.spring("a", "b", -1.0), "spring: stiffness is -1.0: give a finite number >= 0"),
     (lambda m: m.spring("a", "b", 1.0, np.nan), "spring: damping is nan: give a finite number"),
-    (lambda m: m.spring("a", "c", 1.0), "nodes 'a' and 'c' start together, so it has no direction"),
+    (lambda m: m.spring("a", "c", 1.0), "nodes 'a' and 'c' coincide, so it has no direction"),
     (lambda m: m.torsion_spring("a", 1.0, rest=np.inf), "torsion spring at 'a': rest is inf"),
-    (lambda m: m.bushing("a", "b", 1.0), "bushing: nodes 'a' and 'b' start apart"),
+    (lambda m: m.bushing("a", "b", 1.0), "bushing: nodes 'a' and 'b' do not coincide"),
     (lambda m: m.bushing("a", "c", -1.0), "bushing at 'a' has a coefficient that is negative"),
     (lambda m: m.torsion_spring("half", 1.0), "node 'half' has no rotation"),
 ])

@@ -73,7 +73,7 @@ def test_modes_are_nested(made, rich, few, placed):
         assert close(one, other)
     assert close(found.recovery.shapes[:, :n], expected.recovery.shapes[:, :n])
     assert close(found.recovery.static, expected.recovery.static)
-    # the static answer of the modes left out is a part that is not small
+    # the static response of the omitted modes is a part that is not small
     assert not close(many.recovery.static, expected.recovery.static)
     y = np.linspace(-1e-3, 2e-3, n)
     assert close(found.displacements(y), expected.displacements(y))
@@ -87,7 +87,7 @@ def test_damping_stress_modes_and_notes_follow():
     body = replace(body, recovery=shapes)
     found = truncated(body, 1)
     n = len(found.mass)
-    # damping forces of a motion without the modes left out, on the coordinates that stay
+    # damping forces of a motion without the omitted modes, on the coordinates that stay
     assert np.array_equal(found.damping, body.damping[:n, :n])
     assert np.array_equal(found.recovery.stress[0].modes, stresses[..., :n])
     assert found.summary().splitlines()[-1] == "1 of 5 internal modes kept"

@@ -562,7 +562,7 @@ def test_quantities_that_there_are_not(beam, tmp_path):
     older.write_text("older")
     with pytest.raises(InputError, match="did you mean 'tip.position'"):
         animate(beam, older, "tip.positon")
-    with pytest.raises(InputError, match="a film shows no plots, such as of tip.position"):
+    with pytest.raises(InputError, match="a film cannot show plots, such as of tip.position"):
         animate(beam, tmp_path / "a.gif", "tip.position")
     assert older.read_text() == "older" and len(list(tmp_path.iterdir())) == 1
 
@@ -570,7 +570,7 @@ def test_quantities_that_there_are_not(beam, tmp_path):
 def test_results_of_one_state(tmp_path):
     result = simulate(hinged_beam.build(modes=2, elements=4).model, 0.01, 0.0)
     for name in ("a.html", "a.gif"):
-        with pytest.raises(InputError, match="holds 1 recorded state, which make"):
+        with pytest.raises(InputError, match="holds 1 recorded state, too few for"):
             animate(result, tmp_path / name)
 
 

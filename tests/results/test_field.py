@@ -7,9 +7,9 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Result, simulate
 from sebody.assembly.numbering import number
+from sebody.contract.layout import RECORD
 from sebody.fem import Section, planar_beam
 from sebody.fem import frame as frame_of_beams
-from sebody.kernels.layout import RECORD
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.results.recording import record_counts
 from sebody.scenes import hinged_beam
@@ -160,8 +160,8 @@ def test_bodies_without_recovery():
     body = model.bodies["body"].body
     bare = ReducedBody(body.stiffness, body.mass, body.coordinates, body.keeps, body.modes)
     model.bodies["body"].body = bare
-    with pytest.raises(InputError, match="'body' is made of reduced matrices alone, so it knows "
-                                         "nothing of what is inside: reduce its FE model"):
+    with pytest.raises(InputError, match="'body' has reduced matrices only, so fields "
+                                         "inside it are unknown: reduce its FE model"):
         states(model).field("body")
     rigid = Model()
     rigid.point_mass("p", rigid.node("n", (0, 0, 0), keeps="translation"), 1.0)

@@ -100,7 +100,8 @@ def test_a_body_without_stresses_says_why():
     model.superelement("part", body, nodes)
     model.gravity((0, 0, -9.81))
     result = simulate(model, h=0.01, t_end=0.02)
-    with pytest.raises(InputError, match="'part' knows no stresses: the deck has a flaw; correct"):
+    with pytest.raises(InputError, match="'part' has no known stresses: the deck has a flaw; "
+                                         "correct"):
         result.hot_spots("part")
     said = "body 'part' has no stresses: the deck has a flaw; correct it"
     assert said in result.cautions and f"caution              {said}" in result.summary()

@@ -239,8 +239,8 @@ def test_colours_by_argument(arm, folder):
     model.rigid_body("stone", model.node("a", (0, 0, 0)), 1.0, [1, 1, 1])
     model.gravity((0, 0, -1))
     result = simulate(model, 0.1, 1.0)
-    with pytest.raises(InputError, match="colour is 'von_mises', but no body of the model knows "
-                                         "its stresses"):
+    with pytest.raises(InputError, match="colour is 'von_mises', but the stresses of all "
+                                         "bodies are unknown"):
         animate(result, folder / "stone.html", colour="von_mises")
     with pytest.raises(InputError, match="colour is 'displacement', but no body of the model has "
                                          "the cells"):

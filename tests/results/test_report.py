@@ -114,5 +114,5 @@ def test_notebooks_show_models_and_results():
     result = simulate(hinged_beam.build(modes=2, elements=4).model, 0.01, 0.1)
     rows = dict(re.findall(r"<tr><td>([^<]*)</td><td>([^<]*)</td></tr>", result._repr_html_()))
     assert rows["unknowns"] == str(result.numbering.free)
-    assert rows["steps"].startswith("10 (0 cut)")
+    assert rows["steps"].startswith("10 (0 rejected)")
     assert Model()._repr_html_() == "<p>spatial model: empty</p>"

@@ -128,9 +128,9 @@ def test_multipliers_of_a_joint_by_its_name():
 
 
 def test_a_joint_without_equations_has_no_multipliers():
-    with pytest.raises(InputError, match="joint 'hinge' takes no equation, so it has no "
-                                         "multipliers: what it joins is shared or fixed; the "
-                                         "force on a fixed node is its reaction"):
+    with pytest.raises(InputError, match="joint 'hinge' has no equations and so no "
+                                         "multipliers, since its nodes share coordinates or "
+                                         "are fixed; the force on a fixed node is its reaction"):
         hinged(False)["hinge.multipliers"]
 
 
@@ -167,7 +167,7 @@ def test_save_refuses_other_files(tmp_path):
 def test_summary_says_what_matters():
     text = spatial().summary()
     assert "unknowns             13" in text
-    assert "steps                50 (0 cut), to t = 0.5" in text
+    assert "steps                50 (0 rejected), to t = 0.5" in text
     for line in ("iterations per step", "time per step", "energy balance"):
         assert line in text
     assert "FAILED" not in text

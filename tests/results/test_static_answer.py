@@ -1,4 +1,4 @@
-"""The static answer of the modes left out, against the matrices of the whole FE model."""
+"""The static response of the omitted modes, against the matrices of the whole FE model."""
 
 from dataclasses import replace
 

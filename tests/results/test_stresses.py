@@ -1,4 +1,4 @@
-"""Stresses inside bodies: closed forms, full FE solutions, and what the static answer adds."""
+"""Stresses inside bodies: closed forms, full FE solutions, and what the static response adds."""
 
 from dataclasses import replace
 
@@ -52,7 +52,7 @@ def test_a_beam_that_hangs_from_its_root(modes):
     fibres = field.at(0).fibre_stress[-1, :, 0]
     assert_allclose((fibres.min(), fibres.max()), (-bending, bending), rtol=5e-4)
     assert_allclose(np.abs(field.principal()[0]).max(), bending, rtol=5e-4)
-    # without the static answer the modes kept miss as much as they must: Guyan's cubic
+    # without the static response the modes kept miss as much as they must: Guyan's cubic
     # displacement has the moments q L^2 5 / 12 at the root and q L^2 / 6 in the middle
     plain = field.at(0, static=False).section_forces[-1, 0, 5] / (WEIGHT * LENGTH**2)
     if modes == 0:
@@ -172,7 +172,7 @@ def test_parts_of_the_recovery_data():
     assert fields[1].envelope().node in kept
     for call, message in (
             (lambda: fields[1].at(2), "node 2 of body 'block' is not among the 9 nodes whose"),
-            (lambda: fields[1].at(30).stress, "knows no stress at node 30"),
+            (lambda: fields[1].at(30).stress, "is unknown at node 30"),
             (lambda: fields[0].label(3), "the nodes of body 'block' have no labels: give their"),
             (lambda: block(0, recover=[99]), "recover: a node is 99: give nodes of the FE model"),
             (lambda: block(0, recover=[]), "recover names no node: give nodes"),
@@ -220,7 +220,8 @@ def test_stress_modes_of_another_program():
     with pytest.raises(InputError, match="no node with the label 5: there are 1000 to 1035"):
         field.label(5)
     bare = replace(body, recovery=replace(shapes, stress=()))
-    with pytest.raises(InputError, match="'block' knows no stresses: the body was made without"):
+    with pytest.raises(InputError, match="'block' has no known stresses: the body was made "
+                                         "without"):
         equilibrium(held(bare, points), 1).field("block").von_mises()
 
 

@@ -9,7 +9,7 @@ import pytest
 from helpers import order
 
 from sebody import InputError
-from sebody.kernels.layout import ACCELERATION, POTENTIAL, POWERS, VELOCITY
+from sebody.contract.layout import ACCELERATION, POTENTIAL, POWERS, VELOCITY
 from sebody.kernels.loader import load
 from sebody.studies import check
 from sebody.studies.catalogue import kernel_files

@@ -124,7 +124,7 @@ def test_constants_of_another_body_are_a_defect(path, body):
 
 def test_a_support_is_not_repaired(path, body):
     support = body.stiffness + np.diag(np.diag(body.stiffness))
-    with pytest.raises(InputError, match="this is no loss of digits; take supports off"):
+    with pytest.raises(InputError, match="this is not a loss of digits; remove supports from"):
         free_rigid_motion(read_body_file(spoilt(path, stiffness=support)))
 
 

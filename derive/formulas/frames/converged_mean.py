@@ -2,10 +2,11 @@
 
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits
 from sebody.derive.form.counts import FIRST_ROTATION, ROTATIONS
 from sebody.derive.form.functions import CONVERGED_MEAN, PLANAR_MEAN
 from sebody.derive.form.spaces import Quantity
-from sebody.derive.form.steps import Search, Solve, search
+from sebody.derive.form.steps import Search, Solve, Sum, search
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
@@ -22,7 +23,6 @@ from sebody.derive.symbolic.rotations import (
     inverse_tangent_transposed_times,
 )
 from sebody.derive.symbolic.variation import check_same
-from sebody.kernels.layout import FrameTraits
 
 
 def converged_mean(q: Quantities) -> Frame:
@@ -39,8 +39,9 @@ def converged_mean(q: Quantities) -> Frame:
         return short
 
     def angular_rate(rate: Quantity, of: Quantity, invert: bool) -> Solve:
-        return Solve("B rate = sum alpha_j T^-1(psi_j) rate_j", rate, "rotation",
-                     equation(rate, of), sp.zeros(3, 1), "B", invert=invert, weight=alpha)
+        return Solve("B rate = sum alpha_j T^-1(psi_j) rate_j", rate,
+                     (Sum("rotation", equation(rate, of)),), sp.zeros(3, 1), "B",
+                     invert=invert, weight=alpha)
 
     wp = q.wp.symbols
     back = alpha * inverse_tangent_transposed_times(psi, wp)
@@ -50,10 +51,10 @@ def converged_mean(q: Quantities) -> Frame:
         locate=(mean_search(q, 200), *inverse_tangent_values(q, q.psi, (q.e0, q.e1))),
         velocity=(angular_rate(q.Om0, q.Om, True),),
         variation=(angular_rate(q.dth0, q.dth, False),),
-        pull=(pulled_back(q, alpha * inverse_tangent_times(psi, wp), equation(q.wp, q.dth),
-                          "rotation", alpha),),
+        pull=(pulled_back(q, (Sum("rotation", alpha * inverse_tangent_times(psi, wp)),),
+                          (Sum("rotation", equation(q.wp, q.dth)),), alpha),),
         work=virtual_work, position=sp.zeros(3, 1), origin=sp.zeros(3, 1), rotation=back,
-        condition=condition(q))
+        conditions=(condition(q),))
 
 
 def condition(q: Quantities) -> Condition:

@@ -9,15 +9,15 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits
 from sebody.derive.form.arrays import Place
 from sebody.derive.form.functions import INVERSE_TANGENT
 from sebody.derive.form.spaces import Quantity
-from sebody.derive.form.steps import Solve, Stage, Step, Values
+from sebody.derive.form.steps import Solve, Stage, Step, Sum, Values
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import VirtualWork
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.variation import check_same
-from sebody.kernels.layout import FrameTraits
 
 
 class Condition(NamedTuple):
@@ -26,8 +26,8 @@ class Condition(NamedTuple):
     Beside it the weighted displacements add up to zero in every frame, (14).
     """
 
-    of: Quantity                        # displacements of the nodes, or their rotation vectors
-    weight: sp.Matrix                   # 3 x 3, of constants of a node
+    of: Quantity                        # displacements of the nodes, their rotation vectors, ...
+    weight: sp.Matrix                   # three rows, of constants of what carries it
     constants: tuple[Quantity, ...]     # these
 
 
@@ -42,9 +42,11 @@ class Frame(NamedTuple):
     position: sp.Matrix             # force of wp on R0^T delta x_i
     origin: sp.Matrix               # force of wp on R0^T delta x_0, summed over positions
     rotation: sp.Matrix             # force of wp on delta Theta_j
+    mode: sp.Matrix = sp.zeros(1, 1)    # force of wp on the variation of an internal mode
     differentials: tuple[Stage, ...] = ()   # of what `locate` computes, once dth0 is known
-    # linear, and of the sign of the equation in `velocity`; None of a frame without one
-    condition: Condition | None = None
+    # its parts by what carries them add up to zero: linear, and of the sign of the equation in
+    # `velocity`; none of a frame without one
+    conditions: tuple[Condition, ...] = ()
 
 
 class FrameOption(NamedTuple):
@@ -52,7 +54,7 @@ class FrameOption(NamedTuple):
 
     traits: FrameTraits
     derive: Callable[[Quantities], Frame]
-    # that of its `Frame`; of frames that depend on the last step to first order
+    # the whole of that of its `Frame`; of frames that depend on the last step to first order
     condition: Callable[[Quantities], Condition] | None = None
 
 
@@ -79,12 +81,20 @@ def inverse_tangent_values(q: Quantities, of: Quantity,
     return (Values("coefficients of T^-1", outputs, INVERSE_TANGENT, of, 30),)
 
 
-def pulled_back(q: Quantities, short: sp.Matrix, equation: sp.Matrix, over: str,
+def pulled_back(q: Quantities, sums: tuple[Sum, ...], equation: tuple[Sum, ...],
                 weight: sp.Symbol | None = None) -> Solve:
-    """``B^T wp = W`` where ``B`` is the matrix of the frame's equation in its rate."""
+    """``B^T wp = W`` where ``B`` is the matrix of the frame's equation in its rate.
+
+    Parameters
+    ----------
+    sums : tuple of Sum
+        ``B^T wp``, proved.
+    equation : tuple of Sum
+        The frame's with wp in place of its rate; sums without the rate may follow.
+    """
     unknown = q.wp.symbols
-    matrix = sp.Matrix.hstack(*[equation.diff(u) if isinstance(u, sp.Symbol) else sp.zeros(3, 1)
-                                for u in unknown])
-    check_same("transposed equation of the frame", short, matrix.T * unknown)
-    return Solve("B^T wp = W", q.wp, over, short, -q.W.symbols, "B", transposed=True,
-                 weight=weight)
+    for short, part in zip(sums, equation, strict=False):
+        matrix = sp.Matrix.hstack(*[
+            part.summand.diff(u) if isinstance(u, sp.Symbol) else sp.zeros(3, 1) for u in unknown])
+        check_same("transposed equation of the frame", short.summand, matrix.T * unknown)
+    return Solve("B^T wp = W", q.wp, sums, -q.W.symbols, "B", transposed=True, weight=weight)

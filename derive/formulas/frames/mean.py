@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits
 from sebody.derive.form.counts import FIRST_ROTATION, ROTATIONS
 from sebody.derive.form.functions import STUMPFF_2345, WEIGHTED_MEAN
 from sebody.derive.form.spaces import Quantity
@@ -19,7 +20,6 @@ from sebody.derive.symbolic.rotations import (
     tangent,
 )
 from sebody.derive.symbolic.variation import along, check_same, differential
-from sebody.kernels.layout import FrameTraits
 
 
 def mean(q: Quantities) -> Frame:

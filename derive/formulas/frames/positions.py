@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from sebody.contract.layout import FrameTraits
 from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS
 from sebody.derive.form.functions import (
     BEST_FIT,
@@ -10,7 +11,7 @@ from sebody.derive.form.functions import (
     RELATIVE_ROTATIONS,
 )
 from sebody.derive.form.spaces import Quantity
-from sebody.derive.form.steps import Search, Solve, search
+from sebody.derive.form.steps import Search, Solve, Sum, search
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to, virtual_work
 from sebody.derive.formulas.frames.frame import (
@@ -24,7 +25,6 @@ from sebody.derive.formulas.frames.frame import (
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import cross, skew
 from sebody.derive.symbolic.variation import along, check_same, differential, rotating
-from sebody.kernels.layout import FrameTraits
 
 
 def positions(q: Quantities) -> Frame:
@@ -49,19 +49,20 @@ def positions(q: Quantities) -> Frame:
         return short
 
     def angular_rate(rate: Quantity, of: Quantity, origin: Quantity, invert: bool) -> Solve:
-        return Solve("sum w_j X_j x (rate of r_j) = 0", rate, "position",
-                     equation(rate, of, origin), sp.zeros(3, 1), "B", invert=invert)
+        return Solve("sum w_j X_j x (rate of r_j) = 0", rate,
+                     (Sum("position", equation(rate, of, origin)),), sp.zeros(3, 1), "B",
+                     invert=invert)
 
     work = q.wp.symbols.dot(equation(q.dth0, q.dx, q.dx0))
     return Frame(
         locate=(*_searches(q), *inverse_tangent_values(q, q.psi, (q.e0, q.e1))),
         velocity=(origin_stage(q, q.v0, q.vs), angular_rate(q.Om0, q.vs, q.v0, True)),
         variation=(angular_rate(q.dth0, q.dx, q.dx0, False),),
-        pull=(pulled_back(q, fit * cross(r, cross(X, q.wp.symbols)),
-                          equation(q.wp, q.dx, q.dx0), "position"),),
+        pull=(pulled_back(q, (Sum("position", fit * cross(r, cross(X, q.wp.symbols))),),
+                          (Sum("position", equation(q.wp, q.dx, q.dx0)),)),),
         work=virtual_work, position=-conjugate_to(work, q.dx.symbols),
         origin=-conjugate_to(work, q.dx0.symbols), rotation=sp.zeros(3, 1),
-        condition=condition(q))
+        conditions=(condition(q),))
 
 
 def condition(q: Quantities) -> Condition:

@@ -1,11 +1,11 @@
 """The arrays of option C: coordinates in axes of the body, their products, and constants."""
 
+from sebody.contract.layout import MARGIN, MOST_SLAVED, Part, axes_of
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array, constant, scratch
 from sebody.derive.form.counts import padded
 from sebody.derive.form.statements import Let
 from sebody.derive.form.whole import Truncated
-from sebody.kernels.layout import MARGIN, MOST_SLAVED, Part, axes_of
 
 PARTS = (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),

@@ -4,6 +4,7 @@ Contractions of the constants with coordinates are products with stacked matrice
 left out.
 """
 
+from sebody.contract.layout import whole_vectors
 from sebody.derive.form.arrays import Array, View
 from sebody.derive.form.counts import N, bound, bound_free, free, hN, hn, resultants
 from sebody.derive.form.functions import (
@@ -29,7 +30,6 @@ from sebody.derive.formulas.inertia.rates import (
     energies_stage,
     form_value,
 )
-from sebody.kernels.layout import whole_vectors
 
 ROWS = (arrays.y, at.z), (arrays.eta, at.zd), (arrays.etad, at.zdd)     # local and free ones
 

@@ -6,6 +6,7 @@ the most zeros.
 
 import sympy as sp
 
+from sebody.contract.layout import axes_of
 from sebody.derive.form.arrays import Array, Place
 from sebody.derive.form.counts import N, hN, i
 from sebody.derive.form.spaces import Quantity
@@ -14,7 +15,6 @@ from sebody.derive.formulas.inertia import floating_arrays as at
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia.resultants import resultants
 from sebody.derive.formulas.quantities import Quantities
-from sebody.kernels.layout import axes_of
 
 PLACE, RATE, SECOND = at.Lz, at.Lv, at.La       # local tangents by z, zd and zdd
 BESIDE = Place(N)       # behind the coordinates: motion of the frame, forces on it

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import InertiaTraits
 from sebody.derive.form.arrays import Array
 from sebody.derive.form.statements import Let
 from sebody.derive.form.steps import Product, Stage, Step
@@ -21,7 +22,6 @@ from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.passes.linearize import Linearizer
 from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
-from sebody.kernels.layout import InertiaTraits
 
 PRODUCTS = (Product("momentum, p = Mbar ydot", arrays.M, arrays.yd, arrays.p),
             Product("inertia force, pd = Mbar yddot", arrays.M, arrays.ydd, arrays.pd))

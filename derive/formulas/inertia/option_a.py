@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from sebody.contract.layout import InertiaTraits
 from sebody.derive.form.steps import Role, Stage
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to
@@ -15,7 +16,6 @@ from sebody.derive.formulas.kinematics import angular_velocity_variation
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import cross, skew
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential
-from sebody.kernels.layout import InertiaTraits
 
 
 def option_a(q: Quantities) -> Inertia:

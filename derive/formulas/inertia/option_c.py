@@ -20,6 +20,7 @@ work.
 
 import sympy as sp
 
+from sebody.contract.layout import InertiaTraits
 from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import floating_forces, floating_tangents
@@ -28,7 +29,6 @@ from sebody.derive.formulas.inertia.floating_quantities import FloatingQuantitie
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
 from sebody.derive.formulas.inertia.rates import frame_motion, on_frame_stage
 from sebody.derive.formulas.quantities import Quantities
-from sebody.kernels.layout import InertiaTraits
 
 
 def option_c(q: Quantities) -> Inertia:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import InertiaTraits, Part, axes_of
 from sebody.derive.form.arrays import Array, Place, constant, scratch
 from sebody.derive.form.counts import damped, n, padded
 from sebody.derive.form.functions import ADD_BLOCK_TIMES, STUMPFF_1_TO_7
@@ -41,7 +42,6 @@ from sebody.derive.formulas.inertia.rates import (
 )
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.passes.linearize import Linearizer
-from sebody.kernels.layout import InertiaTraits, Part, axes_of
 
 INERTIAL = Product("inertia force of deformation, Mbar yddot", arrays.M, arrays.etad,
                    arrays.pd)

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.contract.layout import axes_of
 from sebody.derive.form.arrays import Array, Place, scratch
 from sebody.derive.form.functions import BLOCK_TIMES, INVERSE_TANGENT_SECOND, ROWS_TIMES
 from sebody.derive.form.spaces import Quantity
-from sebody.derive.form.steps import Call, Solve, Stage, Step, Values, call, solve_matrix
+from sebody.derive.form.steps import Call, Solve, Stage, Step, Sum, Values, call, solve_matrix
 from sebody.derive.form.whole import Whole
 from sebody.derive.formulas import gravity
 from sebody.derive.formulas.damping import rates
@@ -23,9 +24,8 @@ from sebody.derive.symbolic.variation import (
     check_same,
     differential,
 )
-from sebody.kernels.layout import axes_of
 
-RATES = {"u": "eu", "psi": "ep"}     # of local coordinates, by name
+RATES = {"u": "eu", "psi": "ep", "ym": "em"}     # of local coordinates, by name
 MOVING, STRAINED, LOST = range(3)       # places among the squares: energies, power lost
 SQUARES, MOVED = scratch("squares"), scratch("moved")
 RIGID = tuple(map(scratch, ("rigid0", "rigid1", "rigid2")))     # rigid parts of y and its rates
@@ -56,23 +56,33 @@ def _accelerations(q: Quantities, frame: Frame, rules: Rules, stages: list[Stage
         A frame that declares no linear condition, or has no equation for its rate.
     """
     solves = [step for step in frame.velocity if isinstance(step, Solve)]
-    if frame.condition is None or not solves:
+    if not frame.conditions or not solves:
         raise DerivationError("inertia options with rates of the frame need one that declares the "
-                              "linear `condition` of its local coordinates and solves for its rate")
-    rate, (of, weight, _) = solves[0], frame.condition
-    target, Om0d = getattr(q, SECOND[RATES[of.name]]), q.Om0d
-    closing = next(stage for stage in stages if stage.sets[0][0] is target)
-    value, turning = closing.sets[0][1], sp.Matrix(Om0d.kept)
-    by_turning = value.jacobian(turning) * turning
-    equation = solve_matrix(rate) * Om0d.symbols
-    check_same("rate of the frame's equation", weight * value, differential(rate.summand, rules))
-    check_same("the part of the frame in it", weight * by_turning, equation)
-    known = closing._replace(title=closing.title + ", the frame held",
-                             sets=((target, value.subs({s: 0 for s in Om0d.kept})),))
-    solve = Solve("rate: " + rate.title, Om0d, rate.over, equation + weight * target.symbols,
-                  sp.zeros(3, 1), rate.inverse)
-    whole = closing._replace(sets=((target, target.symbols + by_turning),))
-    return known, solve, whole, *(stage for stage in stages if stage is not closing)
+                              "linear `conditions` of its local coordinates and solves for its "
+                              "rate")
+    rate, Om0d = solves[0], q.Om0d
+    turning = sp.Matrix(Om0d.kept)
+    before, sums, after = [], [], list(stages)
+    for (of, weight, _), part in zip(frame.conditions, rate.sums, strict=True):
+        target = getattr(q, SECOND[RATES[of.name]])
+        closing = next(stage for stage in stages if stage.sets[0][0] is target)
+        value = closing.sets[0][1]
+        stored = sp.Matrix(target.symbols[:value.rows])
+        by_turning = value.jacobian(turning) * turning
+        equation = solve_matrix(rate, part) * Om0d.symbols
+        check_same("rate of the frame's equation", weight * value,
+                   differential(part.summand, rules))
+        check_same("the part of the frame in it", weight * by_turning, equation)
+        after.remove(closing)
+        sums.append(Sum(part.over, equation + weight * stored))
+        if not any(by_turning):
+            before.append(closing)
+            continue
+        before.append(closing._replace(title=closing.title + ", the frame held",
+                                       sets=((target, value.subs({s: 0 for s in Om0d.kept})),)))
+        after.insert(0, closing._replace(sets=((target, stored + by_turning),)))
+    solve = Solve("rate: " + rate.title, Om0d, tuple(sums), sp.zeros(3, 1), rate.inverse)
+    return *before, solve, *after
 
 
 def second_derivatives(q: Quantities) -> tuple[Values, ...]:

@@ -12,7 +12,7 @@ from sebody.derive.passes.uses import uses
 from sebody.derive.printing.c.statements import REAL, WHOLE, Block, pointer
 from sebody.derive.printing.lines import INDENT, filled, listed
 
-HEAD = ("// Kernels of sebody as C99; sebody/kernels/layout.py describes their arguments", "",
+HEAD = ("// Kernels of sebody as C99; sebody/contract/layout.py describes their arguments", "",
         "#include <math.h>", "#include <stdint.h>", "")
 
 

@@ -1,5 +1,6 @@
 """What files of kernels say of themselves, by what the kernels are of."""
 
+from sebody.contract.layout import Part
 from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS, WIDTH
 from sebody.derive.form.kernel import Kernel
 from sebody.derive.formulas.elements import Constant, Element
@@ -9,7 +10,6 @@ from sebody.derive.kernels.motion import FrameMotion
 from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.printing.numba.files import Head, counts, operations
 from sebody.derive.printing.numba.parts import table
-from sebody.kernels.layout import Part
 
 SPACES = {False: "motion in space", True: "motion in a plane"}
 PART = "Part"
@@ -73,7 +73,7 @@ def motion_head(given: FrameMotion, kernel: Kernel) -> Head:
         "Motion of bodies: their frame and local coordinates, twice derived in time",
         (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
          "modes.", f"Frame: {given.option.traits.summary}.",
-         "Writes rows MOTION of sebody/kernels/layout.py."),
+         "Writes rows MOTION of sebody/contract/layout.py."),
         (f'FRAME = "{given.frame}"', *counts(planar, (None, None)), "N_MODES = None",
          f"CONSTANTS = FRAME_CONSTANTS{table_of_own}", f"WORK_ROWS = {kernel.rows}"),
         ("FRAME_CONSTANTS",), (PART,) if own else ())

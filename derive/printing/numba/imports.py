@@ -4,8 +4,9 @@ from sebody.derive.form.kernel import Kernel
 from sebody.derive.passes.uses import uses
 from sebody.derive.printing.lines import WIDTH
 
-RUNTIME = "sebody.kernels"
-DECORATOR, POINTER = ("pipeline", "kernel_function"), ("abi", "at")
+KERNELS, LAYOUT = "sebody.kernels", "sebody.contract.layout"
+DECORATOR = "sebody.compiler.decorators", "kernel_function"
+POINTER = f"{KERNELS}.abi", "at"
 
 
 def import_lines(kernel: Kernel, rows: tuple[str, ...] = (), classes: tuple[str, ...] = ()) -> str:
@@ -17,15 +18,14 @@ def import_lines(kernel: Kernel, rows: tuple[str, ...] = (), classes: tuple[str,
         Rows of constants and classes of the layout, which the head of the file uses.
     """
     used = uses(kernel.body)
-    functions = {(f.module, f.name) for f in used.functions} | {DECORATOR}
+    functions = {(f"{KERNELS}.{f.module}", f.name) for f in used.functions} | {DECORATOR}
     functions |= {POINTER} if used.views else set()
-    modules: dict[str, list[str]] = {"layout": [*sorted([*rows, *(a.name for a in used.agreed)]),
-                                                *sorted(classes)]}
+    modules: dict[str, list[str]] = {LAYOUT: [*sorted([*rows, *(a.name for a in used.agreed)]),
+                                         *sorted(classes)]}
     for module, name in sorted(functions):
         modules.setdefault(module, []).append(name)
     found = [f"from math import {', '.join(sorted(used.mathematics))}\n"] * bool(used.mathematics)
-    found += [_line(f"{RUNTIME}.{module}", modules[module]) for module in sorted(modules)
-              if modules[module]]
+    found += [_line(module, modules[module]) for module in sorted(modules) if modules[module]]
     return "\n".join(found)
 
 

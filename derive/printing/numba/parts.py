@@ -3,8 +3,8 @@
 import json
 from collections.abc import Iterable
 
+from sebody.contract.layout import Part, Size
 from sebody.derive.printing.lines import INDENT, WIDTH, nested
-from sebody.kernels.layout import Part, Size
 
 
 def table(parts: Iterable[Part], levels: int = 0) -> str:

@@ -12,10 +12,10 @@ from functools import cache
 
 from sebody.analysis.advice.changes import Choice, Step
 from sebody.analysis.advice.forms import Form, Part
+from sebody.contract.layout import layout_name
+from sebody.contract.names import PLANAR, element_name
 from sebody.errors import InputError
-from sebody.kernels.layout import layout_name
 from sebody.kernels.loader import find, superelement_kernel_name
-from sebody.kernels.names import PLANAR, element_name
 from sebody.model.frames import FRAMES
 from sebody.model.inertias import needs_damped_kernel
 from sebody.model.model import Model

@@ -10,8 +10,8 @@ from sebody.analysis.advice.forms import Form, alike
 from sebody.analysis.advice.indicators.activity import activity
 from sebody.analysis.advice.laboratory import FINER, Laboratory, Tried
 from sebody.analysis.advice.reference import ORDER_FACTOR
+from sebody.contract.names import ANY
 from sebody.errors import InputError
-from sebody.kernels.names import ANY
 
 LONGER = (4, 2)             # steps that are tried, in given ones
 MOST_ALONE = 12             # forms of a part that are tried alone

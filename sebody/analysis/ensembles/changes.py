@@ -222,7 +222,7 @@ def load_amplitude(model: Model, load: Element, name: str) -> Handle:
     """Factor of a force, torque or mode force."""
     direction = next((c for c in ("d", "factor") if c in load.constants), None)
     if direction is None:
-        raise InputError(f"{name}: {load.name!r} is no force or torque: it has no amplitude")
+        raise InputError(f"{name}: {load.name!r} is not a force or torque: it has no amplitude")
     before = np.array(load.constants[direction], dtype=float)
     return _constants(load, lambda factor: {direction: factor * before}, LOADS, np.array(1.0))
 
@@ -243,7 +243,7 @@ def spring_constant(quantity: str) -> Callable[[Model, Element, str], Handle]:
 def load_table(model: Model, load: Element, name: str) -> Handle:
     """Values of a load's table, at its times."""
     if load.history is None:
-        raise InputError(f"{name}: {load.name!r} has no history")
+        raise InputError(f"{name}: {load.name!r} has no time function")
     return _table(load, name, LOADS)
 
 
@@ -251,8 +251,8 @@ def _table(element: Element, name: str, touches: str) -> Handle:
     before = element.history
     rows = None if before.functions or before.waves else rows_of(before.times, before.pieces)
     if rows is None or len(rows) < 2:
-        raise InputError(f"{name}: the history of {element.name!r} is no table of values: vary its "
-                         "amplitude")
+        raise InputError(f"{name}: the time function of {element.name!r} is not a table of values: "
+                         "vary the amplitude instead")
 
     def made(values: NDArray) -> History:
         # the corners of the table as built: runs that have the same ones begin with a copy

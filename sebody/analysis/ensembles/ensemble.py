@@ -105,7 +105,7 @@ class Ensemble:
         ------
         InputError
             Before the first run: unknown names, arrays of different lengths, values that a body
-            cannot have, an unknown quantity, a time that is no multiple of the step.
+            cannot have, an unknown quantity, a time that is not a multiple of the step.
         """
         refuse_changed(self.model)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
@@ -153,7 +153,7 @@ class Ensemble:
                              f"{self.h:g}, give an earlier time or a longer step")
         last = round(t_end / self.h)
         if last < 1 or abs(t_end / self.h - last) > 1e-6:
-            raise InputError(f"t_end is {t_end:g}, which is no multiple of the step {self.h:g}: "
+            raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {self.h:g}: "
                              "give one")
         return last
 
@@ -174,7 +174,7 @@ class Ensemble:
         largest = max(sizes, key=sizes.get)
         memory.check(sum(sizes.values()) + 8.0 * count, f"output {largest!r} of {runs} runs of "
                      f"{count} recorded states, with the others,",
-                     "keep a maximum or the like in place of a history, fewer states with "
+                     "keep a maximum or the like instead of a history, fewer states with "
                      "output_every, or make fewer runs at a time")
 
     def _empty(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],

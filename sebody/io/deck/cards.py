@@ -32,7 +32,7 @@ class Row(NamedTuple):
         try:
             return int(word)
         except ValueError as error:
-            raise self.fault(f"{word!r} is no label of a node or element", "write the deck again"
+            raise self.fault(f"{word!r} is not a label of a node or element", "write the deck again"
                              ) from error
 
     def real(self, word: str) -> float:
@@ -40,7 +40,7 @@ class Row(NamedTuple):
         try:
             return float(word.upper().replace("D", "E")) if word else 0.0
         except ValueError as error:
-            raise self.fault(f"{word!r} is no number", "write the deck again") from error
+            raise self.fault(f"{word!r} is not a number", "write the deck again") from error
 
 
 class Card(NamedTuple):

@@ -209,7 +209,7 @@ def _tie(deck: Deck, card: Card) -> None:
         slave, master = (plain_name(word) for word in [*row.words, ""][:2])
         for name in (slave, master):
             if name not in deck.surfaces:
-                raise row.fault(f"*TIE of surface {name or '(none)'}, which there is not",
+                raise row.fault(f"*TIE of surface {name or '(none)'}, which does not exist",
                                 "define the surface before it")
         deck.ties.append(Tie(card.parameters.get("NAME", "").upper(), slave, master, adjusted,
                              row))

@@ -57,7 +57,7 @@ class Sets:
         if word.isdecimal():
             return (int(word),)
         if plain_name(word) not in self._members:
-            raise row.fault(f"{word!r} is no label and no set of {self._of}s",
+            raise row.fault(f"{word!r} is neither a label nor a set of {self._of}s",
                             "define the set in this deck, flattened (no parts and instances)")
         return self.labels(plain_name(word))
 
@@ -71,7 +71,7 @@ class Sets:
             if other == name or other in outer:
                 raise row.fault(f"{self._of} set {other} has itself as a member", "take it out")
             if other not in self._members:
-                raise row.fault(f"{other!r} is no label and no set of {self._of}s",
+                raise row.fault(f"{other!r} is neither a label nor a set of {self._of}s",
                                 "define the set in this deck, flattened (no parts and instances)")
             found += self._resolved(other, (*outer, name))
         return found

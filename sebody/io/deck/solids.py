@@ -102,7 +102,7 @@ def deck_solids(deck: Deck, index: dict[int, int], motion: Motion) -> Solids:
 def _lack(deck: Deck, kind: str, section: Section | None) -> str:
     """Why elements have no stress; empty if they have."""
     if kind not in CELLS or CELLS[kind] not in SOLID_KINDS:
-        return f"are {kind}, which are no solids known here"
+        return f"are {kind}, which are not known solids"
     if kind in _UNLIKE:
         return f"are {kind}, which {_UNLIKE[kind]}"
     if section is None:
@@ -151,7 +151,7 @@ def deck_prestress(deck: Deck, solids: Solids, motion: Motion, stiffness: sparse
                                motion.matrix, motion.rigid)
     except InvertedCell as error:
         label = solids.groups[error.group].labels[error.cell]
-        raise InputError(f"element {label} of the deck is turned inside out or has no volume: "
+        raise InputError(f"element {label} of the deck is inverted or has no volume: "
                          "correct the order of its nodes, or their places") from error
     off = _difference(found, motion, stiffness)
     if off < _ALIKE:

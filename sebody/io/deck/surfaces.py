@@ -51,7 +51,7 @@ def surface_faces(surface: Surface, sets: Sets, solids: Mapping[int, Solid]
         word, face = [*row.words, ""][:2]
         for label in sets.member(row, word):
             if label not in solids:
-                raise row.fault(f"element {label} of the surface is no solid of the deck",
+                raise row.fault(f"element {label} of the surface is not a solid of the deck",
                                 "name faces of solid elements")
             kind, nodes = solids[label]
             faces = [face_nodes(kind, len(nodes), one) for one in _corners(row, kind, face)]

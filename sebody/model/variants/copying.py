@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody import inputs
-from sebody.kernels.names import body_load_kind
+from sebody.contract.names import body_load_kind
 from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism

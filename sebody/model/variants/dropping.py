@@ -107,7 +107,7 @@ def _check_unused(model: Mechanism, body: Superelement, node: Node, what: str,
     if not any(t is own for t in kept):
         raise InputError(f"superelement {body.name!r} does not keep {own.name}")
     if not own.solved:
-        raise InputError(f"{own.name} is fixed, prescribed or hangs on another node: it is no "
+        raise InputError(f"{own.name} is fixed, prescribed or follows another node: it is no "
                          "unknown that could be dropped")
     needed = f"cannot be dropped: {own.name} is needed by"
     for other in model.bodies.values():
@@ -122,7 +122,7 @@ def _check_unused(model: Mechanism, body: Superelement, node: Node, what: str,
             raise InputError(f"{needed} node {other.name!r}, which shares it")
     for other in model.triplets():
         if other.root is not None and any(t is own for t in other.parents()):
-            raise InputError(f"{needed} {other.name}, which hangs on it")
+            raise InputError(f"{needed} {other.name}, which follows it by a rigid link")
     for load in acting:
         if load.mode is not None:
             raise InputError(f"{load.name!r} acts on a mode of superelement {body.name!r}, whose "

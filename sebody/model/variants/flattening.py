@@ -18,7 +18,7 @@ class Flattening:
     ----------
     plane : Plane
     size : float
-        Extent of the model [length].
+        Characteristic length of the model [length].
     """
 
     def __init__(self, plane: Plane, size: float) -> None:

@@ -39,5 +39,5 @@ def keep_modes(model: Mechanism, name: str, modes: int) -> Variant:
     exchange(made, old, truncated(old.body, modes), old.frame, old.inertia, old.stiffening)
     kept = f"{modes} of its {before.modes} internal modes" if modes else "no internal modes"
     left = frequencies(before.stiffness, before.mass, before.modes)[modes:]
-    ending = f"; the first left out has the frequency {left[0]:.4g}" if len(left) else ""
+    ending = f"; first omitted mode: {left[0]:.4g}" if len(left) else ""
     return Variant(made, f"{name} keeps {kept}{ending}")

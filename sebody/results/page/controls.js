@@ -128,7 +128,7 @@ class Controls {
     const { all, left } = this.header.plots, owner = element("owner");
     const owners = [...new Set(all.map((plot) => plot.owner))];
     fill(owner, owners.map((name) => [name, name]), owners[0]);
-    if (left) owner.title = `${left} more have no room on the page: name them to sebody animate`;
+    if (left) owner.title = `${left} more quantities do not fit on the page: name them to sebody animate`;
     const choose = () => {
       this.page.plot.choose(Number(element("quantity").value));
       this.page.redraw();

@@ -1,4 +1,4 @@
-"""``sebody atlas``: where methods fail: prediction of theory, measurement, reaction.
+"""``sebody atlas``: known limits: theory, measured value, how sebody reacts.
 
 Every row of the table is a number that a run has to show: theory or another program predicts it,
 or it says what this program is to do there.
@@ -8,8 +8,8 @@ import warnings
 from collections.abc import Callable, Iterable
 
 from sebody.analysis.first_run import PARTS, compile_missing
+from sebody.contract.names import element_name, superelement_name
 from sebody.errors import InputError, LimitWarning
-from sebody.kernels.names import element_name, superelement_name
 from sebody.studies.atlas import frames, geometry, inertia, integration, spin, torsion
 from sebody.studies.atlas.draw import draw
 from sebody.studies.atlas.finding import Finding, Row

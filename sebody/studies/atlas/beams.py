@@ -14,7 +14,7 @@ from sebody.results.result import Result
 AXIAL = 1e8             # stiffness: no stretch worth mentioning
 ELEMENTS = 48
 FRAMES = {"node": "node", "mean": "converged_mean"}     # of the theory, of the kernels
-UNSTABLE = 1e-2         # rate of growth that is no rounding error
+UNSTABLE = 1e-2         # real part of an eigenvalue that is not a rounding error
 
 
 def arm(bodies: int, frame: str, internal: int = 0, inertia: str | None = "b",

@@ -3,10 +3,10 @@
 import numpy as np
 
 from sebody.analysis.simulation import Simulation, simulate
+from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import assemble
 from sebody.errors import InputError
 from sebody.fem import straight_beam
-from sebody.kernels.layout import RESIDUAL
 from sebody.kernels.rotations import NEAR_PI, exp_map
 from sebody.model.model import Model
 from sebody.reduction import ReducedBody, craig_bampton
@@ -51,10 +51,11 @@ def half_turn() -> Finding:
     finding = Finding(
         "relative rotations near 180 degrees",
         "a mean frame follows half the rotation, up to 180 degrees",
-        "The local rotation is a logarithm, which jumps at half a turn, and with it a frame in "
-        f"the middle. It is refused before, from {LIMIT:.1f} degrees on, between the ends of a "
-        "body of two nodes, whatever its frame.",
-        "Stops with a message that names the reason; warns long before, at 0.3 rad.",
+        "The local rotation is the logarithm of a rotation, which jumps at 180 degrees; a mean "
+        f"frame jumps with it. Rotations are refused earlier, from {LIMIT:.1f} degrees between "
+        "the ends of a body with two nodes, for every frame.",
+        "The run stops with a message that names the reason; sebody warns much earlier, at 0.3 "
+        "rad.",
         "rotation of one node relative to the other [deg]", "rotation of the frame [deg]",
         dashed=("mean beyond the limit",))
     angles = np.arange(10.0, 180.0, 2.5)
@@ -63,7 +64,7 @@ def half_turn() -> Finding:
         last = int(np.flatnonzero(np.isfinite(turns))[-1])
         finding.rows += [
             Row(f"{frame}: first refused [deg]", LIMIT, angles[last + 1], 2.5 / LIMIT),
-            Row(f"{frame}: turn of the frame before [deg]", share * angles[last], turns[last],
+            Row(f"{frame}: last rotation of the frame [deg]", share * angles[last], turns[last],
                 1e-9)]
         finding.curves[frame] = angles[:last + 1], turns[:last + 1]
     finding.curves["mean beyond the limit"] = ((LIMIT, 180.0, 180.0, 270.0),
@@ -76,11 +77,11 @@ def collinear() -> Finding:
     finding = Finding(
         "nearly collinear nodes",
         "nodes close to a line: deflections rotate the frame more",
-        "A frame of best fit turns about the line of its nodes by the deflection of the one beside "
-        "it, divided by its distance: with the distance going to zero any deflection becomes a "
-        "rotation.",
-        "Warns where nodes spread by less than 1e-3 of their length across the line, refuses "
-        "1e-6.",
+        "A best-fit frame rotates about the line of its nodes by the deflection of the node beside "
+        "the line divided by the distance of this node from the line: as the distance goes to "
+        "zero, the rotation for a given deflection goes to infinity.",
+        "sebody warns if nodes spread across the line by less than 1e-3 of their length, and "
+        "refuses less than 1e-6.",
         "distance from the line / length", "rotation of the frame for a deflection of 1e-6 [rad]",
         logarithmic="xy")
     offsets, turns = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4), []
@@ -135,12 +136,13 @@ def massless_rotations() -> Finding:
     """Inertia of the rotation about a beam's axis, down to none."""
     finding = Finding(
         "nearly massless rotations",
-        "the motion converges to that without this inertia",
-        "A rotation with little inertia has a high frequency, which the scheme damps; the motion "
-        "tends to that without it in proportion. Without any its acceleration is undetermined.",
-        "Integrates down to 1e-10 of the beam's own inertia with option B, to 1e-8 with D, and "
-        "refuses what has none by name.",
-        "part of the beam's inertia about its axis", "relative change of the tip's motion",
+        "the effect of a small rotary inertia is proportional to it",
+        "A rotation with little inertia has a high frequency, which the scheme damps; the effect "
+        "of this inertia on the motion is proportional to the inertia. Without inertia the "
+        "acceleration is undetermined.",
+        "sebody integrates down to 1e-10 of the beam's own inertia with option B, to 1e-8 with D, "
+        "and refuses a rotation without inertia, which the message names.",
+        "inertia about the beam's axis / exact inertia", "relative change of the tip's motion",
         logarithmic="xy")
     shares = np.array([1e-1, 1e-2, 1e-3, 1e-4])
     least = _struck(1e-10)
@@ -180,10 +182,12 @@ def negative_weights() -> Finding:
     finding = Finding(
         "negative weights of the frame",
         "the energy drift is of second order in the step",
-        "Nodes at 1/4 and 1/2 of a beam give the weights 0 and 1, at 0 and 1/4 the weights -1 and "
-        "2: the frame is extrapolated, and one end turns twice as far against it as the ends "
-        "against each other. Energy is kept to second order as with any weights.",
-        "Uses them; half a turn is refused at half the relative rotation.",
+        "Nodes at 1/4 and 1/2 of a beam have the weights 0 and 1, nodes at 0 and 1/4 the weights "
+        "-1 and 2: the frame is extrapolated, and one node rotates twice as far relative to the "
+        "frame as relative to the other node. Energy is conserved to second order, as with any "
+        "weights.",
+        "sebody accepts negative weights; the limit of 180 degrees is reached at half the "
+        "relative rotation.",
         "step [s]", "relative drift of energy", logarithmic="xy")
     model = Model()
     _beam(model, 10.0, 0, 1)

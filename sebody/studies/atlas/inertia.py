@@ -3,9 +3,9 @@
 import numpy as np
 
 from sebody.analysis.simulation import Simulation, simulate
+from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import assemble
 from sebody.fem import straight_beam
-from sebody.kernels.layout import RESIDUAL
 from sebody.kernels.rotations import exp_map
 from sebody.model.model import Model
 from sebody.reduction import craig_bampton
@@ -24,12 +24,13 @@ def impulses() -> Finding:
     """Energy that a beam on a spherical joint takes from an impulse at its tip."""
     finding = Finding(
         "strong impulses, options A, B and C",
-        "energy given by a blow, compared with nonlinear beams",
-        "A and B drop the velocity that the frame's rotation gives to the deformation. The energy "
-        "an impulse gives is too low by a share that grows with it, with A several times that "
-        "with B: the rest is spurious spin about the beam's axis. C drops nothing.",
-        "Takes C, with stiffening; warns when the spin of a body that does not stiffen exceeds its "
-        "limit.",
+        "energy after an impact, compared with nonlinear beams",
+        "Options A and B neglect the velocity due to the rotation of deformed bodies. Therefore "
+        "the energy after an impulse is too low; the relative error grows with the impulse and is "
+        "several times larger with A than with B, because of spurious spin about the beam's axis. "
+        "Option C neglects nothing.",
+        "sebody uses C with stiffening by default; it warns if a body without stiffening spins "
+        "faster than its limit.",
         "peak force", "relative error of the energy", logarithmic="xy")
     exact = {F: _energy(F, modes=0, elements=8, bodies=8) for F in IMPULSES}
     for F in (700.0, 2800.0):
@@ -72,9 +73,10 @@ def small_increments() -> Finding:
     finding = Finding(
         "linearized increments of the frame",
         "error of the forces: second order in the elastic rotation",
-        "Equation (20) of the paper leaves out of (19) what is of second order in the elastic "
-        "rotation: forces are wrong by its square, 3e-3 at 0.3 rad, and no gradient of an energy.",
-        "Ships (20) as frame 'mean_small' for comparison; the default frame is exact.",
+        "Equation (20) of the paper neglects terms of (19) of second order in the elastic "
+        "rotation: the relative error of the forces is 3e-3 at 0.3 rad, and the forces are not "
+        "the gradient of an energy.",
+        "sebody offers (20) as frame 'mean_small' for comparison; the default frame is exact.",
         "elastic rotation [rad]", "relative error of the forces", logarithmic="xy")
     angles = np.geomspace(0.01, 0.8, 9)
     found = [_force_difference(angle) for angle in angles]

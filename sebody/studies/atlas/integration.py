@@ -19,9 +19,9 @@ def damping_of_constraints() -> Finding:
         "disturbed constraints",
         "constraint forces grow if the scheme has no damping",
         "In constrained directions HHT multiplies the state by a matrix with the double eigenvalue "
-        "-(1 + alpha)/(1 - alpha). With alpha 0 multipliers grow with the number of steps, 4 each; "
-        "in the stabilised form of index 2 they stay at 1/gamma = 2.",
-        "Warns when constraints of index 3 are integrated without numerical damping.",
+        "-(1 + alpha)/(1 - alpha). With alpha 0 multipliers grow by 4 per step; in the stabilised "
+        "index-2 form they stay at 1/gamma = 2.",
+        "sebody warns if constraints of index 3 are integrated without numerical damping.",
         "steps", "acceleration across the constraint, h a / v_0", logarithmic="y")
     for alpha in (0.0, -0.05, -0.1, -0.2, -1 / 3):
         scheme = hht(alpha, tolerance=1e-13)
@@ -65,11 +65,12 @@ def newton() -> Finding:
     """Step size and Newton's iteration, in a strongly struck beam."""
     finding = Finding(
         "step size and Newton's iteration",
-        "after a strong blow long steps take more iterations",
-        "Newton's iteration converges from the prediction only if a step changes the state little: "
-        "long steps fail after a strong impulse.",
-        "Cuts the step until it converges and goes on; stops with a message and what it has when "
-        "1/4096 of the step does not help.",
+        "after a strong impact long steps take more iterations",
+        "Newton's iteration converges from the prediction only if the state changes little during "
+        "a step: long steps fail after a strong impulse.",
+        "sebody rejects the step and reduces its size until Newton's iteration converges; if "
+        "1/4096 "
+        "of the step still fails, the run stops with a message and keeps its results.",
         "step [s]", "iterations per step; rejected steps", logarithmic="x")
     steps, iterations, cuts = (0.00125, 0.0025, 0.005, 0.01, 0.02, 0.04), [], []
     for h in steps:
@@ -79,8 +80,8 @@ def newton() -> Finding:
             result = error.result
         iterations.append(result.iterations_per_step)
         cuts.append(result.cuts)
-    finding.rows.append(Row("cut steps at h = 0.0025", 0.0, cuts[1], 0.0, PROGRAM))
-    finding.rows.append(Row("cut steps at h = 0.04: some", 1.0, float(cuts[-1] > 0), 0.0,
+    finding.rows.append(Row("rejected steps at h = 0.0025", 0.0, cuts[1], 0.0, PROGRAM))
+    finding.rows.append(Row("rejected steps at h = 0.04: some", 1.0, float(cuts[-1] > 0), 0.0,
                             PROGRAM))
     finding.curves["iterations per step"] = steps, iterations
     finding.curves["rejected steps / 100"] = steps, np.array(cuts) / 100
@@ -91,10 +92,11 @@ def million_steps() -> Finding:
     """Energy and momentum of a beam that turns freely, over a million steps."""
     finding = Finding(
         "a million steps",
-        "a free beam: energy and momentum change by some 1e-6",
-        "Without loads the moment of momentum is kept but for what Newton's tolerance leaves, here "
-        "1e-10 of a step's motion. Energy falls by what numerical damping takes of the vibration.",
-        "Nothing has to be done; `Result.energy_balance` shows it for any run.",
+        "a free beam: energy and angular momentum change by about 1e-6",
+        "Without loads the angular momentum is conserved to the tolerance of Newton's iteration, "
+        "here 1e-10 of the motion in a step. Numerical damping dissipates the energy of "
+        "vibrations.",
+        "No action is needed; `Result.energy_balance` shows the drift of any run.",
         "steps", "relative change", logarithmic="xy")
     scene = planar_hinged_beam.build()
     run = Simulation(scene.model, 0.01, generalized_alpha(tolerance=1e-10), output_every=1000)
@@ -104,10 +106,10 @@ def million_steps() -> Finding:
     momentum = result["angular_momentum"][free, 2]
     steps = np.arange(1, len(energy)) * 1000.0
     finding.rows += [
-        Row("change of the moment of momentum", 0.0, np.abs(momentum / momentum[0] - 1).max(),
+        Row("change of the angular momentum", 0.0, np.abs(momentum / momentum[0] - 1).max(),
             1e-5),
         Row("gain of energy", 0.0, max((energy / energy[0] - 1).max(), 0.0), 1e-6),
-        Row("loss of energy, that of vibration", 0.0, (1 - energy / energy[0]).max(), 1e-4)]
+        Row("loss of energy, of vibrations", 0.0, (1 - energy / energy[0]).max(), 1e-4)]
     finding.curves["energy"] = steps, np.abs(energy[1:] / energy[0] - 1) + 1e-16
     finding.curves["angular momentum"] = steps, np.abs(momentum[1:] / momentum[0] - 1) + 1e-16
     return finding

@@ -35,10 +35,11 @@ def spurious_divergence() -> Finding:
     finding = Finding(
         "loss of stability at high spin, option B",
         "critical spin; with geometric stiffening there is none",
-        "A beam stiffens as it turns and never diverges in its plane. A linear body does not: it "
-        "diverges where W^2 times its inertia exceeds its stiffness. The limit grows with the "
-        "number of bodies; one body that stiffens has none.",
-        "Stiffens by default; warns once when a body that does not spins beyond its own limit.",
+        "A rotating beam stiffens and never diverges in its plane of rotation. A linear body does "
+        "not stiffen: it diverges if W^2 times its inertia exceeds its stiffness. This limit grows "
+        "with the number of bodies; a single body with stiffening has no limit.",
+        "sebody stiffens bodies by default; it warns once if a body without stiffening spins "
+        "faster than its limit.",
         "number of bodies", "critical spin, W sqrt(rho A L^4 / EI)", logarithmic="xy")
     _by_bodies(finding, lambda n, frame: divergence(cantilever(n, frame), option_b=True),
                lambda n, frame, theory: onset(lambda eta: grows(
@@ -47,8 +48,8 @@ def spurious_divergence() -> Finding:
     for frame in ("node", "mean"):
         found = onset(lambda eta, own=frame: grows(
             lambda: spinning(arm(1, own, MODES, None), eta), eta), 2.0, 20.0, 7)
-        finding.rows.append(Row(f"{frame} frame, one body that stiffens, up to 20", np.inf, found,
-                                0.0))
+        finding.rows.append(Row(f"{frame} frame, one body with stiffening, up to 20", np.inf,
+                                found, 0.0))
         finding.curves[f"{frame} frame, exact inertia"] = COUNTS, [
             divergence(cantilever(n, frame)) for n in COUNTS]
     finding.curves["chord frame, exact inertia"] = COUNTS, [
@@ -61,10 +62,11 @@ def frequencies() -> Finding:
     finding = Finding(
         "one rotating body",
         "first in-plane frequency of a cantilever, four modes",
-        "A beam's first frequency in the plane of the spin grows, from 3.516 to 5.427 at 12. One "
-        "body that stiffens follows it; exact inertia without stiffening and option B have none "
-        "from 6 on.",
-        "Stiffens by default.", "spin, W sqrt(rho A L^4 / EI)", "frequency / sqrt(EI / rho A L^4)")
+        "The first in-plane frequency of a rotating beam grows with the spin, from 3.516 at rest "
+        "to 5.427 at spin 12. One body with stiffening has this frequency; without stiffening "
+        "(exact inertia or option B) a body is unstable from spin 6 on.",
+        "sebody stiffens bodies by default.", "spin, W sqrt(rho A L^4 / EI)",
+        "frequency / sqrt(EI / rho A L^4)")
     for eta, exact in LAG.items():
         finding.rows.append(Row(f"theory, spin {eta:g}", exact, lag(eta), 1e-4, REFERENCE))
     line = np.linspace(SPINS[0], SPINS[-1], 25)
@@ -96,19 +98,19 @@ def spin_up_outcomes() -> Finding:
     """The spin-up of two flexible arms: bounded or not, and how deep the tip bends."""
     finding = Finding(
         "spin-up of a flexible arm, option B",
-        "too few bodies of option B bend too far",
-        "One body with its frame at the root diverges when the speed passes its first frequency. "
-        "Kane's arm at 4 rad/s survives with two, Simo's at 6 rad/s does not; with four and eight "
-        "the deflection tends to that of the beam, -0.534 and -0.574. One body that stiffens and "
-        "has two modes has it.",
-        "Stiffens by default; runs on with a warning where a body does not; a node that turns by "
-        "more than 168 degrees stops the run.",
+        "with too few bodies of option B the deflection is too large",
+        "One body of option B with its frame at the root diverges when the spin exceeds its first "
+        "frequency. With two bodies the deflection of Kane's arm at 4 rad/s is bounded, that of "
+        "Simo's arm at 6 rad/s is not; with four and eight bodies the largest deflection converges "
+        "to the exact -0.534 and -0.574. One body with stiffening and two modes is sufficient.",
+        "sebody stiffens bodies by default; without stiffening the run continues with a warning. "
+        "If a node rotates by more than 168 degrees relative to its body, the run stops.",
         "time [s]", "tip deflection of Kane's arm")
     for case in spin_up.CASES:
         length = spin_up.CASES[case][0]
         for frame, n in (("node", 4), ("node", 8), ("mean", 4), ("mean", 8)):
             t, v = _deflection(case, n, frame)
-            finding.rows.append(Row(f"{case}, {frame} frame, {n} bodies: deepest",
+            finding.rows.append(Row(f"{case}, {frame} frame, {n} bodies: lowest",
                                     _predicted(case, n, frame).min(), v.min(), 0.01))
             if case == "kane":
                 finding.curves[f"{frame} frame, {n} bodies"] = t, v
@@ -122,8 +124,8 @@ def spin_up_outcomes() -> Finding:
                 finding.curves[f"node frame, {n} bod{'y' if n == 1 else 'ies'}"] = t, np.where(
                     np.abs(v) < DEEPEST_DRAWN, v, np.nan)
         t, v = _deflection(case, 1, "mean", inertia=None, modes=2)
-        finding.rows.append(Row(f"{case}, one body that stiffens: deepest", DEEPEST[case], v.min(),
-                                2e-3, REFERENCE))
+        finding.rows.append(Row(f"{case}, one body with stiffening: lowest", DEEPEST[case],
+                                v.min(), 2e-3, REFERENCE))
         if case == "kane":
             finding.curves["one body with stiffening"] = t, v
     return finding
@@ -151,14 +153,14 @@ def _deflection(case: str, bodies: int, frame: str, inertia: str | None = "b", m
 
 
 def buckling() -> Finding:
-    """Dead load along a cantilever."""
+    """Fixed-direction load along a cantilever."""
     finding = Finding(
         "Euler buckling load, option B",
         "without geometric stiffening the buckling load is too high",
-        "Bodies that are linear in their frames buckle where the frames turn: not at all with one "
-        "body and the frame at its root, at 3 EI/L^2 with a chord, and at pi^2/4 in the limit. One "
-        "body that stiffens buckles at pi^2/4.",
-        "Finds no stable equilibrium beyond the load and says so.",
+        "Bodies that are linear in their frames buckle only by rotation of the frames: one body "
+        "with the frame at its root does not buckle, with a chord frame it buckles at 3 EI/L^2, "
+        "and many bodies at pi^2/4 EI/L^2. One body with stiffening buckles at pi^2/4 EI/L^2.",
+        "sebody finds no stable equilibrium above the buckling load and says so.",
         "number of bodies", "load / (EI/L^2)", logarithmic="x")
     _by_bodies(finding, lambda n, frame: euler_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
@@ -173,10 +175,12 @@ def flutter() -> Finding:
     finding = Finding(
         "flutter load of Beck's column, option B",
         "without geometric stiffening the flutter load is too high",
-        "A beam flutters at 20.05 EI/L^2. One linear body does not flutter below 80, two at 24 "
-        "(chord) to 39 (node); the load converges from above with the square of their number. One "
-        "body that stiffens flutters at 20.05.",
-        "Eigenvalues of the linearisation show it; a simulation flutters, without a warning.",
+        "A beam flutters at 20.05 EI/L^2. One linear body does not flutter below 80, two linear "
+        "bodies flutter at 24 (chord frame) to 39 (node frame); the flutter load converges from "
+        "above with the square of the number of bodies. One body with stiffening flutters at "
+        "20.05.",
+        "Eigenvalues of the linearisation show the flutter load; a simulation shows the flutter "
+        "without a warning.",
         "number of bodies", "load / (EI/L^2)", logarithmic="x")
     _by_bodies(finding, lambda n, frame: beck_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
@@ -191,7 +195,7 @@ def _of_one_body(finding: Finding, exact: float, follower: bool, within: float) 
     for frame in ("node", "mean"):
         found = onset(lambda p, own=frame: grows(lambda: pressed(
             arm(1, own, MODES, None), p, follower)), 0.9 * exact, 1.1 * exact, 3)
-        finding.rows.append(Row(f"{frame} frame, one body that stiffens", exact, found, within))
+        finding.rows.append(Row(f"{frame} frame, one body with stiffening", exact, found, within))
     finding.curves["one body with stiffening"] = (1,), [found]
 
 

@@ -1,8 +1,8 @@
 """Theory of linear beams in floating frames that rotate or are compressed (unit beams).
 
 A cantilever of unit length, mass and bending stiffness is cut into equal bodies, each linear in a
-frame of its own that is rotated by phi against the undeformed axis. A point s along a body with
-deflection v against the frame then moves by ``-s phi^2 / 2 - v phi`` along the axis, and the axial
+frame of its own that is rotated by phi from the undeformed axis. A point s along a body with
+deflection v in the frame then moves by ``-s phi^2 / 2 - v phi`` along the axis, and the axial
 inertia or load that works on this is all the geometric stiffness there is. Hermite cells inside
 the bodies, every term of second order kept; nothing is shared with the kernels.
 """
@@ -154,7 +154,7 @@ def deflection_of_spin_up(beam: Beam, rate: Callable[[float], float],
 
 
 def euler_load(beam: Beam) -> float:
-    """Dead load along the axis that buckles the cantilever, infinite where none does."""
+    """Fixed-direction axial load that buckles the cantilever, infinite where none does."""
     largest = eigh(-2 * beam.shortening, beam.stiffness, eigvals_only=True)[-1]
     return float(1 / largest) if largest > 1e-6 else np.inf
 

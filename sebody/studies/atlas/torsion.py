@@ -35,10 +35,12 @@ def soft_torsion() -> Finding:
     finding = Finding(
         "torsion of a rotating blade, option B",
         "a straight blade of option B becomes unstable in torsion",
-        "Option B takes angular velocities in the axes of the nodes, which turn as the blade "
-        "twists, and momenta of bending work on that: a straight blade diverges in torsion, at W "
-        "= 8.94 sqrt(G J / m L^4) with the mean frame, 4.10 with a node's. A real one does not.",
-        "Stiffens by default; computes the limit of the body at hand and warns at a quarter of it.",
+        "Option B uses angular velocities in the axes of the nodes, which rotate as the blade "
+        "twists. This couples bending momentum with torsion: a straight blade diverges in torsion "
+        "at W = 8.94 sqrt(G J / m L^4) with the mean frame and at 4.10 with a node frame. A real "
+        "blade does not diverge.",
+        "sebody stiffens bodies by default; without stiffening it computes the limit of the body "
+        "and warns at a quarter of this limit.",
         "G J / E I", "critical spin, W sqrt(m L^4 / E I)", logarithmic="xy")
     for frame, square in SQUARES.items():
         limits = []

@@ -4,10 +4,10 @@ import time
 
 import numpy as np
 
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import padded_columns
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.dense import columns_times
-from sebody.kernels.layout import padded_columns
-from sebody.kernels.pipeline import compiled
 
 SIZE = 16
 

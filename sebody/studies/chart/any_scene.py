@@ -1,6 +1,7 @@
-"""Charts of any scene: variants on the axes of `advise`, the richest model as reference.
+"""Charts of any scene: variants on the axes of `advise`, compared with the reference model.
 
-The richest model runs with ever shorter steps and is extrapolated; where it divides beams, half as
+The reference model runs with ever shorter steps and is extrapolated; where it divides beams, half
+as
 many bodies tell what the division leaves. Variants are uniform: all parts of the model get as many
 bodies and modes, as far as each can.
 """
@@ -60,7 +61,7 @@ def measure_any(scene: "Scene", quantity: str | None = None) -> Study:
     InputError
         A quantity that does not exist or does not change.
     SimulationError
-        The richest model does not run.
+        The reference model does not run.
     """
     with poor_variants():
         return _measured(_Chart(scene, quantity))
@@ -134,7 +135,7 @@ class _Chart:
         return self.simulation(model, step, scheme).run_to(self.t_end).result()
 
     def reference(self) -> Reference:
-        """The richest model, extrapolated in the step, with what its division leaves."""
+        """The reference model, extrapolated in the step, with what its division leaves."""
         models = {bodies: self.builder.make(Choice(forms, Step(self.h))).model
                   for bodies, forms in self._divisions()}
         prepare([*models.values(), self.model])
@@ -150,7 +151,7 @@ class _Chart:
         return found._replace(error=found.error + left)
 
     def _divisions(self) -> Iterator[tuple[int, tuple[Form, ...]]]:
-        """Forms of the richest model, and with half as many bodies where it divides any."""
+        """Forms of the reference model, and with half as many bodies where it divides any."""
         most = max((form.bodies for form in self.richest), default=1)
         yield most, self.richest
         if most > 1:
@@ -199,7 +200,7 @@ class _Chart:
     def _steps(self) -> Iterator[Plan]:
         bases = {"as given": self.given, "all rigid": tuple(map(_rigid, self.parts)),
                  "1 body, 0 modes": tuple(_form(part, 1, 0) for part in self.parts),
-                 "richest": self.richest}
+                 "reference": self.richest}
         for name, forms in bases.items() if self.parts else [("", ())]:
             for finer, told in STEPS.items():
                 if self.grid * finer >= 1.0:

@@ -7,8 +7,8 @@ rotations of the order of one radian, elastic rotations to 0.3, moving and accel
 from collections.abc import Iterable
 
 from sebody.analysis.first_run import compile_missing
+from sebody.contract.names import MOTION, SUPERELEMENT
 from sebody.kernels.loader import load
-from sebody.kernels.names import MOTION, SUPERELEMENT
 from sebody.spelling import unknown
 from sebody.studies.catalogue import kernel_files
 from sebody.studies.check.body_loads import check_body_load

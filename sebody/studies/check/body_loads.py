@@ -4,7 +4,7 @@ from types import ModuleType
 
 from numpy.typing import NDArray
 
-from sebody.kernels.layout import ENERGY, POWERS, RESIDUAL
+from sebody.contract.layout import ENERGY, POWERS, RESIDUAL
 from sebody.studies.check.definitions import frame_rotation
 from sebody.studies.check.elements import AMPLITUDES, element_tangent
 from sebody.studies.check.states import (

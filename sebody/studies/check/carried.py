@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from sebody.contract.layout import axes_of
 from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.layout import axes_of
 from sebody.studies.check.definitions import frame_rotation, local_coordinates
 from sebody.studies.check.states import Case, along_path, constants_of, derivative
 

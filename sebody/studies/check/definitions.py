@@ -4,18 +4,24 @@ from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import root
 from scipy.spatial.transform import Rotation
 
+from sebody.contract.layout import FrameTraits
 from sebody.generated.options import FRAMES, INERTIA_OPTIONS
-from sebody.kernels.layout import FrameTraits
 from sebody.studies.check.states import Case, constants_of
 
 
 def local_coordinates(case: Case) -> NDArray:
     """Local coordinates ``y``, (11), by SciPy's rotations."""
+    return _local(case, frame_rotation(case))
+
+
+def _local(case: Case, frame: Rotation) -> NDArray:
+    """The same in any frame."""
     constants = constants_of(case)
     x = case.q[:case.first_rotation].reshape(case.n_positions, -1)
-    R0 = frame_rotation(case).as_matrix()[:x.shape[1], :x.shape[1]]
+    R0 = frame.as_matrix()[:x.shape[1], :x.shape[1]]
     u = (x - constants["alphas"] @ x) @ R0 - constants["X"]
     if case.planar:
         psi = case.q[case.first_rotation:case.first_mode] - np.arctan2(R0[1, 0], R0[0, 0])
@@ -48,6 +54,8 @@ def frame_traits(module: ModuleType) -> FrameTraits:
 def frame_rotation(case: Case) -> Rotation:
     """``R0`` from its definition, (14)-(16) or the best fit, without the search of the kernels."""
     constants, traits = constants_of(case), frame_traits(case.module)
+    if traits.modes:
+        return mean_axes(case)
     if not traits.needs_rotations:
         x = case.q[:case.first_rotation].reshape(case.n_positions, -1)
         arms, X, fits = x - constants["alphas"] @ x, constants["X"], constants["fits"]
@@ -63,6 +71,17 @@ def frame_rotation(case: Case) -> Rotation:
     last = Rotation.from_matrix(case.reference.reshape(3, 3))
     increments = (last.inv() * Rotation.from_matrix(case.R.reshape(-1, 3, 3))).as_rotvec()
     return last * Rotation.from_rotvec(constants["alpha_rs"] @ increments)
+
+
+def mean_axes(case: Case) -> Rotation:
+    """Rotation in which the local coordinates, weighted, vanish: by a root search of SciPy."""
+    d, Gam = case.dimension, constants_of(case)["Gam"]
+    start = Rotation.from_matrix(case.frames.reshape(3, 3))
+
+    def frame(step: NDArray) -> Rotation:
+        return start * Rotation.from_rotvec([0, 0, *step] if d == 2 else step)
+    found = root(lambda step: Gam.T @ _local(case, frame(step)), np.zeros(Gam.shape[1]), tol=1e-15)
+    return frame(found.x)
 
 
 def mean_rotation(case: Case) -> NDArray:

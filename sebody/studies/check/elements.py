@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.kernels.layout import (
+from sebody.contract.layout import (
     ACCELERATION,
     ENERGY,
     KINETIC,

@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.assembly.floating import Free, frame_conditions, free_coordinates, packed
+from sebody.contract.layout import axes_of
 from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.layout import axes_of
 from sebody.kernels.packed import unpack
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.studies.check.definitions import frame_rotation, local_coordinates

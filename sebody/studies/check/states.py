@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.errors import InputError
-from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.abi import Arguments, call_kernel
-from sebody.kernels.layout import (
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import (
     AT_POSITIONS,
     AT_ROTATIONS,
     ENERGY,
@@ -32,7 +30,9 @@ from sebody.kernels.layout import (
     scratch_size,
     superelement_counts,
 )
-from sebody.kernels.pipeline import compiled
+from sebody.errors import InputError
+from sebody.generated.options import INERTIA_OPTIONS
+from sebody.kernels.abi import Arguments, call_kernel
 
 STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))      # sixth-order central differences
 LIMIT = 1e-7

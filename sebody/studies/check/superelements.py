@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.generated.options import INERTIA_OPTIONS
-from sebody.kernels.layout import (
+from sebody.contract.layout import (
     ENERGY,
     KINETIC,
     MOMENTUM,
@@ -19,6 +18,7 @@ from sebody.kernels.layout import (
     TANGENT,
     first_mode,
 )
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.studies.check import carried
 from sebody.studies.check.carried import is_carried
 from sebody.studies.check.definitions import (
@@ -110,8 +110,23 @@ def placed_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0
     frame = (base * Rotation.from_rotvec(about)).as_matrix().ravel()
     v, a = random.normal(size=n), random.normal(size=n)
     case = Case(module, n, index_row(n, npos, nrot), np.zeros(0), q, R, v, a, frame, frame.copy())
-    return case, {"alphas": alpha, "fits": np.full(npos, 1 / npos), "alpha_rs": alpha_r, "X": X,
-                  "S": S, "M": M}, random
+    values = {"alphas": alpha, "fits": np.full(npos, 1 / npos), "alpha_rs": alpha_r, "X": X,
+              "S": S, "M": M}
+    if frame_traits(module).modes:
+        values["Gam"] = _mean_rotation(random, case, X)
+    return case, values, random
+
+
+def _mean_rotation(random: np.random.Generator, case: Case, X: NDArray) -> NDArray:
+    """Any weights of local coordinates in the mean rotation, one of a rigid rotation, (n, r)."""
+    axes = np.eye(3)[2:] if case.planar else np.eye(3)
+    arms = np.column_stack([X, np.zeros(len(X))]) if case.planar else X
+    rigid = np.array([np.r_[np.cross(axis, arms)[:, :case.dimension].ravel(),
+                            np.tile(axis[-len(axes):], case.n_rotations),
+                            np.zeros(case.n - case.first_mode)] for axis in axes]).T
+    weights = rigid + 0.2 * random.normal(size=rigid.shape)
+    weights[case.first_mode:] *= 0.5
+    return weights @ np.linalg.inv(rigid.T @ weights)
 
 
 def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0.3,
@@ -336,7 +351,8 @@ def _check(name: str, module: ModuleType, nodes: Nodes) -> list[CheckRow]:
         criteria = ({} if small else EXACT_FORCE) | TANGENTS | ENERGY_SUMS | {SIZE: geometric_term}
         if damping and not small:
             criteria |= DAMPING
-        if INERTIA_OPTIONS[module.INERTIA].modes_apart and nodes.modes > 1:
+        apart = INERTIA_OPTIONS[module.INERTIA].modes_apart and not frame_traits(module).modes
+        if apart and nodes.modes > 1:
             criteria |= MODES_APART
         if traits.incremental:      # a mean of increments does not follow a rigid motion
             criteria.pop("damping of rigid motion", None)

@@ -108,7 +108,7 @@ def _rigid(numbers: dict) -> list[Finding]:
     if residual["largest"] > RIGID_LIMIT:
         return [Finding("defect", f"the stiffness resists rigid motion: {size} (limit "
                         f"{RIGID_LIMIT:.0e})",
-                        "export the matrices with 14 digits before reducing; take supports off "
+                        "export the matrices with 14 digits before reducing; remove supports from "
                         "the FE model; check coordinates, axes and order; for a small residual "
                         "--repair rigid-modes")]
     if residual["largest"] > _DIGITS:
@@ -146,7 +146,7 @@ def _frame(body: Matrices, numbers: dict) -> list[Finding]:
         found.append(Finding("caution", "the origin of the mean frame is "
                              f"{frame['off_centre']:.6g} off the centre of mass",
                              "interfaces around the centre of mass couple translation and rotation "
-                             "least; inertia option C does not mind"))
+                             "least; inertia option C is not affected"))
     return found
 
 

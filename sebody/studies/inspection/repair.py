@@ -33,7 +33,7 @@ def free_rigid_motion(file: BodyFile) -> tuple[BodyFile, list[str]]:
     before, row = rigid_residual(body.stiffness, body.rigid, body.names)
     if before > LARGEST:
         raise InputError(f"|K R| is {before:.3e} of |K| |R|, worst in {body.names[row]}: beyond "
-                         f"{LARGEST:.0e} this is no loss of digits; take supports off the FE "
+                         f"{LARGEST:.0e} this is not a loss of digits; remove supports from the FE "
                          "model, check coordinates, axes and order of the rows")
     scale = unit_scale(body.stiffness, body.names)
     motions = np.linalg.qr(body.rigid * scale[:, None])[0]
@@ -54,7 +54,8 @@ def free_rigid_motion(file: BodyFile) -> tuple[BodyFile, list[str]]:
     softest = _softest(stiffness, body.rigid.shape[1], scale)
     said.append("not repaired: errors of the same size, which the other motions keep; the softest "
                 f"one has {softest:.3e} of |K|, so up to {min(1.0, before / softest):.1%} of its "
-                "stiffness may be wrong. Only an export with 14 digits before reducing mends that")
+                "stiffness may be wrong. Only an export with 14 digits before reducing repairs "
+                "this")
     return repaired, said + constants
 
 

@@ -75,7 +75,7 @@ class Table:
         for values in (self.outputs, self.parameters):
             if name in values:
                 return values[name]
-        raise InputError(f"{name!r} is no column: there are "
+        raise InputError(f"{name!r} is not a column: there are "
                          f"{', '.join([*self.parameters, *self.outputs])}")
 
     def has(self, columns: Mapping[str, NDArray]) -> bool:

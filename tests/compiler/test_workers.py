@@ -2,8 +2,8 @@
 
 import subprocess
 
-from sebody.analysis import workers
-from sebody.analysis.workers import Queue, Task, call_all
+from sebody.compiler import workers
+from sebody.compiler.workers import Queue, Task, call_all
 
 
 def test_tasks_come_as_soon_as_those_before_them_are_done():

@@ -9,29 +9,31 @@ machine code as a part of what Python or the time loop calls, and nowhere else.
 from collections.abc import Callable
 
 from llvmlite import binding
-from numba.core import types
-from numba.core.codegen import CPUCodegen, JITCodeLibrary
-from numba.core.compiler import CompilerBase, CompileResult
-from numba.core.compiler_machinery import PassManager, register_pass
-from numba.core.registry import CPUDispatcher
-from numba.core.typed_passes import (
+from numba import types
+
+from sebody.compiler.inside.cache import FunctionCache
+from sebody.compiler.inside.lookups import Lowering, TypeInference
+from sebody.compiler.inside.names import (
     AnnotateTypes,
     BaseNativeLowering,
-    IRLegalization,
-    NoPythonBackend,
-    PreLowerStripPhis,
-)
-from numba.core.untyped_passes import (
+    CompilerBase,
+    CompileResult,
+    CPUCodegen,
+    CPUDispatcher,
     FixupArgs,
     GenericRewrites,
+    IRLegalization,
     IRProcessing,
+    JITCodeLibrary,
+    NoPythonBackend,
+    PassManager,
+    PreLowerStripPhis,
     ReconstructSSA,
     TranslateByteCode,
+    register_pass,
+    take_reloads,
 )
-
-from sebody.kernels.cache import FunctionCache
-from sebody.kernels.lookups import Lowering, TypeInference
-from sebody.kernels.sources import KERNELS, in_room
+from sebody.compiler.sources import KERNELS, in_room
 
 
 class _Library(JITCodeLibrary):
@@ -42,8 +44,7 @@ class _Library(JITCodeLibrary):
     def finalize(self) -> None:
         """Take in what the function calls."""
         for library in dict.fromkeys(self._linking_libraries):
-            if hasattr(self, "_reload_init"):       # not in all versions of Numba
-                self._reload_init.update(library._reload_init)
+            take_reloads(self, library)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         if self.optimized:
             self._optimize_final_module()

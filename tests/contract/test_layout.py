@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sebody.kernels.layout import (
+from sebody.contract.layout import (
     AT_CONSTANTS,
     AT_FRAME,
     AT_PORT,

@@ -14,12 +14,9 @@ from functools import cache
 from pathlib import Path
 
 import numba
-from numba.core.caching import NullCache
-from numba.core.compiler import CompileResult
-from numba.core.registry import cpu_target
-from numba.core.serialize import dumps
 
-from sebody.kernels import store
+from sebody.compiler import store
+from sebody.compiler.inside.names import CompileResult, NullCache, cpu_target, dumps
 
 
 class FunctionCache(NullCache):
@@ -68,8 +65,7 @@ class FunctionCache(NullCache):
             entries = pickle.loads(content) | entries
         entries[sig] = dumps(data._reduce())
         if not store.write(self._source, self._name, self._made_from, dumps(entries)):
-            store.say_once("writing", "compiled code cannot be kept, every start compiles it "
-                           f"again: {store.not_writable(self._source)}")
+            store.say_not_kept(self._source)
 
 
 def is_kept(source: Path, function: str, made_from: str) -> bool:

@@ -5,6 +5,7 @@ damaged or made from other sources counts as absent.
 """
 
 import os
+import sys
 import warnings
 import zlib
 from collections.abc import Iterator
@@ -14,7 +15,6 @@ from pathlib import Path
 from uuid import uuid4
 
 from numba import config
-from numba.misc.appdirs import AppDirs
 
 _CHECKSUM = 4       # bytes
 _said = set()       # topics of warnings
@@ -29,8 +29,17 @@ def folders(source: Path) -> list[Path]:
     private = f"{source.parent.name}_{sha1(str(source.parent).encode()).hexdigest()}"
     if config.CACHE_DIR:
         return [_absolute(config.CACHE_DIR) / private]
-    users = AppDirs(appname="sebody", appauthor=False).user_cache_dir
-    return [source.parent / "__pycache__"] + [Path(users) / private] * os.path.isabs(users)
+    users = _users_cache()
+    return [source.parent / "__pycache__"] + [users / private] * users.is_absolute()
+
+
+def _users_cache() -> Path:
+    """Where the system keeps what programs can make again."""
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", ""), "sebody", "Cache")
+    if sys.platform == "darwin":
+        return Path(os.path.expanduser("~/Library/Caches/sebody"))
+    return Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "sebody")
 
 
 @cache
@@ -62,13 +71,19 @@ def _beginning(path: Path, size: int) -> bytes:
         return b""
 
 
-def writable(source: Path) -> bool:
-    """Whether something about a module could be kept, as far as permissions tell."""
+def writable_folder(source: Path) -> Path | None:
+    """The first folder where something about a module could be kept, as far as permissions tell."""
     for folder in folders(source):
         existing = next((f for f in (folder, *folder.parents) if f.exists()), folder)
         if existing.is_dir() and os.access(existing, os.W_OK):
-            return True
-    return False
+            return folder
+    return None
+
+
+def say_not_kept(source: Path) -> None:
+    """Warn that what is compiled for a module cannot be kept."""
+    say_once("writing", "compiled code cannot be kept, every start compiles it again: "
+             f"{not_writable(source)}")
 
 
 def not_writable(source: Path) -> str:

@@ -347,6 +347,7 @@ class FrameTraits(NamedTuple):
 
     summary: str
     needs_rotations: bool = True    # averages rotations of nodes; else follows positions
+    modes: bool = False             # these, rotations and internal modes
     fewest_positions: tuple[int, int] = (1, 1)      # in space, in a plane
     planar: bool = True             # False: in a plane the frame equals another one
     exact: bool = True              # forces are derivatives of the energy
@@ -369,11 +370,11 @@ class InertiaTraits(NamedTuple):
 class Condition(NamedTuple):
     """What the local coordinates of a body obey in its frame, beside zero mean displacements.
 
-    A sum over the nodes vanishes: coefficients times the displacement or rotation of each. In
-    incremental frames it does so to first order.
+    A sum over the nodes vanishes: coefficients times the displacement or rotation of each. Or one
+    over all coordinates does. In incremental frames it is zero to first order.
     """
 
-    of: str                     # position | rotation
+    of: str                     # position | rotation | coordinate
     constants: tuple[str, ...]  # that the coefficients are made of, by name: those of a node
     coefficients: Callable      # (rows, components) of the constants of a node, in this order
 

@@ -6,10 +6,13 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from sebody.kernels import store
+from sebody.compiler import store
 
 PACKAGE = Path(__file__).parents[1]
-KERNELS, ENGINE = "kernels", "engine"
+CONTRACT, COMPILER, KERNELS, ENGINE = "contract", "compiler", "kernels", "engine"
+TEXT = CONTRACT, KERNELS                    # what the text of a kernel depends on
+KERNEL_CODE = CONTRACT, COMPILER, KERNELS   # what the machine code of a kernel depends on
+CODE = *KERNEL_CODE, ENGINE                 # and that of the loop
 _DIGITS = 12
 
 
@@ -48,17 +51,17 @@ def function_hash(function: Callable) -> str:
     own module.
     """
     if in_room(function, KERNELS):
-        return room_hash(KERNELS)
+        return room_hash(*KERNEL_CODE)
     if in_room(function, ENGINE):
-        return room_hash(KERNELS, ENGINE)
+        return room_hash(*CODE)
     path = Path(function.__code__.co_filename)
-    return f"{room_hash(KERNELS, ENGINE)} {_syntax_hash(path.stem, path)}"
+    return f"{room_hash(*CODE)} {_syntax_hash(path.stem, path)}"
 
 
 def kernel_hash(path: Path) -> str:
-    """Hash of all sources that a kernel may depend on: ``kernels/`` and its own file."""
+    """Hash of all sources that a kernel may depend on: what it calls, and its own file."""
     # byte by byte: nobody edits the comments of generated files, and parsing these takes long
-    return f"{room_hash(KERNELS)} {sha256(path.read_bytes()).hexdigest()[:_DIGITS]}"
+    return f"{room_hash(*KERNEL_CODE)} {sha256(path.read_bytes()).hexdigest()[:_DIGITS]}"
 
 
 @cache

@@ -3,8 +3,8 @@
 import pytest
 from numba import config
 
-from sebody.kernels import sources
-from sebody.kernels.sources import room_hash, syntax
+from sebody.compiler import sources
+from sebody.compiler.sources import room_hash, syntax
 
 MODULE = '''"""A title."""
 LIMIT = 0.5

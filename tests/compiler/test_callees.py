@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 
-from sebody.kernels.pipeline import compiled
+from sebody.compiler.decorators import compiled
 
 
 @compiled
@@ -70,7 +70,7 @@ def test_operations_are_looked_up_for_every_type():
 
 PROGRAM = """
 import sys
-from sebody.kernels.pipeline import compiled
+from sebody.compiler.decorators import compiled
 
 @compiled
 def half(x):

@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 from numba import config
 
-from sebody.kernels import store
+from sebody.compiler import store
 
 PROGRAM = '''
 import sys
-from sebody.kernels.pipeline import compiled
+from sebody.compiler.decorators import compiled
 
 @compiled
 def double(x):

@@ -7,13 +7,16 @@ a kernel that takes a third of its compilation.
 
 import operator
 
-from numba.core import types
-from numba.core.compiler_machinery import register_pass
-from numba.core.ir import UNDEFINED
-from numba.core.lowering import Lower
-from numba.core.typed_passes import NopythonTypeInference
-from numba.core.typing.context import BaseContext
-from numba.core.typing.templates import Signature
+from numba import types
+
+from sebody.compiler.inside.names import (
+    UNDEFINED,
+    BaseContext,
+    Lower,
+    NopythonTypeInference,
+    Signature,
+    register_pass,
+)
 
 _PLAIN = types.Number, types.Boolean, types.RawPointer, types.Array, types.BaseTuple
 _signatures: dict[tuple, Signature] = {}        # by operation and types of arguments

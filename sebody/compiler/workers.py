@@ -1,6 +1,6 @@
 """Functions called in other processes, several at a time: how much is compiled at once.
 
-The processes are plain ``python -m sebody.analysis.workers``, not `multiprocessing`: that would run
+The processes are plain ``python -m sebody.compiler.workers``, not `multiprocessing`: that would run
 the script of a user again, unless it is guarded. What they compile is found in the cache.
 """
 

@@ -1,4 +1,4 @@
-"""Functions of users, compiled for the time loop: histories of loads and drives, and forces.
+"""Functions of users, compiled for the time loop: time functions of loads and drives, and forces.
 
 They are compiled with bounds checks. Where one raises, or gives what is not finite, its result is
 NaN: no state that contains it is accepted, and the run stops. The arguments are kept to say why.
@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from numba import carray, cfunc, njit, types
-from numba.core import cgutils
 from numba.extending import intrinsic
 
+from sebody.compiler import choice
 from sebody.errors import InputError
 from sebody.inputs import shown
 
@@ -77,23 +77,6 @@ class UserFunction:
 
 
 @intrinsic
-def _returned(typingctx, function, arguments):
-    """Whether a compiled function raises, and what it returns otherwise."""
-    overload = next(iter(function.dispatcher.overloads.values()))
-    returns = overload.signature.return_type
-    results = types.Tuple((types.boolean, types.float64))
-
-    def codegen(context, builder, sig, args):
-        context.active_code_library.add_linking_library(overload.library)
-        status, value = context.call_internal_no_propagate(
-            builder, overload.fndesc, overload.signature, cgutils.unpack_tuple(builder, args[1]))
-        if returns == types.none:
-            value = context.get_constant(types.float64, 0.0)
-        return context.make_tuple(builder, results, [status.is_error, value])
-    return results(function, arguments), codegen
-
-
-@intrinsic
 def _floats_at(typingctx, address):
     """Pointer to the numbers at an address."""
     def codegen(context, builder, sig, args):
@@ -112,10 +95,10 @@ def compile_history(function: Callable[[float], float], what: str) -> UserFuncti
     made = UserFunction(function, 1)
     kept = made.record.ctypes.data
     try:
-        inner = _inner(HISTORY, function)
+        returned = choice.way().guarded(_inner(HISTORY, function))
 
         def call(t):
-            raised, value = _returned(inner, (t,))
+            raised, value = returned((t,))
             if raised or not math.isfinite(value):
                 record = carray(_floats_at(kept), 2)
                 record[FAULT], record[TIME] = 1.0, t
@@ -145,12 +128,12 @@ def compile_force(name: str, function: Callable[..., None], coordinates: int) ->
     made = UserFunction(function, 1 + 2 * coordinates)
     kept = made.record.ctypes.data
     try:
-        inner = _inner(_ARRAYS, function)
+        returned = choice.way().guarded(_inner(_ARRAYS, function))
 
         def call(n, t, x, v, force):
             given = carray(x, n), carray(v, n)
             forces = carray(force, n)
-            raised, _ = _returned(inner, (t, given[0], given[1], forces))
+            raised, _ = returned((t, given[0], given[1], forces))
             for i in range(n):
                 raised |= not math.isfinite(forces[i])
             if raised:

@@ -4,9 +4,10 @@ import re
 
 from numba import njit, types
 
+from sebody.compiler.decorators import compiled
+from sebody.compiler.inside.pipeline import KernelPasses
 from sebody.engine.elimination import eliminate
 from sebody.kernels.frame_search import converged_mean
-from sebody.kernels.pipeline import KernelPasses, compiled
 
 
 @compiled

@@ -1,0 +1,45 @@
+"""Decorators of compiled functions and kernels, and what first runs ask of them."""
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from numba import types
+
+from sebody.compiler.choice import way
+from sebody.compiler.sources import KERNELS, function_hash, in_room, kernel_hash
+from sebody.contract.layout import ARGUMENTS
+
+_POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(types.float64)}
+# of every kernel: task, count, stride and width, then pointers
+SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
+
+CONTRACT = {"contract"}     # a product and a sum in one rounding
+
+
+def compiled(function: Callable | None = None, **options) -> Callable:
+    """Compile a function of the runtime, and keep the compiled code.
+
+    Functions of ``kernels/`` contract products and sums as the kernels that call them do, others
+    do not. The choice is explicit because otherwise Numba takes it from the first caller that is
+    compiled, and results would depend on what was run before.
+    """
+    if function is None:
+        return partial(compiled, **options)
+    rounding = CONTRACT if in_room(function, KERNELS) else False
+    options = {"error_model": "numpy", "fastmath": rounding} | options
+    return way().function(function, options, function_hash(function))
+
+
+def kernel_function(function: Callable) -> Callable:
+    """Compile a kernel, a function of the `SIGNATURE`, and keep the compiled code.
+
+    The attribute `address` of the result is the address of the machine code.
+    """
+    return way().kernel(function, SIGNATURE, {"error_model": "numpy", "fastmath": CONTRACT},
+                        kernel_hash(Path(function.__code__.co_filename)))
+
+
+def is_compiled(path: Path) -> bool:
+    """Whether the kernel in a file was compiled; the file is not imported."""
+    return way().is_kept(path, "kernel", kernel_hash(path))

@@ -1,0 +1,88 @@
+"""The fast way to compile, with the functions of `sebody.compiler.plain`."""
+
+from collections.abc import Callable, Iterable
+
+from numba import types
+from numba.extending import infer_getattr, intrinsic, lower_getattr_generic
+
+from sebody.compiler.inside.cache import FunctionCache, is_kept
+from sebody.compiler.inside.callees import Callee, Function
+from sebody.compiler.inside.names import AttributeTemplate, CFunc, normalize_signature
+from sebody.compiler.inside.pipeline import KernelPasses
+
+__all__ = ["SLOWER", "address", "compile_for", "function", "guarded", "is_compiled", "is_kept",
+           "kernel", "part_of_callers", "show_members"]
+
+SLOWER = 1.0        # compilation, compared with this way
+_shown = set()      # types whose members are shown
+
+
+def function(function: Callable, options: dict, made_from: str) -> Function:
+    """See `sebody.compiler.plain.function`."""
+    return Function(function, {"nopython": True, **options}, made_from)
+
+
+def kernel(function: Callable, signature, options: dict, made_from: str) -> CFunc:
+    """See `sebody.compiler.plain.kernel`."""
+    made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
+    made._cache = FunctionCache(function, made_from)
+    made.compile()
+    return made
+
+
+def compile_for(function: Function | Callee, kinds: tuple[types.Type, ...]) -> None:
+    """See `sebody.compiler.plain.compile_for`."""
+    function.compile(kinds)
+
+
+def is_compiled(function: Function | Callee) -> bool:
+    """See `sebody.compiler.plain.is_compiled`."""
+    return function._cache.holds_any()
+
+
+def part_of_callers(function: Function) -> Callee:
+    """What is compiled of a function for its callers."""
+    return function.callee
+
+
+def address(function: Function, returns: types.Type, kinds: tuple[types.Type, ...]) -> int:
+    """See `sebody.compiler.plain.address`."""
+    function.compile(kinds)
+    made = function.overloads[kinds]
+    return made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)
+
+
+def guarded(function: Callable) -> Callable:
+    """See `sebody.compiler.plain.guarded`, which takes half as long again to compile."""
+    overload, = function.overloads.values()
+    results = types.Tuple((types.boolean, types.float64))
+
+    @intrinsic
+    def returned(typingctx, arguments):
+        def codegen(context, builder, sig, args):
+            context.active_code_library.add_linking_library(overload.library)
+            status, value = context.call_internal_no_propagate(
+                builder, overload.fndesc, overload.signature,
+                [builder.extract_value(args[0], k) for k in range(len(sig.args[0]))])
+            if overload.signature.return_type == types.none:
+                value = context.get_constant(types.float64, 0.0)
+            return context.make_tuple(builder, results, [status.is_error, value])
+        return results(arguments), codegen
+    return returned
+
+
+def show_members(kind: type[types.Type], names: Iterable[str], resolve: Callable,
+                 lower: Callable) -> None:
+    """See `sebody.compiler.plain.show_members`; here names need not be known."""
+    if kind in _shown:
+        return
+    _shown.add(kind)
+
+    @infer_getattr
+    class Members(AttributeTemplate):
+        key = kind
+
+        def generic_resolve(self, group, name):
+            return resolve(group, name)
+
+    lower_getattr_generic(kind)(lower)

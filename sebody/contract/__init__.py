@@ -1,0 +1,1 @@
+"""What derivation and runtime agree on: contents of all arrays, and names of kernels."""
