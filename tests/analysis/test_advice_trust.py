@@ -153,7 +153,7 @@ def test_a_damped_beam_is_damped_alike_in_the_reference():
     advice = advise(model, H, 2.0, "tip.position", 5e-2)
     assert advice.confirmed
     assert advice.table[-1].kind == "given"
-    assert advice.table[-1].error <= 5e-2       # before, 0.8: eight bodies were hardly damped
+    assert advice.table[-1].error <= 5e-2       # eight bodies are damped as one is
     assert sum(len(body.nodes) - 1 for body in advice.model.bodies.values()) == 1
 
 
