@@ -16,22 +16,28 @@ KINDS = {"reference": "richest model", "alone": "one part alone", "together": "t
          "confirmation": "half the step", "given": "as given"}
 
 
+NOT_CONFIRMED = 3       # exit code of advice that is as uncertain as the reference
+
+
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser(
         "advise", help="the cheapest model that keeps some quantities of a scene")
     parser.add_argument("scene", metavar="SCENE", help="name of a scene or a file, FILE.py")
     parser.add_argument("--quantity", action="append", required=True, metavar="NAME",
-                        help="quantity to keep, such as tip.position, hinge.force or 'frequency "
-                             "1'; may be repeated")
-    parser.add_argument("--tolerance", type=float, default=1e-3, metavar="E",
-                        help="largest error, relative to a quantity's largest change "
-                             "(default 1e-3)")
+                        help="quantity to keep, such as tip.position, hinge.force, "
+                             "'tip.position rms', 'tip.velocity < 50 Hz' or 'frequency 1'; may be "
+                             "repeated")
+    parser.add_argument("--tolerance", default="1e-3", metavar="E",
+                        help="largest error, relative to a quantity's largest change (default "
+                             "1e-3), or with a unit, such as 2mm")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=float, metavar="H",
                         help="usual time step, the scene's by default; the reference has a quarter")
     parser.add_argument("--budget", type=float, default=20.0, metavar="N",
                         help="work of the search, in runs of the richest model (default 20)")
+    parser.add_argument("--start", choices=["equilibrium"],
+                        help="start runs from the equilibrium under the loads of t = 0")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         dest="changes", help="change a parameter of the scene; may be repeated")
     parser.add_argument("--output", type=Path, metavar="FILE.png",
@@ -64,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
         _draw(advice, scene.name, options.output)
         print(f"picture: {options.output}")
     print(last)
-    return interrupts.exit_code()
+    return interrupts.exit_code() or (0 if advice.confirmed else NOT_CONFIRMED)
 
 
 def _print(advice: "Advice") -> str:
@@ -101,7 +107,8 @@ def _advised(options: argparse.Namespace, scene: "Scene") -> "Advice":
         try:
             return advise(scene.model, scene.h if options.step is None else options.step,
                           scene.t_end if options.t_end is None else options.t_end,
-                          options.quantity, options.tolerance, options.budget, progress)
+                          options.quantity, options.tolerance, options.budget, progress,
+                          options.start)
         finally:
             bar.close()
 

@@ -16,6 +16,7 @@ from sebody.errors import InputError
 from sebody.fem import planar_beam, straight_beam
 from sebody.fem.beam import section_axes
 from sebody.fem.section import AnySection, part_of
+from sebody.model.beam_damping import Damping, Times, damped, retardation_times
 from sebody.model.bodies import superelement
 from sebody.model.inputs import known
 from sebody.model.mechanism import Mechanism
@@ -30,7 +31,7 @@ OF_BODY = 20_000        # bytes of a superelement and its node
 
 def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
          section: AnySection, elements: int, bodies: int | None = None, modes: int = 0,
-         up: ArrayLike | None = None, damping: float = 0.0,
+         up: ArrayLike | None = None, damping: Damping = 0.0,
          stiffening: bool | None = None, **placing) -> list[Node]:
     """A straight beam of equal superelements; with one element each, a nonlinear beam.
 
@@ -57,9 +58,13 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
         Internal modes of each.
     up : (3,), optional
         Direction of the section's y axis, see `sebody.fem.straight_beam`.
-    damping : float
-        Part of critical damping of every vibration mode of each superelement while free, see
-        `ReducedBody.damped`.
+    damping : float or (float, str or float)
+        Part of critical damping of a mode of the whole beam, the same for any division: of
+        ``(0.02, "clamped 1")`` the first one with the first end held, so ``free 1``, which a number
+        alone means, with free ends, and ``hinged 1``; each of tension, torsion and bending in
+        either plane by itself. Stresses follow the rates of strains (Kelvin and Voigt), so ratios
+        grow with the frequency. With an angular frequency, ``(0.02, 35.0)``, all vibrations of
+        this frequency have the ratio.
     stiffening : bool, optional
         As of `superelement`; by default not with one finite element in each.
     **placing
@@ -88,11 +93,12 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     bodies = elements if bodies is None else inputs.integer(bodies, "bodies", least=1,
                                                             remedy=undivided)
     memory.check(float(OF_BODY) * bodies, f"beam {name!r} of {bodies} bodies", "give fewer bodies")
-    damping = inputs.number(damping, f"beam {name!r}: damping", least=0)
     if up is not None and model.planar:
         raise InputError(f"beam {name!r}: up is for beams in space, leave it out")
     if elements % bodies:
         raise InputError(undivided)
+    length = float(np.linalg.norm(last.point - first.point))
+    times = retardation_times(damping, name, model.planar, length, section)
     options = {"modes": modes, "up": up, "damping": damping, "stiffening": stiffening, **placing}
     step, each = (last.point - first.point) / bodies, elements // bodies
     if each == 1 and stiffening is None:
@@ -103,7 +109,7 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     for k, pair in enumerate(pairwise(nodes)):
         if body is None or callable(section):
             part = part_of(section, k / bodies, (k + 1) / bodies)
-            body = _part(model, pair, part, each, modes, up, damping)
+            body = _part(model, pair, part, each, modes, up, times)
         parts.append(superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, pair,
                                   stiffening=stiffening, **placing))
     model.beams.append(Beam(name, tuple(nodes), section, elements, deepcopy(options), tuple(parts),
@@ -112,7 +118,7 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
 
 
 def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements: int, modes: int,
-          up: ArrayLike | None, damping: float) -> ReducedBody:
+          up: ArrayLike | None, times: Times) -> ReducedBody:
     """One superelement of a beam; beams that differ in place and direction alone share the work.
 
     Along its own axes stretching and bending are not mixed, so slender beams lose no digits.
@@ -122,7 +128,7 @@ def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements:
     axes = section_axes(line, None if up is None else inputs.vector(up, "up", 3))
     length = float(np.linalg.norm(line))
     turn = tuple(map(tuple, axes[:model.dimension, :model.dimension].T.tolist()))
-    arguments = model.planar, length, section, elements, modes, damping
+    arguments = model.planar, length, section, elements, modes, times
     try:
         hash(arguments)
     except TypeError:       # a section of arrays, or input that is refused below
@@ -143,7 +149,7 @@ def _turned(body: ReducedBody, turn: tuple) -> ReducedBody:
 
 @lru_cache(maxsize=KEPT, typed=True)
 def _straight(planar: bool, length: float, section: AnySection, elements: int, modes: int,
-              damping: float) -> ReducedBody:
+              times: Times) -> ReducedBody:
     """A beam along x, its section's y axis along y."""
     dimension = 2 if planar else 3
     ends = np.zeros((2, dimension))
@@ -151,4 +157,4 @@ def _straight(planar: bool, length: float, section: AnySection, elements: int, m
     fe_model = (planar_beam(*ends, section, elements) if planar else
                 straight_beam(*ends, section, elements, (0.0, 1.0, 0.0)))
     body = craig_bampton(fe_model, [(0, "full"), (elements, "full")], modes)
-    return body.damped(damping) if damping else body
+    return damped(body, times) if times else body

@@ -12,6 +12,7 @@ from sebody.analysis.advice.cost import operations
 from sebody.analysis.advice.estimates import UNSURE
 from sebody.analysis.advice.forms import parts_of
 from sebody.analysis.advice.indicators.activity import activity
+from sebody.analysis.advice.measures import Measure
 from sebody.analysis.advice.quantities import Values
 from sebody.analysis.advice.reference import reference
 from sebody.analysis.simulation import Simulation
@@ -125,7 +126,8 @@ def test_reasons_name_every_part_and_the_step(advice):
     named = [reason.of for reason in advice.reasons if not reason.of.startswith(" ")]
     assert named == ["arm", "step"]
     lines = advice.summary().splitlines()
-    assert lines[0].startswith("arm: ")
+    assert lines[0].startswith("Keeps tip.position within ")
+    assert lines[1].startswith("arm: ")
     assert any(line.startswith("a run takes ") and "the richest model" in line for line in lines)
     assert [line.partition(":")[0] for line in lines if " predicted: " in line] == [
         "at a tolerance of 0.001 predicted", "at a tolerance of 0.1 predicted"]
@@ -197,7 +199,7 @@ def test_a_scene_that_fails_says_when_and_what_to_do():
 def smooth(step: float) -> Values:
     """A history with an error of second and of fourth order."""
     t = np.linspace(0.0, 1.0, 11)[:, None]
-    return Values([np.sin(3 * t) + step**2 * t + step**4 * t**2], [])
+    return Values([np.sin(3 * t) + step**2 * t + step**4 * t**2], [], (Measure("one"),))
 
 
 def test_a_reference_knows_its_error_and_where_it_does_not_fall():
@@ -207,7 +209,7 @@ def test_a_reference_knows_its_error_and_where_it_does_not_fall():
     assert off / 2 <= found.error <= 10 * off
     assert found.falls
     t = np.linspace(0.0, 1.0, 11)[:, None]
-    wild = [Values([np.cos(k * t)], []) for k in (5.0, 7.0, 10.0)]
+    wild = [Values([np.cos(k * t)], [], (Measure("one"),)) for k in (5.0, 7.0, 10.0)]
     assert not reference(wild).falls
 
 

@@ -31,7 +31,7 @@ import numpy as np
 from sebody.analysis.advice.changes import Builder, Choice, Step
 from sebody.analysis.advice.forms import Form, Part, parts_of
 from sebody.analysis.advice.laboratory import FINER, SHORTER
-from sebody.analysis.advice.quantities import Quantities, Values, changes_of, difference
+from sebody.analysis.advice.quantities import Quantities, Values, difference, sizes_of
 from sebody.analysis.advice.search import LONGER
 from sebody.analysis.simulation import Simulation
 from sebody.analysis.tolerance import Tolerance
@@ -93,7 +93,7 @@ class BruteForce:
         self.fine = Step(self.h / max(FINER))
         self.exact = {"shared": False, "dropped": False, "planar": False}
         self.reference, self.own_error = self._reference()
-        self.sizes = changes_of(self.reference.histories)
+        self.sizes = sizes_of(self.reference)
 
     @property
     def richest(self) -> Choice:
@@ -112,8 +112,9 @@ class BruteForce:
         coarse, fine = (self._values(self.richest._replace(step=Step(self.h / k)))[0]
                         for k in (FINEST, 2 * FINEST))
         best = Values([b + (b - a) / 3.0 for a, b in zip(coarse.histories, fine.histories,
-                                                        strict=True)], fine.frequencies)
-        return best, difference(fine, best, changes_of(best.histories), (1, 1))
+                                                        strict=True)],
+                      fine.frequencies, fine.measures)
+        return best, difference(fine, best, sizes_of(best), (1, 1))
 
     def _values(self, choice: Choice) -> tuple[Values, float, float]:
         """Quantities of a run, the step of their grid, and its time."""
@@ -125,7 +126,7 @@ class BruteForce:
         if self._frequencies and choice.forms not in self._of_forms:
             self._of_forms[choice.forms] = self._frequencies.of(result, self.h).frequencies
         histories = self._histories.of(result, self.h).histories
-        return (Values(histories, self._of_forms.get(choice.forms, [])),
+        return (Values(histories, self._of_forms.get(choice.forms, []), self._histories.measures),
                 max(choice.step.h, self.h), seconds)
 
     def run(self, choice: Choice) -> Found:
@@ -146,7 +147,8 @@ class BruteForce:
             result = begun(model, step, self.h).run_to(self.t_end).result()
         frequencies = (self._frequencies.of(result, self.h).frequencies if self._frequencies
                        else [])
-        return difference(Values(self._histories.of(result, self.h).histories, frequencies),
+        return difference(Values(self._histories.of(result, self.h).histories, frequencies,
+                                 self._histories.measures),
                           self.reference, self.sizes, (1, max(round(step.h / self.h), 1)))
 
     def explore(self, tolerance: float) -> None:

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from helpers import order
-from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
@@ -182,21 +181,6 @@ def test_a_tapered_beam_of_two_bodies_has_the_flexibility_of_one():
         flexibilities.append(np.linalg.inv(K[6:, 6:])[-6:, -6:])
     # inverses at a condition of 1e6
     assert np.abs(flexibilities[1] - flexibilities[0]).max() < 1e-9 * np.abs(flexibilities[0]).max()
-
-
-def test_a_damped_beam():
-    """A fiftieth of critical damping of every free mode of each body, as `damped` gives it."""
-    model = Model(planar=True)
-    model.beam("beam", (model.node("a", (0, 0)), model.node("b", (30, 40))), SECTION, 4, 2, 1,
-               damping=0.02)
-    for part in model.bodies.values():
-        squares, shapes = eigh(part.body.stiffness, part.body.mass)
-        damping = shapes.T @ part.body.damping @ shapes
-        ratios = np.diag(damping)[3:] / (2 * np.sqrt(squares[3:]))
-        assert ratios == pytest.approx(0.02, rel=1e-9)      # of eigenvalues that differ by 1e5
-    with pytest.raises(InputError, match="beam .*: damping is -0.1: give a finite number"):
-        model.beam("c", (model.node("c", (0, 9)), model.node("d", (9, 9))), SECTION, 1,
-                   damping=-0.1)
 
 
 @pytest.mark.parametrize("elements", [0, 1.5, -2])

@@ -8,6 +8,7 @@ from sebody import inputs
 from sebody.analysis.advice.conclusion import conclusion
 from sebody.analysis.advice.laboratory import Laboratory
 from sebody.analysis.advice.limits import refusal
+from sebody.analysis.advice.measures import absolute
 from sebody.analysis.advice.outcome import Advice, Reason, Trial, Unreached
 from sebody.analysis.advice.quantities import Quantities
 from sebody.analysis.advice.runs import Runs
@@ -16,32 +17,41 @@ from sebody.analysis.progress import showing
 from sebody.errors import InputError
 from sebody.model.model import Model
 
+STEPS = 128         # of a run whose step is not given
+
 __all__ = ["Advice", "Reason", "Trial", "advise"]
 
 
-def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str],
-           tolerance: float = 1e-3, budget: float = 20.0,
-           progress: Callable[[float], None] | bool | None = None) -> Advice:
+def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterable[str],
+           tolerance: float | str = 1e-3, budget: float = 20.0,
+           progress: Callable[[float], None] | bool | None = None,
+           start: str | None = None) -> Advice:
     """Find the cheapest model that keeps some quantities within a tolerance.
 
     Parameters
     ----------
     model : Model
         Any that has the parts; beams of `Model.beam` are divided anew for the richest model.
-    h : float
-        A usual time step [time]; the reference has a quarter of it.
+    h : float or None
+        A usual time step [time]; the reference has a quarter of it, or less where loads or the
+        tolerance need it. None for a first guess of a 128th of the time.
     t_end : float
         End of the runs, a whole number of steps [time].
     quantities : str or iterable of str
-        Names as results have them, or ``frequency 1`` and so on, of the model linearised at its
-        start. The error of a quantity is its largest difference, relative to its largest change
+        Names as results have them, with ``peak``, ``rms``, ``final`` or ``< 50 Hz`` behind them
+        where the whole history is not meant, or ``frequency 1`` and so on, about the equilibrium at
+        the start or the steady rotation. The error of a quantity is its largest difference,
+        relative to its largest change
         from the start; that of a frequency is relative to it.
-    tolerance : float
-        Largest error.
+    tolerance : float or str
+        Largest error, relative; with a unit, as ``"2mm"``, absolute. Models without units are taken
+        to be in metres, newtons and seconds.
     budget : float
         No further run is begun once the runs have taken so many times the time of the first.
     progress : callable or bool, optional
         As of `Simulation.run_to`; the bar begins anew with each run.
+    start : str, optional
+        ``"equilibrium"`` for runs that start in equilibrium under gravity and the loads of t = 0.
 
     Returns
     -------
@@ -58,15 +68,24 @@ def advise(model: Model, h: float, t_end: float, quantities: str | Iterable[str]
     """
     inputs.instance(model, "model", Model, "give a sebody.Model")
     wanted = Quantities(quantities)
-    h, t_end = inputs.number(h, "h", above=0), inputs.number(t_end, "t_end", above=0)
+    t_end = inputs.number(t_end, "t_end", above=0)
+    h = t_end / STEPS if h is None else inputs.number(h, "h", above=0)
     if not np.isclose(t_end / h, round(t_end / h), rtol=1e-9, atol=0):
         raise InputError(f"t_end is {t_end:g}, {t_end / h:.6g} steps of {h:g}: give a whole number "
                          "of steps")
-    tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
+    limit, own = absolute(tolerance, str(model.units or "")) if isinstance(tolerance, str) else (
+        tolerance, False)
+    limit = inputs.number(limit, "tolerance", above=0, **({} if own else {"below": 1}))
+    if own and wanted.numbers:
+        raise InputError(f"tolerance is {tolerance!r}: frequencies are kept relatively; give a "
+                         "number without a unit")
+    if start not in (None, "equilibrium"):
+        raise inputs.refusal("start", start, "give 'equilibrium' or nothing")
     budget = inputs.number(budget, "budget", above=0)
     wanted.check(model, h)
     with showing(progress, t_end) as show:
-        lab = Laboratory(model, wanted, Runs(wanted, h, t_end, show), tolerance)
+        lab = Laboratory(model, wanted, Runs(wanted, h, t_end, show, start is not None),
+                         limit, limit if own else None)
         lab.start()
         search = Search(lab, budget)
         try:

@@ -6,6 +6,7 @@ from sebody.analysis.advice.limits import doubts
 from sebody.analysis.advice.outcome import Advice
 from sebody.analysis.advice.reasons import neighbours, reasons
 from sebody.analysis.advice.search import Search
+from sebody.analysis.advice.words import limiting
 from sebody.analysis.tolerance import Tolerance
 
 REPEATS = 2         # further runs of what is compared in time
@@ -25,14 +26,29 @@ def conclusion(search: Search, found: Tried, given: Tried | None = None,
     made = lab.builder.make(choice)
     seconds = found.seconds if interrupted else _quickest(search, found)
     remarks = [] if given is None or interrupted else [
-        *_saved(search, seconds, given), *doubts(search), *neighbours(search, choice)]
+        *lab.remarks, *_saved(search, seconds, given), *neighbours(search, choice)]
+    warnings = lab.warnings if interrupted else _warnings(search, found)
     return Advice(
         made.model, choice.step.h, made.sentences, float(found.error), lab.tolerance,
         tuple(lab.table), tuple(search.untried),
         None if choice.step.local is None else Tolerance(choice.step.local),
         float(found.predicted), seconds, lab.runs.t_end,
         tuple(change.code() for change in made.changes), tuple(reasons(search, choice)),
-        tuple(remarks), interrupted)
+        tuple(remarks), interrupted, tuple(doubts(lab)), warnings,
+        _kept(search, found), lab.runs.balanced)
+
+
+def _kept(search: Search, found: Tried) -> str:
+    """What is kept how well, in the quantity's unit, when it is worst, and what limits it."""
+    worst = found.worst
+    if not worst.quantity or found.error == float("inf"):
+        return ""
+    when = "" if worst.row is None else f", worst at t = {worst.row * found.h:.4g}"
+    parts = search.lab.estimates.contributions(found.choice)
+    largest = max(parts, key=lambda one: one.error).kind if parts else ""
+    return (f"Keeps {worst.quantity} within {found.error * worst.size:.2g} "
+            f"({100 * found.error:.2g} % of {worst.size:.3g}){when}; limited by "
+            f"{limiting(search.lab.parts, largest)}")
 
 
 def _quickest(search: Search, found: Tried) -> float:
@@ -41,6 +57,13 @@ def _quickest(search: Search, found: Tried) -> float:
     if seconds <= QUICK and not search.spent():
         seconds = min([seconds, *(search.lab.run(found.choice).seconds for _ in range(REPEATS))])
     return seconds
+
+
+def _warnings(search: Search, found: Tried) -> tuple[str, ...]:
+    """Those of the reference, and of the chosen model, which runs once more."""
+    lab = search.lab
+    own = lab.run(found.choice, watched=True).result.warnings if found.error < float("inf") else ()
+    return tuple(dict.fromkeys((*lab.warnings, *own)))
 
 
 def _saved(search: Search, seconds: float, given: Tried) -> list[str]:

@@ -71,6 +71,10 @@ class Estimates:
         """The measured error of a form tried alone."""
         return self._measured.get((k, form))
 
+    def measured(self, k: int) -> bool:
+        """Whether a form of the k-th part was tried."""
+        return any(place == k for place, _ in self._measured)
+
     def of_form(self, k: int, form: Form) -> list[Contribution]:
         """Contributions of a form of the k-th part."""
         if (k, form) in self._measured:

@@ -1,8 +1,10 @@
 """The parts of a model, and the forms each of them may take."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
+
+import numpy as np
 
 from sebody.errors import InputError
 from sebody.model.frames import FRAMES
@@ -13,6 +15,7 @@ from sebody.reduction import ReducedBody
 
 DIVISIONS = (1, 2, 4, 8)
 MOST_MODES = {True: 4, False: 8}        # of a whole beam, at least: planar or not
+MOST_BODIES = 64                        # of a beam that is merged
 FEWEST_ELEMENTS = 16                    # of a whole beam: two of each body of eight
 
 
@@ -80,7 +83,8 @@ class Part:
         return [f"{self.name} {k}" for k in range(1, form.bodies + 1)]
 
 
-def parts_of(model: Mechanism, pinned: Iterable[str] = ()) -> list[Part]:
+def parts_of(model: Mechanism, pinned: Iterable[str] = (),
+             inside: Mapping[str, int] | None = None) -> list[Part]:
     """The parts of a model, beams first in the place of their superelements.
 
     Parameters
@@ -88,24 +92,41 @@ def parts_of(model: Mechanism, pinned: Iterable[str] = ()) -> list[Part]:
     pinned : iterable of str
         Names of nodes and superelements that quantities refer to: beams that own one of them are
         not divided anew.
+    inside : mapping of str to int, optional
+        Beams whose inside is asked for by places in so many finite elements: these are divided, as
+        long as the places stay nodes, but not rigid.
     """
     owners: dict[str, Beam] = {}
+    pinned, inside = set(pinned), inside or {}
     for beam in model.beams:
-        if _divisible(model, beam, set(pinned)):
+        asked = beam.name in inside and _elements(beam) % inside[beam.name] == 0
+        if _divisible(model, beam, pinned - (
+                {part.name for part in beam.parts} if asked else set())):
             owners |= {part.name: beam for part in beam.parts}
     found: dict[str, Part] = {}
     for name, body in model.bodies.items():
         beam = owners.get(name)
         if beam is None:
-            found[name] = _of_body(name, body)
+            found[name] = _of_body(name, body, name in pinned)
         elif beam.name not in found:
-            found[beam.name] = _of_beam(beam)
+            found[beam.name] = _of_beam(beam, beam.name in inside)
+    return list(found.values())
+
+
+def alike(parts: list[Part]) -> list[list[int]]:
+    """Places of parts, those together that have like bodies and may take the same forms."""
+    found: dict[tuple, list[int]] = {}
+    for k, part in enumerate(parts):
+        body = part.body
+        key = (part.given, part.richest, frozenset(part.forms), part.elements,
+               f"{body.total_mass:.6e}", f"{np.trace(body.stiffness):.6e}")
+        found.setdefault(key, []).append(k)
     return list(found.values())
 
 
 def _divisible(model: Mechanism, beam: Beam, pinned: set[str]) -> bool:
     own = {node.name for node in beam.nodes[1:-1]} | {part.name for part in beam.parts}
-    if own & pinned or len(beam.parts) > max(DIVISIONS):
+    if own & pinned or len(beam.parts) > MOST_BODIES:
         return False
     try:
         divide(model, beam.name, 1, FEWEST_ELEMENTS)
@@ -114,28 +135,39 @@ def _divisible(model: Mechanism, beam: Beam, pinned: set[str]) -> bool:
     return True
 
 
-def _of_beam(beam: Beam) -> Part:
+def _of_beam(beam: Beam, asked: bool) -> Part:
+    """A beam; one whose inside is asked for is not rigid."""
     first = beam.parts[0]
     planar = first.body.planar
     given = _given(first, len(beam.parts))
     most = max(MOST_MODES[planar], first.body.modes * given.bodies)
     options = _options(first)
-    forms = {_rigid(given)}
+    forms, many = set() if asked else {_rigid(given)}, given.bodies > max(DIVISIONS)
     for bodies in DIVISIONS:
+        if many and given.bodies % bodies:      # bodies of the richest model are merged
+            continue
         least = -(-most // bodies)
         forms |= {Form(False, bodies, modes, *option)
                   for modes in _counts(least + (least % 2 and not planar)) for option in options}
     forms.add(given)
-    elements = max(FEWEST_ELEMENTS, -(-beam.elements // max(DIVISIONS)) * max(DIVISIONS))
-    richest = max((f for f in forms if not f.rigid and f.bodies == max(DIVISIONS)),
-                  key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
-    return Part(beam.name, beam, first.body, given, richest, tuple(forms), elements)
+    richest = given if many else max(
+        (f for f in forms if not f.rigid and f.bodies == max(DIVISIONS)),
+        key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
+    return Part(beam.name, beam, first.body, given, richest, tuple(forms), _elements(beam))
 
 
-def _of_body(name: str, body: Superelement) -> Part:
+def _elements(beam: Beam) -> int:
+    """Finite elements of a beam in all forms: some for each of the most bodies."""
+    if len(beam.parts) > max(DIVISIONS):
+        return beam.elements
+    return max(FEWEST_ELEMENTS, -(-beam.elements // max(DIVISIONS)) * max(DIVISIONS))
+
+
+def _of_body(name: str, body: Superelement, asked: bool) -> Part:
+    """A body; one whose inside is asked for is not rigid."""
     given, most = _given(body, 1), body.body.modes
     forms = {Form(False, 1, modes, *option) for modes in _counts(most)
-             for option in _options(body)} | {_rigid(given), given}
+             for option in _options(body)} | {given} | (set() if asked else {_rigid(given)})
     richest = max((f for f in forms if not f.rigid),
                   key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
     return Part(name, None, body.body, given, richest, tuple(forms))

@@ -8,6 +8,8 @@ from sebody.analysis.tolerance import Tolerance
 from sebody.errors import InputError
 from sebody.model.model import Model
 
+TRUSTED = 0.5       # of the tolerance, that the reference may be off by
+
 
 @dataclass(frozen=True)
 class Trial:
@@ -76,6 +78,14 @@ class Reason(NamedTuple):
         return f"{self.of}: {self.chosen}" + (f"; {told}" if told else "")
 
 
+class Doubt(NamedTuple):
+    """An error that the richest model itself may have: how large, why, and what helps."""
+
+    error: float
+    sentence: str
+    remedy: str
+
+
 @dataclass(frozen=True, eq=False)
 class Advice:
     """The cheapest model found that keeps the quantities.
@@ -89,7 +99,7 @@ class Advice:
     changes : tuple of str
         What was changed, in sentences.
     error : float
-        Largest relative error of the quantities, with that of the reference: confirmed.
+        Largest relative error of the quantities, with that of the reference.
     tolerance : float
     table : tuple of Trial
         All runs, in their order; the first is the reference.
@@ -110,6 +120,15 @@ class Advice:
         What was found besides: times, neighbours at other tolerances, limits.
     interrupted : bool
         Whether Ctrl-C ended the search: this is the best until then.
+    doubts : tuple of Doubt
+        What the reference itself may be off by, the largest first: by theory in its bodies, by
+        loads between its steps, by instability.
+    warnings : tuple of str
+        Of the runs of the reference and of the chosen model.
+    kept : str
+        What is kept how well, when it is worst, and what limits it, in a sentence.
+    balanced : bool
+        Whether runs start from equilibrium.
     """
 
     model: Model
@@ -127,6 +146,20 @@ class Advice:
     reasons: tuple[Reason, ...] = ()
     remarks: tuple[str, ...] = ()
     interrupted: bool = False
+    doubts: tuple[Doubt, ...] = ()
+    warnings: tuple[str, ...] = ()
+    kept: str = ""
+    balanced: bool = False
+
+    @property
+    def doubt(self) -> float:
+        """What the reference may be off by."""
+        return max((one.error for one in self.doubts), default=0.0)
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether the error is within the tolerance, of a reference good to half of it."""
+        return self.error <= self.tolerance and self.doubt <= TRUSTED * self.tolerance
 
     def __repr__(self) -> str:
         return self.summary()
@@ -144,20 +177,34 @@ class Advice:
             Lines that make the given model, by the name ``model``, imports first.
         """
         names = sorted({line.partition("= ")[2].partition("(")[0] for line in self.lines})
-        imports = [f"from sebody import {'Tolerance, ' * bool(self.local)}simulate"]
+        imports = [f"from sebody import {'Tolerance, ' * bool(self.local)}simulate",
+                   *["from sebody.analysis import equilibrium"] * self.balanced]
         if names:
             imports.append(f"from sebody.model.variants import {', '.join(names)}")
         local = f", tolerance=Tolerance({self.local.relative!r})" if self.local else ""
-        run = f"result = simulate(model, {self.step!r}, {self.t_end!r}{local})"
+        start = ", start=equilibrium(model)" * self.balanced
+        run = f"result = simulate(model, {self.step!r}, {self.t_end!r}{local}{start})"
         own = [line for line in given if line.startswith(("from ", "import "))]
         return "\n".join([*own, *imports, "", *given[len(own):], *self.lines, run])
 
     def summary(self) -> str:
         """What was chosen and why, the time it saves, and the error."""
         return "\n".join([
+            *([self.kept] if self.kept else []),
             *map(str, self.reasons),
             *([f"not tried: {', '.join(self.untried)}; raise the budget"] if self.untried else []),
             *self.remarks,
             *(["interrupted: this is the best until then"] if self.interrupted else []),
-            f"predicted error {self.predicted:.2g}",
-            f"confirmed error {self.error:.2g} <= {self.tolerance:g}"])
+            *(f"warning: {one}" for one in self.warnings),
+            *(f"the richest model may itself be off by {one.error:.1g}: {one.sentence}; "
+              f"{one.remedy}" for one in self.doubts if one.error > TRUSTED * self.tolerance),
+            f"predicted error {self.predicted:.2g}", self._verdict()])
+
+    def _verdict(self) -> str:
+        """The last line."""
+        if self.confirmed:
+            return f"confirmed error {self.error:.2g} <= {self.tolerance:g}"
+        if self.error > self.tolerance:
+            return f"not confirmed: error {self.error:.2g} > {self.tolerance:g}"
+        return (f"not confirmed: within {self.error:.2g} of the reference model, which may itself "
+                f"be off by {self.doubt:.2g}")

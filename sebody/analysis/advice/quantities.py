@@ -8,9 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.analysis.linearization import modes
+from sebody.analysis.advice.inside import Places
+from sebody.analysis.advice.measures import Measure
+from sebody.analysis.advice.steady import steady_frequencies
 from sebody.analysis.simulation import Simulation
-from sebody.errors import InputError, LimitWarning
+from sebody.errors import InputError, LimitWarning, SimulationError
+from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.results.naming import component_of, split
 from sebody.results.result import Result
@@ -24,6 +27,7 @@ class Values(NamedTuple):
 
     histories: list[NDArray]
     frequencies: list[float]
+    measures: tuple[Measure, ...] = ()
 
 
 class Quantities:
@@ -32,8 +36,8 @@ class Quantities:
     Parameters
     ----------
     names : str or iterable of str
-        As a result has them, and ``frequency 1``, the lowest one above zero of the model
-        linearised at its start, and so on.
+        As a result has them, and ``frequency 1``, the lowest one above zero of small motion about
+        the equilibrium at the start or the steady rotation, and so on.
 
     Raises
     ------
@@ -52,7 +56,10 @@ class Quantities:
                                  "position, a force or the like")
         self.names = list(given)
         numbers = [FREQUENCY.fullmatch(name) for name in given]
-        self.histories = [n for n, number in zip(given, numbers, strict=True) if number is None]
+        self.measures = tuple(Measure.of(n) for n, number in zip(given, numbers, strict=True)
+                              if number is None)
+        self.histories = [one.name for one in self.measures]
+        self.places = Places(Mechanism(), [])
         self.numbers = [int(number[1]) for number in numbers if number]
 
     @property
@@ -67,36 +74,41 @@ class Quantities:
     def check(self, model: Model, h: float) -> None:
         """Refuse quantities that a model does not have, by its state at the start.
 
+        Those inside beams are known by their places from here on.
+
         Raises
         ------
         InputError
             A quantity does not exist, or the model cannot be started.
         """
+        self.places = Places(model, self.histories)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LimitWarning)
             self.of(Simulation(model, h).result(), h)
 
-    def of(self, result: Result, h: float) -> Values:
-        """The quantities of a run.
+    def of(self, result: Result, h: float, grid: float = 0.0) -> Values:
+        """The quantities of a run that was recorded with a step.
 
         Raises
         ------
         InputError
             A quantity does not exist.
         """
-        return Values([_history(result, name) for name in self.histories],
-                      self._frequencies(result, h) if self.numbers else [])
+        histories = [self.places.history(result, name, _history) for name in self.histories]
+        return Values([measure.filtered(history, h, grid) for measure, history in zip(
+            self.measures, histories, strict=True)],
+            self._frequencies(result) if self.numbers else [], self.measures)
 
     def wholes(self, result: Result) -> list[str]:
         """The quantities that the histories are components of, or they themselves."""
-        return [split(result, name)[0] for name in self.histories]
+        return [split(result, self.places.names(result.model, name)[0])[0]
+                for name in self.histories]
 
-    def _frequencies(self, result: Result, h: float) -> list[float]:
-        run = Simulation(result.model, h)
+    def _frequencies(self, result: Result) -> list[float]:
         try:
-            omega = modes(run).omega
-        except InputError as reason:
-            raise InputError(f"the model has no frequencies at its start: {reason}") from reason
+            omega = steady_frequencies(result)
+        except (InputError, SimulationError) as reason:
+            raise InputError(f"quantity {f'frequency {self.numbers[0]}'!r}: {reason}") from reason
         flexible = omega[omega > RIGID * omega.max(initial=0.0)]
         if max(self.numbers) > len(flexible):
             raise InputError(f"quantity 'frequency {max(self.numbers)}' does not exist: the model "
@@ -117,28 +129,40 @@ def _history(result: Result, name: str) -> NDArray:
     return found
 
 
-def difference(one: Values, other: Values, sizes: list[float], stride: tuple[int, int]) -> float:
-    """Largest relative difference of two runs; each history is taken with its stride.
+class Worst(NamedTuple):
+    """The largest relative difference of two runs: of which quantity, and at which row."""
+
+    error: float
+    quantity: str
+    row: int | None = None
+    size: float = 1.0       # of the quantity, that the error is relative to
+
+
+def compared(one: Values, other: Values, sizes: list[float], stride: tuple[int, int]) -> Worst:
+    """Compare two runs; each history is taken with its stride.
 
     Raises
     ------
     InputError
         A history has other components.
     """
-    errors = [abs(a / b - 1.0) for a, b in zip(one.frequencies, other.frequencies, strict=True)]
-    for a, b, size in zip(one.histories, other.histories, sizes, strict=True):
+    found = [Worst(abs(a / b - 1.0), "a frequency", size=b)
+             for a, b in zip(one.frequencies, other.frequencies, strict=True)]
+    for measure, a, b, size in zip(one.measures, one.histories, other.histories, sizes,
+                                   strict=True):
         if a.shape[1:] != b.shape[1:]:
             raise InputError("a quantity has other components")
-        off = a[::stride[0]] - b[::stride[1]]
-        errors.append(float(lengths(off).max()) / size)
-    return max(errors)
+        off, row = measure.difference(a[::stride[0]], b[::stride[1]])
+        found.append(Worst(off / size, measure.name, row, size))
+    return max(found, key=lambda worst: worst.error)
 
 
-def lengths(values: NDArray) -> NDArray:
-    """Norms of the states of a history, (n,)."""
-    return np.sqrt((values**2).sum(axis=tuple(range(1, values.ndim))))
+def difference(one: Values, other: Values, sizes: list[float], stride: tuple[int, int]) -> float:
+    """Largest relative difference of two runs, see `compared`."""
+    return compared(one, other, sizes, stride).error
 
 
-def changes_of(values: list[NDArray]) -> list[float]:
-    """Largest change of each history from its start."""
-    return [float(lengths(one - one[0]).max()) for one in values]
+def sizes_of(values: Values) -> list[float]:
+    """What differences of each history are relative to."""
+    return [one.size(history) for one, history in zip(values.measures, values.histories,
+                                                      strict=True)]

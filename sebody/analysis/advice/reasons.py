@@ -25,14 +25,17 @@ def reasons(search: Search, choice: Choice) -> list[Reason]:
         if getattr(choice, name):
             found.append(Reason("model", chosen, why, 0.0, search.exact.get(name)))
     for k, (part, form) in enumerate(zip(lab.parts, choice.forms, strict=True)):
-        found += _of_part(lab, k, part, form)
+        found += _of_part(lab, k, part, form, search.untried)
     return [*found, _of_step(search, choice)]
 
 
-def _of_part(lab: Laboratory, k: int, part: Part, form: Form) -> list[Reason]:
+def _of_part(lab: Laboratory, k: int, part: Part, form: Form, untried: list[str]) -> list[Reason]:
     """A line of the form, and one of each of its axes that were made poorer."""
     if form == part.richest:
-        return [Reason(part.name, in_words(part, form), "nothing less was enough")]
+        why = ("nothing less was enough" if lab.estimates.measured(k) else
+               "nothing less was tried" if part.name in untried else
+               "nothing less is predicted to be enough")
+        return [Reason(part.name, in_words(part, form), why)]
     predicted, confirmed = lab.estimates.raw(k, form), lab.estimates.confirmed(k, form)
     total = sum(predicted.values())
     if form.rigid:
@@ -87,7 +90,7 @@ def _of_step(search: Search, choice: Choice) -> Reason:
                   for part, form in zip(lab.parts, choice.forms, strict=True) if not form.rigid]
     fastest = max(vibrations, default=0.0)
     steps = f"{_short(TURN / fastest / step.h)} steps a period of the vibration" if fastest else ""
-    return Reason("step", f"{step.h:g}, {_times(step.h / lab.runs.h)} given", steps,
+    return Reason("step", f"{step.h:g}, {_times(step.h / lab.given_step.h)} given", steps,
                   confirmed=halved)
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody.analysis.advice.quantities import Values, changes_of, difference
+from sebody.analysis.advice.quantities import Values, Worst, compared, difference, sizes_of
 
 REGULAR = 2.8, 5.7          # differences that fall by four, within a factor of the root of two
 LEAST = 2.0                 # factor by which they are taken to fall at least, as at jumps
@@ -35,6 +35,8 @@ class Reference(NamedTuple):
         Of the richest model with the shortest step.
     falls : bool
         Whether the error falls with the step.
+    worst : Worst
+        Where the last two runs differ most.
     """
 
     values: Values
@@ -42,31 +44,42 @@ class Reference(NamedTuple):
     error: float
     step_error: float
     falls: bool
+    worst: Worst
 
 
-def reference(runs: list[Values]) -> Reference:
-    """The reference from runs with steps halved each time, recorded on one grid; two or more."""
+def reference(runs: list[Values], common: bool = False) -> Reference:
+    """The reference from runs with steps halved each time, recorded on one grid; two or more.
+
+    Parameters
+    ----------
+    common : bool
+        Whether all errors are relative to the largest size, as absolute tolerances are.
+    """
     runs = runs[-3:]
     finest = runs[-1]
-    sizes = changes_of(finest.histories)
+    sizes = sizes_of(finest)
+    if common:
+        sizes = [max(sizes)] * len(sizes)
+    worst = compared(*runs[-2:], sizes, (1, 1))
     steps = [difference(a, b, sizes, (1, 1)) for a, b in zip(runs, runs[1:], strict=False)]
     own = steps[-1] / (ORDER_FACTOR - 1.0)
     if len(steps) < 2 or steps[-1] == 0.0:
-        return Reference(finest, sizes, own, own, True)
+        return Reference(finest, sizes, own, own, True, worst)
     ratio = steps[0] / steps[1]
     if not REGULAR[0] < ratio < REGULAR[1]:
         own = steps[1] / (min(max(ratio, LEAST), ORDER_FACTOR) - 1.0)
-        return Reference(finest, sizes, own, own, steps[1] < CHAOTIC[0] or ratio > CHAOTIC[1])
+        return Reference(finest, sizes, own, own, steps[1] < CHAOTIC[0] or ratio > CHAOTIC[1],
+                         worst)
     better = [_extrapolated(a, b) for a, b in zip(runs, runs[1:], strict=False)]
     left = LEFT * difference(better[0], better[1], sizes, (1, 1))
-    return Reference(better[1], sizes, min(left, own), own, True)
+    return Reference(better[1], sizes, min(left, own), own, True, worst)
 
 
 def _extrapolated(coarse: Values, fine: Values) -> Values:
     """Histories without their errors of second order; frequencies do not depend on the step."""
     return Values([b + (b - a) / (ORDER_FACTOR - 1.0)
                    for a, b in zip(coarse.histories, fine.histories, strict=True)],
-                  fine.frequencies)
+                  fine.frequencies, fine.measures)
 
 
 def still(values: Values) -> list[int]:

@@ -1,5 +1,6 @@
 """Runs of a model, and what is kept of them."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,8 +11,10 @@ from sebody.analysis.advice.changes import Step
 from sebody.analysis.advice.quantities import Quantities, Values
 from sebody.analysis.limits import Watch
 from sebody.analysis.simulation import Simulation
+from sebody.analysis.statics import equilibrium
 from sebody.analysis.tolerance import Tolerance
 from sebody.assembly.numbering import Numbering
+from sebody.errors import LimitWarning
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.results.recording import Recording
@@ -49,29 +52,46 @@ class Runs:
     ----------
     quantities : Quantities
     h : float
-        The given step.
+        Step of the grid that quantities are recorded on: the given one, or a part of it.
     t_end : float
     progress : callable, optional
         Called between and during runs.
+    balanced : bool
+        Whether runs start from the equilibrium under the loads of t = 0.
     """
 
     quantities: Quantities
     h: float
     t_end: float
     progress: Callable[[float], None] | None = None
+    balanced: bool = False
 
-    def run(self, model: Model, step: Step) -> Run:
-        """Run a model; recorded on the grid of the given step, or of a longer one.
+    def run(self, model: Model, step: Step, watched: bool = False, every: int = 0) -> Run:
+        """Run a model; recorded on the grid, or on a longer step.
+
+        Parameters
+        ----------
+        watched : bool
+            Whether the result has the run's warnings, which take as long as a short run.
+        every : int
+            Steps from one record to the next, where it is not on the grid.
 
         Raises
         ------
         InputError, SimulationError
             It does not run, or lacks a quantity.
         """
-        every = max(round(self.h / step.h), 1)
+        end = self.t_end if not every else step.h * int(self.t_end / step.h)
+        every = every or max(round(self.h / step.h), 1)
         tolerance = None if step.local is None else Tolerance(step.local)
-        simulation = Simulation(model, step.h, output_every=every, tolerance=tolerance)
-        simulation.watch = _Unwatched()         # of variants that are taken, none is poor
-        result = simulation.run_to(self.t_end, self.progress).result()
-        return Run(self.quantities.of(result, step.h), step.h * every, result.seconds,
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LimitWarning)       # advice tells them
+            start = equilibrium(model) if self.balanced else None
+            simulation = Simulation(model, step.h, output_every=every, tolerance=tolerance,
+                                    start=start)
+            if not watched:
+                simulation.watch = _Unwatched()
+            result = simulation.run_to(end, self.progress).result()
+        h = step.h * every
+        return Run(self.quantities.of(result, h, self.h), h, result.seconds,
                    result.iterations_per_step * result.steps, result)

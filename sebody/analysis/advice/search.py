@@ -6,7 +6,7 @@ from sebody.analysis.advice.changes import Choice, Step
 from sebody.analysis.advice.combinations import combinations
 from sebody.analysis.advice.cost import of_form
 from sebody.analysis.advice.estimates import expected, least
-from sebody.analysis.advice.forms import Form
+from sebody.analysis.advice.forms import Form, alike
 from sebody.analysis.advice.indicators.activity import activity
 from sebody.analysis.advice.laboratory import FINER, Laboratory, Tried
 from sebody.analysis.advice.reference import ORDER_FACTOR
@@ -17,6 +17,7 @@ LONGER = (4, 2)             # steps that are tried, in given ones
 MOST_ALONE = 12             # forms of a part that are tried alone
 APART = 0.5                 # of the budget, that all of them may take
 MOST_TOGETHER = 24          # choices that are tried
+MISSED = 0.2                # of a load, that steps which are tried may not see
 SHARE = 0.5                 # of the tolerance, that one part may use
 EXACT = 0.05                # of the tolerance, that a change may make that should make none
 RARE = 0.5                  # steps of variable length relative to fixed ones, that pay
@@ -39,18 +40,36 @@ class Search:
         self.untried: list[str] = []
         self.planar = self.shared = self.dropped = self.variable = False
         self.exact: dict[str, float] = {}       # errors of what should change nothing
+        self.groups = [[k] for k in range(len(lab.parts))]      # of parts that get like forms
         self._failed: list[Choice] = []
 
     def go(self) -> Tried:
         """The whole search."""
         self._exact()
         self._variable()
-        for k, part in enumerate(self.lab.parts):
-            if self.spent():
-                self.untried.append(part.name)
-            else:
-                self._alone(k)
+        self._parts()
         return self._together()
+
+    def _parts(self) -> None:
+        """Try forms of parts: of those that are alike together, of costly ones first."""
+        groups = sorted(alike(self.lab.parts), key=lambda group: -sum(
+            of_form(self.lab.parts[k], self.lab.parts[k].richest, self.planar) for k in group))
+        self.groups = []
+        for place, group in enumerate(groups):
+            rest = len(groups) - place
+            if self.spent():
+                self.untried += [self.lab.parts[k].name for k in group]
+                self.groups.append(group)
+            elif self._alone(group, rest) or len(group) == 1:
+                self.groups.append(group)
+            else:
+                self.groups += [[k] for k in group]
+                for n, k in enumerate(group):
+                    if self.spent():
+                        self.untried.append(self.lab.parts[k].name)
+                    else:
+                        self._alone([k], rest + len(group) - 1 - n)
+        self.untried.sort(key=[part.name for part in self.lab.parts].index)
 
     def spent(self) -> bool:
         """Whether the budget is used up."""
@@ -66,6 +85,8 @@ class Search:
         """Try what should change nothing: shared and dropped triplets, a planar model."""
         for name in ("shared", "dropped", "planar"):
             changed = self.base._replace(**{name: True})
+            if name == "planar" and self.lab.unstable:
+                continue
             if self.spent() or not self._applies(changed):
                 continue
             found, run = self.lab.attempt(changed, "alone")
@@ -97,33 +118,47 @@ class Search:
             self.variable = True
             self.lab.estimates.learn_step(step, found.error)
 
-    def _alone(self, k: int) -> None:
-        """Try forms of the k-th part, the others as rich as they are."""
-        part, base = self.lab.parts[k], self.base
+    def _alone(self, group: list[int], rest: int) -> bool:
+        """Try forms of a part, or of several alike, the others as rich as they are.
+
+        Parameters
+        ----------
+        rest : int
+            Groups that share what is left of the budget for this.
+
+        Returns
+        -------
+        bool
+            Whether one was good enough.
+        """
+        part, base = self.lab.parts[group[0]], self.base
         failed: list[Form] = []
         best = inf
 
         def cost(form: Form) -> float:
             return of_form(part, form, self.planar)
         forms = sorted((form for form in part.forms if form != part.richest), key=cost)
-        left = max(APART * self.budget - self.lab.spent(), 0.0) / (len(self.lab.parts) - k)
+        left = max(APART * self.budget - self.lab.spent(), 0.0) / rest
         most = self.lab.spent() + left
         for _ in range(MOST_ALONE):
             form = next((
                 f for f in forms if cost(f) < best and not any(f.poorer(one) for one in failed)
-                and least(self.lab.estimates.of_form(k, f)) <= SHARE * self.tolerance), None)
+                and least([one for k in group for one in self.lab.estimates.of_form(k, f)])
+                <= SHARE * self.tolerance), None)
             if form is None or self.lab.spent() > most:
-                return
+                break
             forms.remove(form)
             choice = base._replace(forms=tuple(
-                form if i == k else one for i, one in enumerate(base.forms)))
+                form if i in group else one for i, one in enumerate(base.forms)))
             _, run = self.lab.attempt(choice, "alone")
             error = self.lab.apart(run, base.step.h) if run else inf
-            self.lab.estimates.learn_form(k, form, error)
+            for k in group:     # errors add up as squares
+                self.lab.estimates.learn_form(k, form, error / len(group)**0.5)
             if error <= SHARE * self.tolerance:
                 best = cost(form)
             else:
                 failed.append(form)
+        return best < inf
 
     def steps(self) -> list[Step]:
         """Steps that are tried; frequencies do not depend on it."""
@@ -131,7 +166,8 @@ class Search:
         if not self.lab.quantities.histories:
             return [Step(h)]
         count = round(self.lab.runs.t_end / h)
-        found = [Step(k * h) for k in LONGER if count % k == 0]
+        found = [Step(k * h) for k in LONGER
+                 if count % k == 0 and self.lab.missed(k * h).share <= MISSED]
         found += [Step(h / k) for k in sorted(FINER)]
         while found[-1].h > shortest or expected(
                 self.lab.estimates.of_step(found[-1])) > SHARE * self.tolerance:
@@ -176,7 +212,8 @@ class Search:
         forms = [[part.richest] if part.name in self.untried else list(part.forms)
                  for part in self.lab.parts]
         found = [self.base._replace(forms=one, step=step)
-                 for one in combinations(self.lab.parts, forms, self.lab.estimates, self.planar)
+                 for one in combinations(self.lab.parts, forms, self.lab.estimates, self.planar,
+                                       self.groups)
                  for step in self.steps()]
         done = [] if sure else [*self._failed, *(
             one.choice for one in self.lab.tried if one.error > self.tolerance)]

@@ -1,5 +1,6 @@
 """Forms and choices in a few words."""
 
+from collections.abc import Hashable
 from itertools import groupby
 
 from sebody.analysis.advice.changes import Choice
@@ -13,6 +14,17 @@ def in_words(part: Part, form: Form) -> str:
     stiffening = "" if form.inertia != "c" else (
         ", stiffening" if form.stiffening else ", not stiffening")
     return f"{_size(part, form)}, inertia {form.inertia}{stiffening}"
+
+
+def limiting(parts: list[Part], kind: Hashable) -> str:
+    """The contribution that makes most of an error."""
+    if isinstance(kind, tuple) and kind and isinstance(kind[0], int):
+        k, what = kind[0], kind[1]
+        return f"the {what} of {parts[k].name}" if isinstance(what, str) else (
+            f"the form of {parts[k].name}")
+    if isinstance(kind, tuple) and kind and isinstance(kind[0], Form):
+        return "the forms of its parts together"
+    return "the step"
 
 
 def in_brief(parts: list[Part], choice: Choice) -> str:

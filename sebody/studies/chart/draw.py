@@ -1,5 +1,6 @@
 """The picture of a chart."""
 
+import re
 from collections.abc import Iterable
 from itertools import cycle
 from pathlib import Path
@@ -18,6 +19,9 @@ NAMES = {"frames and inertia": "frame, inertia option", "modes": "number of mode
          "modes, B": "number of modes, option b", "bodies": "number of bodies",
          "steps": "time step", "nonlinear beams": "nonlinear beam elements",
          "schemes": "integration scheme", "inertia": "inertia option", "rigid": "rigid parts"}
+MARKERS = "osDvPX<>"      # of families, as well as their colours
+# what of a name tells one run of a method from the others: its step or its tolerance
+STEP = re.compile(r"[;,]? ?(step|h|tolerance|variable steps, local tolerance) ?[0-9.e+-]+")
 OTHERS = ("#c8452d", "#3c6fb6", "#2a7f62", "#8a4fa3", "#b58a1b", "#d98a6a", "#7fc8a9", "#1f2a44")
 INK, PALE = "#1f2a44", "#9aa5b8"
 MOST_NAMES = 7      # of the front that are written beside their points
@@ -107,22 +111,36 @@ def _around(values: list[float]) -> tuple[float, float]:
 
 
 def _families(axes, points: list[Point]) -> None:
-    """Points of each family in its colour; slower runs as a bar to the right."""
+    """Points of each family in its colour and shape, runs of one method joined by a line.
+
+    Slower runs of the same are a bar to the right.
+    """
     taken = {COLORS[p.family] for p in points if p.family in COLORS}
     others = cycle([color for color in OTHERS if color not in taken] or OTHERS)
-    for family in dict.fromkeys([*COLORS, *(p.family for p in points)]):
+    for place, family in enumerate(dict.fromkeys([*COLORS, *(p.family for p in points)])):
         group = [p for p in points if p.family == family]
         if not group:
             continue
         color = COLORS[family] if family in COLORS else next(others)
-        axes.plot([p.cost for p in group], [p.error for p in group],
-                  "^" if family == "Exudyn" else "o", color=color, markersize=5,
-                  label=labels.wrapped(NAMES.get(family, family), FAMILY, 2))
+        marker = "^" if family == "Exudyn" else MARKERS[place % len(MARKERS)]
+        axes.plot([p.cost for p in group], [p.error for p in group], marker, color=color,
+                  markersize=5, label=labels.wrapped(NAMES.get(family, family), FAMILY, 2))
+        for method in _methods(group):
+            axes.plot([p.cost for p in method], [p.error for p in method], color=color,
+                      linewidth=0.9, alpha=0.7, zorder=1)
         for p in group:
             if p.slowest > DIFFER * p.cost:
                 axes.plot([p.cost, p.slowest], [p.error, p.error], color=color, **SLOWEST)
     if any(p.slowest > DIFFER * p.cost for p in points):
         axes.plot([], [], color=PALE, label="slowest of several runs", **SLOWEST)
+
+
+def _methods(group: list[Point]) -> list[list[Point]]:
+    """Runs of one method with several steps or tolerances, from the longest step down."""
+    found: dict[str, list[Point]] = {}
+    for point in group:
+        found.setdefault(STEP.sub("", point.label), []).append(point)
+    return [sorted(one, key=lambda p: -p.h) for one in found.values() if len(one) > 1]
 
 
 def _named(line: list[Point]) -> list[Point]:

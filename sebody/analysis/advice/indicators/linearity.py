@@ -5,9 +5,8 @@ import numpy as np
 from sebody.analysis.advice.forms import Form, Part
 from sebody.analysis.advice.indicators.carried import carried
 from sebody.analysis.advice.indicators.recorded import Recorded
-from sebody.analysis.advice.indicators.vibration import detuned, strain_force
+from sebody.analysis.advice.indicators.vibration import strain_force
 
-DAMPED = 0.3        # of a vibration, by which damping that is made otherwise changes it at most
 MISSED = 0.5        # of the square of a local rotation, by which the deformation is off
 
 
@@ -21,13 +20,10 @@ def linearity(recorded: Recorded, part: Part, form: Form) -> float:
     """Error from the local rotations theta in a form: ``theta^2 / 2`` of the deformation.
 
     Of the bodies of a beam each is off by its own square, weighted by its part of the rotation.
-    Where they are damped, in parts of the critical damping of each body, another division also
-    damps a vibration otherwise, by as much at most.
     """
     if form.bodies == part.richest.bodies:
         return 0.0
-    damping = float(part.beam.options["damping"])
-    return bent(recorded, part, form.bodies) + detuned(recorded, part, damping, DAMPED)
+    return bent(recorded, part, form.bodies)
 
 
 def bent(recorded: Recorded, part: Part, bodies: int) -> float:

@@ -1,0 +1,78 @@
+"""Loads and drives against the step: what of them steps of a length do not see.
+
+Between its steps a run knows nothing of a load. What it integrates is at best the load's linear
+interpolation, so the spectrum of the difference of the two, relative to the strongest line of the
+load itself, says what share of the load steps of a length miss: all of a pulse that is shorter
+than they are, or of a ripple with a whole number of periods in each.
+"""
+
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.model.histories import History
+
+SEEN = 0.01             # share of a load's strongest line that reference steps may miss
+OFF_GRID = 0.9137       # samples of a load are so much denser, so that they are on no step's grid
+DENSE = 32              # samples in a step
+MOST = 2**17            # samples of a load
+SIDE = 1e-9             # of a sample: a value just before a corner
+
+
+class Missed(NamedTuple):
+    """What steps do not see of a load or drive: its name, the share, and where most is missed."""
+
+    name: str
+    share: float
+    time: float
+
+
+def missed(names: Iterable[str], histories: Iterable[History], h: float, t_end: float) -> Missed:
+    """The load or drive of which steps of a length see least.
+
+    Parameters
+    ----------
+    h, t_end : float
+        Step and end of a run [time].
+    """
+    found = [Missed(name, *_share(history, h, t_end))
+             for name, history in zip(names, histories, strict=True) if not _is_constant(history)]
+    return max(found, key=lambda one: one.share, default=Missed("", 0.0, 0.0))
+
+
+def _is_constant(history: History) -> bool:
+    return not history.functions and not history.waves and not any(
+        any(piece[1:]) for piece in history.pieces) and len(history.pieces) == 1
+
+
+@lru_cache(maxsize=512)
+def _share(history: History, h: float, t_end: float) -> tuple[float, float]:
+    """The share of a history that steps miss, and the time where they miss most."""
+    times, values = _sampled(history, h, t_end)
+    steps = np.arange(0.0, t_end + h, h)
+    off = values - np.interp(times, steps, history.values(steps))
+    cells = np.linspace(0.0, t_end, min(MOST, int(DENSE * OFF_GRID * t_end / h) + 2))
+    load, lost = (np.abs(np.fft.rfft(_means(times, one, cells))) for one in (values, off))
+    if load.max() == 0.0:
+        return 0.0, 0.0
+    return float(lost.max() / load.max()), float(times[np.argmax(np.abs(off))])
+
+
+def _sampled(history: History, h: float, t_end: float) -> tuple[NDArray, NDArray]:
+    """Values on no step's grid, and on both sides of all times where the history bends or jumps."""
+    count = min(MOST, int(DENSE * OFF_GRID * t_end / h) + 2)
+    known = np.array(history.corners if history.functions else history.times, dtype=float)
+    known = known[(known > 0.0) & (known < t_end)]
+    middles = (known[1:] + known[:-1]) / 2
+    before = known - SIDE * t_end / count
+    times = np.unique(np.concatenate([np.linspace(0.0, t_end, count), known, before, middles]))
+    return times, history.values(times)
+
+
+def _means(times: NDArray, values: NDArray, cells: NDArray) -> NDArray:
+    """Means of a history over cells, by trapezia."""
+    whole = np.concatenate([[0.0], np.cumsum(np.diff(times) * (values[1:] + values[:-1]) / 2)])
+    return np.diff(np.interp(cells, times, whole)) / np.diff(cells)

@@ -1,0 +1,117 @@
+"""How quantities are compared: at all times, by one number, below a frequency; tolerances in units.
+"""
+
+import re
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfiltfilt
+
+from sebody.errors import InputError
+from sebody.units import FORCES, LENGTHS, PRESSURES, parsed_units
+
+KINDS = "peak", "rms", "final"
+WORDS = re.compile(r"(?P<name>[^<]+?)(?: < (?P<cut>\S+) Hz)?(?: (?P<kind>peak|rms|final))?")
+ORDER = 4               # of the filter, which runs forth and back
+SAMPLED = 0.4           # of the sampling rate, from which a limit changes nothing that is recorded
+TOLERANCE = re.compile(r"([0-9.]+(?:[eE][+-]?[0-9]+)?) *([A-Za-z]*)")
+ANGLES = {"rad": 1.0, "mrad": 1e-3, "deg": np.pi / 180}
+SI = "m kg N s"
+REMEDY = ("give a name of results, such as tip.position, and behind it '< 50 Hz' or peak, rms or "
+          "final where the whole history is not meant")
+
+
+class Measure(NamedTuple):
+    """A history by its name, what of it counts (``""``: all), and the frequency it is cut at."""
+
+    name: str
+    kind: str = ""
+    cut: float | None = None
+
+    @classmethod
+    def of(cls, text: str) -> "Measure":
+        """As ``tip.position < 50 Hz rms`` says it.
+
+        Raises
+        ------
+        InputError
+            Other words.
+        """
+        found = WORDS.fullmatch(text)
+        cut = found and found["cut"] and _frequency(found["cut"], text)
+        if not found:
+            raise InputError(f"quantity {text!r} is unclear: {REMEDY}")
+        return cls(found["name"], found["kind"] or "", cut or None)
+
+    def filtered(self, history: NDArray, h: float, grid: float) -> NDArray:
+        """A history recorded with a step, without what is faster than the limit.
+
+        Where the grid that runs are compared on is too coarse for the limit, nothing is cut.
+        """
+        if self.cut is None or self.cut * max(h, grid) >= SAMPLED or len(history) < 3 * ORDER:
+            return history
+        sections = butter(ORDER, self.cut, fs=1.0 / h, output="sos")
+        padding = min(len(history) - 1, int(3.0 / (self.cut * h)))
+        return sosfiltfilt(sections, history, axis=0, padlen=padding)
+
+    def size(self, history: NDArray) -> float:
+        """What differences are relative to: the largest change from the start, or the mean one."""
+        changes = lengths(history - history[0])
+        return float(np.sqrt(np.mean(changes**2)) if self.kind == "rms" else changes.max())
+
+    def difference(self, one: NDArray, other: NDArray) -> tuple[float, int]:
+        """Difference of two histories of the same times, and the row it is at."""
+        off = lengths(one - other)
+        if self.kind == "final":
+            return float(off[-1]), len(off) - 1
+        if self.kind == "rms":
+            return float(np.sqrt(np.mean(off**2))), int(np.argmax(off))
+        if self.kind == "peak":
+            a, b = (lengths(history - history[0]) for history in (one, other))
+            return float(abs(a.max() - b.max())), int(np.argmax(b))
+        return float(off.max()), int(np.argmax(off))
+
+
+def _frequency(text: str, what: str) -> float:
+    """The frequency of a limit."""
+    try:
+        found = float(text)
+    except ValueError:
+        found = 0.0
+    if found <= 0.0:
+        raise InputError(f"quantity {what!r}: frequency is {text!r}: give a number above 0")
+    return found
+
+
+def lengths(values: NDArray) -> NDArray:
+    """Norms of the states of a history, (n,)."""
+    return np.sqrt((values**2).sum(axis=tuple(range(1, values.ndim))))
+
+
+def absolute(tolerance: str, units: str) -> tuple[float, bool]:
+    """A tolerance as text in the model's units, and whether it is absolute.
+
+    ``1e-3`` is relative, ``2mm`` and ``0.5 deg`` are absolute. Models without units are taken to
+    be in metres, newtons and seconds.
+
+    Raises
+    ------
+    InputError
+        No number, or a unit that is not known.
+    """
+    found = TOLERANCE.fullmatch(tolerance.strip())
+    if not found:
+        raise InputError(f"tolerance is {tolerance!r}: give a number, such as 1e-3, or one with a "
+                         "unit, such as 2mm")
+    number, unit = float(found[1]), found[2]
+    if not unit:
+        return number, False
+    if unit in ANGLES:
+        return number * ANGLES[unit], True
+    own = parsed_units(units or SI)
+    for known, words in ((LENGTHS, "length"), (FORCES, "force"), (PRESSURES, "force/length^2")):
+        if unit in known:
+            return number * known[unit] / own.factor(words), True
+    raise InputError(f"tolerance is {tolerance!r}: the unit {unit!r} is unknown: give one of "
+                     f"{', '.join((*LENGTHS, *FORCES, *PRESSURES, *ANGLES))}")
