@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import simulate
-from sebody.results.plots import write_picture
+from sebody.pictures.plots import write_picture
 from sebody.scenes import hinged_beam, spherical_beam
 from sebody.scenes.scene import Scene
 

@@ -21,7 +21,7 @@ class Scene:
 
 def main(build: Callable[[], Scene]) -> None:
     """Run a scene as a script, with its summary and picture."""
-    from sebody.results.plots import save_picture
+    from sebody.pictures.plots import save_picture
 
     scene = build()
     result = simulate(scene.model, scene.h, scene.t_end)

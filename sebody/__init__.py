@@ -5,10 +5,6 @@ from typing import TYPE_CHECKING
 from sebody.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from sebody.analysis.accuracy import simulate_within
-    from sebody.analysis.schemes import generalized_alpha, hht
-    from sebody.analysis.simulation import Simulation, simulate
-    from sebody.analysis.tolerance import Tolerance
     from sebody.errors import (
         InputError,
         Interrupted,
@@ -21,6 +17,10 @@ if TYPE_CHECKING:
     from sebody.model.model import Model
     from sebody.model.profiles import harmonic, piecewise, ramp, rest_to_rest, spline, trapezoidal
     from sebody.results.result import Result
+    from sebody.runs.accuracy import simulate_within
+    from sebody.runs.schemes import generalized_alpha, hht
+    from sebody.runs.simulation import Simulation, simulate
+    from sebody.runs.tolerance import Tolerance
     from sebody.version import __version__ as __version__
 
 __all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",

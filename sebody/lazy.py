@@ -13,7 +13,7 @@ from types import ModuleType
 class _Package(ModuleType):
     """A package whose names are loaded at first use (PEP 562).
 
-    A submodule with the name of a function, such as ``sebody.results.report``, does not hide it,
+    A submodule with the name of a function, such as ``sebody.pictures.report``, does not hide it,
     although the import system sets every submodule as an attribute of its package.
     """
 

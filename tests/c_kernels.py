@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from sebody.contract.layout import ACCELERATION, ENERGY, OK, RESIDUAL, TANGENT, VELOCITY
-from sebody.studies.check.elements import element_case
-from sebody.studies.check.states import arguments, called
+from sebody.verify.check.elements import element_case
+from sebody.verify.check.states import arguments, called
 
 COMPILER = next((found for name in (os.environ.get("CC", "cc"), "gcc", "clang")
                  if (found := shutil.which(name))), None)

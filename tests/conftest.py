@@ -14,7 +14,7 @@ os.environ["SEBODY_KERNELS"] = os.path.join(__file__, "none")   # none of whoeve
 def pytest_sessionstart(session):
     config = session.config
     if config.getoption("numprocesses", None):      # not in the processes themselves
-        from sebody.analysis.first_run import PARTS, compile_missing
-        from sebody.studies.catalogue import kernel_files
+        from sebody.catalogue import kernel_files
+        from sebody.runs.first_run import PARTS, compile_missing
 
         compile_missing(kernel_files() if config.args == config.getini("testpaths") else (), PARTS)

@@ -16,7 +16,7 @@ from sebody.contract.layout import LANES, OK, packed_size, whole_vectors
 from sebody.derive.symbolic.rotations import stumpff_value, tangent_inverse_value
 from sebody.kernels.abi import Arguments
 from sebody.kernels.packed import GROUP, HEAD
-from sebody.studies.check.states import arguments
+from sebody.verify.check.states import arguments
 
 
 def executed(text: str) -> SimpleNamespace:

@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from sebody import Model, simulate
-from sebody.analysis.first_run import prepare
 from sebody.compiler.choice import VARIABLE, way
 from sebody.contract.layout import ACCELERATION, ENERGY, RESIDUAL, TANGENT, VELOCITY
 from sebody.contract.names import PREFIXES, SUPERELEMENT
 from sebody.kernels.loader import load
-from sebody.studies.bench.own import cases
-from sebody.studies.check.elements import element_case
-from sebody.studies.check.states import arguments, called
-from sebody.studies.check.superelements import superelement_case
+from sebody.runs.first_run import prepare
+from sebody.verify.bench.own import cases
+from sebody.verify.check.elements import element_case
+from sebody.verify.check.states import arguments, called
+from sebody.verify.check.superelements import superelement_case
 
 FACTORS = (0.7, 0.4, 1.3, 1.0, 0.9)     # of the parts of a matrix, all different
 STEPS = 40

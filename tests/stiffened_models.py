@@ -1,6 +1,6 @@
 """Bodies and models for what one body does: with any inertia option, ``option`` as keywords.
 
-They are those of `tests/analysis/test_exact_bodies.py` and `tests/benchmarks/bench_stiffening.py`.
+They are those of `tests/runs/test_exact_bodies.py` and `tests/benchmarks/bench_stiffening.py`.
 """
 
 from itertools import product

@@ -35,15 +35,26 @@ ROOMS = {
     "model": {*COMPILED, "fem", "reduction", "io"},     # of generated the options alone
     "assembly": {*COMPILED, "engine", "reduction", "model"},        # the options likewise
     "results": {*COMPILED, "engine", "fem", "reduction", "model", "assembly"},
-    "analysis": {*COMPILED, "engine", "reduction", "model", "assembly", "results"},
-    "sebody": {"model", "results", "analysis"},     # its names: sebody/__init__.py
-    "scenes": {"sebody", "fem", "reduction", "io", "results"},
-    "studies": {*COMPILED, "engine", "fem", "reduction", "io", "model", "assembly", "results",
-                "analysis", "scenes"},
-    "cli": {"contract", "kernels", "reduction", "io", "sebody", "results", "analysis", "scenes",
-            "studies"},
+    "pictures": {"fem", "reduction", "model", "results"},
+    "door of results": {"results", "pictures"},
+    "limits": {*COMPILED, "engine", "reduction", "model", "assembly", "results"},
+    "runs": {*COMPILED, "engine", "reduction", "model", "assembly", "results", "limits"},
+    "small_motion": {*COMPILED, "engine", "model", "assembly", "results", "pictures", "limits",
+                     "runs"},
+    "explore": {*COMPILED, "engine", "io", "reduction", "model", "assembly", "results",
+                "pictures", "limits", "runs", "small_motion"},
+    "analysis": {"limits", "runs", "small_motion", "explore"},      # a door: names of other rooms
+    "sebody": {"model", "results", "runs"},         # its names: sebody/__init__.py
+    "scenes": {"sebody", "fem", "reduction", "io", "results", "pictures"},
+    "catalogue": {*COMPILED, "scenes"},
+    "verify": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
+               "pictures", "limits", "runs", "small_motion", "explore", "scenes", "catalogue"},
+    "cli": {"contract", "kernels", "reduction", "io", "sebody", "results", "pictures", "runs",
+            "explore", "analysis", "scenes", "catalogue", "verify"},
     "derive": {"contract", "compiler", "kernels"},
 }
+# packages that offer names of rooms above their own, loaded when they are asked for
+DOORS = {"sebody.results": "door of results"}
 RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory": set(),
             "units": set(), "files": {"numpy"}, "lazy": set(), "spelling": set(), "version": set(),
@@ -59,8 +70,8 @@ EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
           "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
           "results/hot_spots": {"pandas"},
-          "results/vtk_series": {"meshio"}, "results/film": {"PIL", "imageio"},
-          "studies/places": {"distributed"}, "studies/table": {"pandas"}}
+          "results/vtk_series": {"meshio"}, "pictures/film": {"PIL", "imageio"},
+          "explore/executors": {"distributed"}, "explore/table": {"pandas"}}
 
 
 def module(path: Path) -> str:
@@ -72,7 +83,7 @@ def module(path: Path) -> str:
 
 def room(name: str) -> str:
     """The room a module of the package is in; that of sebody/__init__.py is `sebody`."""
-    return (name.split(".") + ["sebody"])[1]
+    return DOORS.get(name, (name.split(".") + ["sebody"])[1])
 
 
 def imported(source: str) -> set[str]:

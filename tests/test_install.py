@@ -89,7 +89,7 @@ def test_the_wheel_holds_files_that_are_no_modules(tmp_path):
                           capture_output=True, check=True)
     with zipfile.ZipFile(tmp_path / done.stdout.split()[-1]) as wheel:
         held = set(wheel.namelist())
-    files = {str(path.relative_to(ROOT)) for path in (ROOT / "sebody/results/page").iterdir()}
+    files = {str(path.relative_to(ROOT)) for path in (ROOT / "sebody/pictures/page").iterdir()}
     assert len(files) >= 13 and files <= held
 
 

@@ -13,12 +13,13 @@ COMMAND_LINE = {"sebody", "sebody.lazy", "sebody.errors", "sebody.cli"}
 MODEL_AND_RUN = {"sebody.files", "sebody.inputs", "sebody.contract", "sebody.compiler",
                  "sebody.kernels", "sebody.generated",
                  "sebody.engine", "sebody.fem", "sebody.reduction", "sebody.io", "sebody.model",
-                 "sebody.assembly", "sebody.results", "sebody.analysis", "sebody.spelling",
+                 "sebody.assembly", "sebody.results", "sebody.limits", "sebody.runs",
+                 "sebody.spelling",
                  "sebody.tabular", "sebody.memory", "sebody.units"}
 # parts of rooms that neither a model nor a run needs
-UNUSED = {"sebody.analysis.advice", "sebody.analysis.ensembles", "sebody.analysis.frequency",
-          "sebody.analysis.campbell", "sebody.analysis.statics", "sebody.results.animation",
-          "sebody.results.report", "sebody.results.film", "sebody.io.importing",
+UNUSED = {"sebody.explore.advice", "sebody.explore.ensembles", "sebody.small_motion.frequency",
+          "sebody.small_motion.campbell", "sebody.runs.statics", "sebody.pictures.animation",
+          "sebody.pictures.report", "sebody.pictures.film", "sebody.io.importing",
           "sebody.io.registry", "sebody.model.variants"}
 # of SciPy; signal and stats take half a second, spatial 0.15 s, optimize and interpolate 0.1 to 0.2
 SCIPY = {"scipy.linalg", "scipy.sparse", "scipy.version"}
@@ -90,11 +91,11 @@ def test_names_are_there_before_they_are_loaded(package):
 
 
 def test_a_submodule_does_not_hide_the_function_of_its_name():
-    code = ("import sebody.results.report, sebody.analysis.campbell\n"
+    code = ("import sebody.pictures.report, sebody.small_motion.campbell\n"
             "from sebody.results import report\nfrom sebody.analysis import campbell\n"
             "print(report.__module__, campbell.__module__)")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["sebody.results.report", "sebody.analysis.campbell"]
+    assert done.stdout.split() == ["sebody.pictures.report", "sebody.small_motion.campbell"]
 
 
 def test_every_command_is_light():

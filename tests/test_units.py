@@ -7,9 +7,9 @@ from sebody import InputError, Model, simulate
 from sebody.fem import Section, straight_beam
 from sebody.fem.materials import Material, doubt, doubts
 from sebody.io import save_body
+from sebody.pictures.curves import panels
 from sebody.reduction import craig_bampton
 from sebody.results import plot
-from sebody.results.curves import panels
 from sebody.units import common_units, parsed_units
 
 

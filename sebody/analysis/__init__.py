@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING
 from sebody.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from sebody.analysis.advice import Advice, Unreached, advise
-    from sebody.analysis.campbell import Campbell, campbell
-    from sebody.analysis.ensembles import (
+    from sebody.explore.advice import Advice, Unreached, advise
+    from sebody.explore.ensembles import (
         Ensemble,
         Outcome,
         Output,
@@ -18,9 +17,12 @@ if TYPE_CHECKING:
         minimum,
         rms,
     )
-    from sebody.analysis.frequency import FrequencyResponse, frequency_response
-    from sebody.analysis.limits import spin_limit
-    from sebody.analysis.linearization import (
+    from sebody.limits.watch import spin_limit
+    from sebody.runs.restart import resume, save_state
+    from sebody.runs.statics import equilibrium
+    from sebody.small_motion.campbell import Campbell, campbell
+    from sebody.small_motion.frequency import FrequencyResponse, frequency_response
+    from sebody.small_motion.linearization import (
         Linearization,
         Modes,
         Vibrations,
@@ -28,8 +30,6 @@ if TYPE_CHECKING:
         modes,
         vibrations,
     )
-    from sebody.analysis.restart import resume, save_state
-    from sebody.analysis.statics import equilibrium
 
 __all__ = [
     "Advice",

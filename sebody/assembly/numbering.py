@@ -207,3 +207,9 @@ def _used(model: Mechanism) -> list[Triplet]:
     found += [t for e in elements for t in e.triplets]
     found += parents(found)
     return list({id(t): t for t in found}.values())
+
+
+def record_counts(numbering: Numbering) -> dict[str, int]:
+    """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
+    return {"ports": len(numbering.histories), "coordinates": numbering.total,
+            "rotations": len(numbering.rotations), "kept": kept_frames(numbering)}

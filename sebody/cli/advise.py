@@ -9,7 +9,7 @@ from sebody.cli.inputs import build_scene, check_picture, given_arguments, sourc
 
 if TYPE_CHECKING:
     from sebody.analysis import Advice
-    from sebody.analysis.advice.outcome import Trial
+    from sebody.explore.advice.outcome import Trial
     from sebody.scenes.scene import Scene
 
 KINDS = {"reference": "richest model", "alone": "one part alone", "together": "together",
@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     InputError
         Also where no model is good enough: then the best is printed before.
     """
-    from sebody.analysis.advice import Unreached
+    from sebody.explore.advice import Unreached
 
     check_picture(options.output)
     scene = build_scene(options.scene, options.changes)
@@ -95,7 +95,7 @@ def _steps(trial: "Trial") -> str:
 def _advised(options: argparse.Namespace, scene: "Scene") -> "Advice":
     """The advice, also of a search that Ctrl-C has ended."""
     from sebody.analysis import advise
-    from sebody.analysis.progress import Progress
+    from sebody.runs.progress import Progress
 
     bar = Progress()
 
@@ -126,7 +126,7 @@ def _given(options: argparse.Namespace) -> list[str]:
 
 def _draw(advice: "Advice", name: str, path: Path) -> None:
     """The runs of the search on a chart."""
-    from sebody.studies import chart
+    from sebody.verify import chart
 
     points = [chart.Point(KINDS[one.kind], f"{one.change}; {_steps(one)}", one.error,
                           one.seconds / advice.t_end, 0, one.step, 0.0) for one in advice.table]

@@ -29,7 +29,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Read the result and write the animation."""
-    from sebody.results.animation import animate, check_animation
+    from sebody.pictures.animation import animate, check_animation
     from sebody.results.result import Result
 
     check_animation(options.output)

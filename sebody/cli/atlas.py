@@ -18,7 +18,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Explore the cases, print and draw; 1 if a number is not what was expected."""
-    from sebody.studies import atlas
+    from sebody.verify import atlas
 
     check_picture(options.output)
     atlas.check_names(options.cases)

@@ -15,7 +15,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Measure and print."""
-    from sebody.studies import bench
+    from sebody.verify import bench
 
     rate = bench.machine_rate()
     found = bench.measure(options.scenes)

@@ -28,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
     """Measure, print, write and draw."""
     from sebody import inputs
     from sebody.files import check_target
-    from sebody.studies import chart
+    from sebody.verify import chart
 
     check_picture(options.output)
     if options.csv:

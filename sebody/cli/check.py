@@ -14,7 +14,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Check the kernels; 1 if a criterion fails."""
-    from sebody.studies import check
+    from sebody.verify import check
 
     rows = check.check_kernels(options.kernels or None)
     print(check.table(rows) if options.kernels else check.summary(rows))

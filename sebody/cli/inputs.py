@@ -35,7 +35,7 @@ def source(scene: str) -> Source:
     if scene_files.is_file(scene):
         module = scene_files.load(scene)
         return Source(module.build, _first_line(module), module.__file__)
-    from sebody.studies.catalogue import builder
+    from sebody.catalogue import builder
 
     build = builder(scene)
     return Source(build, _first_line(sys.modules[build.__module__]), "")
@@ -91,7 +91,7 @@ def described(parameter: Parameter) -> str:
 def check_picture(path: Path | None) -> None:
     """Refuse a picture that cannot be written before anything is computed for it."""
     if path:
-        from sebody.results import plots
+        from sebody.pictures import plots
 
         plots.check_picture(path)
 

@@ -24,9 +24,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Inspect, perhaps repair; 1 if the body has a defect."""
+    from sebody.explore import inspection
     from sebody.files import check_target
     from sebody.io.body_file import TARGET, read_body_file, write_body_file
-    from sebody.studies import inspection
 
     check_picture(options.output)
     if bool(options.repair) != bool(options.save):
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
         write_body_file(file, options.save)
         said.append(f"repaired body: {options.save}")
     if options.output:
-        from sebody.studies.inspection.draw import draw
+        from sebody.explore.inspection.draw import draw
 
         draw(file, found.body, found.numbers["centre"], options.output)
         said.append(f"picture: {options.output}")

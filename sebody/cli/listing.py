@@ -61,8 +61,8 @@ def meanings_of(build: Callable) -> dict[str, str]:
 
 
 def _list_all() -> None:
+    from sebody.catalogue import kernels, scenes
     from sebody.contract.names import ELEMENT
-    from sebody.studies.catalogue import kernels, scenes
 
     print("scenes")
     for name, summary in scenes().items():

@@ -26,7 +26,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 def run(options: argparse.Namespace) -> int:
     """Read the results and draw."""
     check_picture(options.output)
-    from sebody.results.drawing import plot
+    from sebody.pictures.drawing import plot
     from sebody.results.result import OUTPUT
 
     others = [word for word in options.words if word.endswith(OUTPUT[1])]

@@ -21,7 +21,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Read the result and write the report."""
-    from sebody.results.report import check_report, report
+    from sebody.pictures.report import check_report, report
     from sebody.results.result import Result
 
     check_report(options.output)

@@ -12,8 +12,8 @@ from sebody.cli.inputs import build_scene, check_distinct, check_picture
 from sebody.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
 
 if TYPE_CHECKING:
-    from sebody.analysis.simulation import Simulation
     from sebody.results.result import Result
+    from sebody.runs.simulation import Simulation
     from sebody.scenes.scene import Scene
 
 
@@ -78,7 +78,7 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
     They are written before anything is printed: whoever reads may stop reading.
     """
-    from sebody.analysis.progress import Progress
+    from sebody.runs.progress import Progress
 
     warnings.simplefilter("ignore", LimitWarning)   # they are printed after the summary
     t_end = _t_end(scene, options)
@@ -104,9 +104,9 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
 def _simulation(scene: "Scene", options: argparse.Namespace,
                 start: "Result | None") -> "Simulation":
-    from sebody.analysis.restart import resume
-    from sebody.analysis.schemes import generalized_alpha
-    from sebody.analysis.simulation import Simulation
+    from sebody.runs.restart import resume
+    from sebody.runs.schemes import generalized_alpha
+    from sebody.runs.simulation import Simulation
 
     if options.resume:
         return resume(scene.model, options.resume)
@@ -119,9 +119,9 @@ def _simulation(scene: "Scene", options: argparse.Namespace,
 
 def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
             progress: Callable[[float], None], start: "Result | None") -> "Result":
-    from sebody.analysis.accuracy import simulate_within
-    from sebody.analysis.schemes import generalized_alpha
-    from sebody.analysis.tolerance import Tolerance
+    from sebody.runs.accuracy import simulate_within
+    from sebody.runs.schemes import generalized_alpha
+    from sebody.runs.tolerance import Tolerance
 
     index = 2 if options.index is None else options.index
     return simulate_within(scene.model, _step(scene, options), t_end, Tolerance(options.accuracy),
@@ -132,7 +132,7 @@ def _start(scene: "Scene", options: argparse.Namespace) -> "Result | None":
     """The state to start from, if it is not the scene's own."""
     if not options.equilibrium:
         return None
-    from sebody.analysis.statics import equilibrium
+    from sebody.runs.statics import equilibrium
 
     return equilibrium(scene.model)
 
@@ -155,8 +155,8 @@ def _t_end(scene: "Scene", options: argparse.Namespace) -> float:
 def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulation | None",
              result: "Result", errors: list[str]) -> tuple[list[str], list[str]]:
     """Write every file that is asked for, even if another one cannot be written."""
-    from sebody.analysis.restart import save_state
-    from sebody.results.plots import save_picture
+    from sebody.pictures.plots import save_picture
+    from sebody.runs.restart import save_state
 
     files = (("state", options.save, lambda path: save_state(simulation, path)),
              ("histories", options.output, result.save),
@@ -174,9 +174,9 @@ def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulatio
 
 def _check(options: argparse.Namespace, scene: "Scene") -> None:
     """Refuse before the run what cannot be written, and options that contradict others."""
-    from sebody.analysis.restart import TARGET
     from sebody.files import check_target
     from sebody.results.result import check_output
+    from sebody.runs.restart import TARGET
 
     if options.output:
         check_output(options.output)

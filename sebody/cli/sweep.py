@@ -12,8 +12,8 @@ from sebody.cli.inputs import build_scene, check_picture, given_arguments, sourc
 from sebody.errors import InputError
 
 if TYPE_CHECKING:
-    from sebody.analysis.ensembles import Output
-    from sebody.studies.sweep import Table
+    from sebody.explore.ensembles import Output
+    from sebody.explore.sweep import Table
 
 KEEP = re.compile(r"^(\w+)\((norm )?([^,]+)(?:,(.+))?\)$")
 
@@ -56,9 +56,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Run the sweep; 1 if all of its runs fail."""
-    from sebody.analysis.progress import Progress
-    from sebody.studies.sweep import sobol, sweep
-    from sebody.studies.sweep.axes import distribution_of, values_of
+    from sebody.explore.sweep import sobol, sweep
+    from sebody.explore.sweep.axes import distribution_of, values_of
+    from sebody.runs.progress import Progress
 
     build, _, _ = source(options.scene)
     listed = _by_name("--vary", map(values_of, options.vary))
@@ -115,7 +115,7 @@ def _beside(stem: Path, suffix: str) -> Path:
 
 def _outputs(texts: Sequence[str], build, options: argparse.Namespace) -> "dict[str, Output]":
     """Outputs from texts; of none the final position of the scene's tip."""
-    from sebody.analysis import ensembles
+    from sebody.explore import ensembles
 
     if not texts:
         scene = build_scene(options.scene, options.changes)
@@ -155,7 +155,7 @@ def _written(table: "Table", stem: Path) -> list[str]:
     else:
         lines.append(f"table: {_frame(frame, stem)}")
     try:
-        from sebody.studies.sweep.picture import draw
+        from sebody.explore.sweep.picture import draw
 
         draw(table, _beside(stem, ".png"))
         lines.append(f"picture: {_beside(stem, '.png')}")

@@ -11,9 +11,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Compile, and print how long it takes."""
-    from sebody.analysis.first_run import PARTS, compile_missing, compile_part
+    from sebody.catalogue import kernel_files
     from sebody.kernels.loader import load
-    from sebody.studies.catalogue import kernel_files
+    from sebody.runs.first_run import PARTS, compile_missing, compile_part
 
     began, names = time.perf_counter(), list(kernel_files())
     compile_missing(names, PARTS,

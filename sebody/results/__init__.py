@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 from sebody.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from sebody.results.animation import animate
-    from sebody.results.drawing import plot
+    from sebody.pictures.animation import animate
+    from sebody.pictures.drawing import plot
+    from sebody.pictures.plots import save_picture
+    from sebody.pictures.report import report
     from sebody.results.field import Field
-    from sebody.results.plots import save_picture
     from sebody.results.recording import Recording, Start
-    from sebody.results.report import report
     from sebody.results.result import Result
 
 __all__ = ["Field", "Recording", "Result", "Start", "animate", "plot", "report", "save_picture"]

@@ -3,10 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import RECORD
 from sebody.errors import InputError
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement
-from sebody.results.recording import Recording, record_counts
+from sebody.results.recording import Recording
 
 
 def bodies(recording: Recording) -> dict[str, Superelement | Element]:

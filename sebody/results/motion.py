@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.motions import Motions, motions
+from sebody.assembly.numbering import record_counts
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import MOTION, OK, RECORD, RESIDUAL, Counts
 from sebody.errors import InputError
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.model.parts import Superelement
-from sebody.results.recording import Recording, record_counts
+from sebody.results.recording import Recording
 
 READ = "q", "R", "v", "a", "frames", "frames_old"      # of a recorded state
 

@@ -10,13 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import ENERGIES
 from sebody.errors import InputError
 from sebody.model.parts import Triplet
 from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
 from sebody.results.envelopes import ENVELOPES
-from sebody.results.recording import Recording, record_counts
+from sebody.results.recording import Recording
 from sebody.spelling import alike
 
 FE_NODE = "node inside a body"

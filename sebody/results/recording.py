@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering, kept_frames
+from sebody.assembly.numbering import Numbering, record_counts
 from sebody.contract.layout import ENERGIES, RECORD
 from sebody.engine.state import State
 from sebody.engine.system import System
@@ -46,8 +46,8 @@ class Recording:
     seconds: float                  # in the compiled loop
     failure: str = ""
     start: Start | None = None
-    warnings: tuple[str, ...] = ()  # of the run, see sebody.analysis.limits
-    error: float | None = None      # estimate over allowed error: see sebody.analysis.accuracy
+    warnings: tuple[str, ...] = ()  # of the run, see sebody.limits.watch
+    error: float | None = None      # estimate over allowed error: see sebody.runs.accuracy
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
     fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far
 
@@ -120,9 +120,3 @@ class Recording:
 
 # what is made from arrays and last state, and kept in their place in a file; forces likewise
 EVALUATED = "counters", "energies", "powers", "constraint_residuals"
-
-
-def record_counts(numbering: Numbering) -> dict[str, int]:
-    """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
-    return {"ports": len(numbering.histories), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "kept": kept_frames(numbering)}

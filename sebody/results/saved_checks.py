@@ -13,7 +13,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from sebody import inputs
-from sebody.assembly.numbering import Numbering
+from sebody.assembly.numbering import Numbering, record_counts
 from sebody.compiler.user_functions import UserFunction
 from sebody.contract.layout import ENERGIES, RECORD
 from sebody.errors import InputError
@@ -23,7 +23,6 @@ from sebody.reduction import ReducedBody
 from sebody.reduction.checks import check_layout, coordinate_names
 from sebody.reduction.invariant_checks import check_shapes
 from sebody.reduction.recovery_checks import check_recovery
-from sebody.results.recording import record_counts
 
 NOTES = {"seconds": float, "failure": str, "warnings": list[str], "error": float | None,
          "all_seconds": float, "start": list | None, "advice": dict[str, list[str]],

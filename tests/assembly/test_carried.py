@@ -12,7 +12,7 @@ from sebody.contract.layout import ENERGY, KINETIC, STRAIN
 from sebody.fem import StiffnessSection, frame, planar_beam, straight_beam
 from sebody.kernels.loader import load
 from sebody.reduction import craig_bampton
-from sebody.studies.check import states
+from sebody.verify.check import states
 
 TURN = Rotation.from_rotvec([0.4, -0.7, 1.1]).as_matrix()
 SHIFT = np.array([3.0, -1.0, 2.0])

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from sebody import Model
-from sebody.analysis.linearization import derivative
-from sebody.analysis.simulation import Simulation
 from sebody.fem import Section, straight_beam
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.reduction import ReducedBody, craig_bampton
+from sebody.runs.simulation import Simulation
+from sebody.runs.state_derivatives import derivative
 
 SECTION = Section(area=9e-4, inertia_y=6.75e-8, inertia_z=5e-8, torsion=1e-7, youngs_modulus=2.1e11,
                   poisson_ratio=0.3, density=7.8e3)

@@ -8,7 +8,7 @@ with steps far shorter than all others.
 import numpy as np
 
 from sebody import Simulation, Tolerance, simulate_within
-from sebody.analysis.accuracy import difference
+from sebody.runs.accuracy import difference
 from sebody.scenes import heavy_top, hinged_beam, spherical_beam_strong, squeezer
 
 RUNS = 3

@@ -18,11 +18,11 @@ from pathlib import Path
 
 import numpy as np
 
-from sebody.analysis.advice import Advice, advise
-from sebody.analysis.advice.changes import Step
 from sebody.errors import SebodyError
+from sebody.explore.advice import Advice, advise
+from sebody.explore.advice.changes import Step
 from sebody.files import replacing
-from sebody.studies.chart.timing import poor_variants, processor_seconds, repeated
+from sebody.verify.chart.timing import poor_variants, processor_seconds, repeated
 
 sys.path.insert(0, str(Path(__file__).parent))
 from advice_scenes import SCENES, AdviceScene

@@ -19,7 +19,7 @@ from sebody import Model, Simulation
 from sebody.fem import hexahedral_block
 from sebody.io import load_body, save_body
 from sebody.reduction import RigidFace, reduce
-from sebody.studies.bench import machine_rate
+from sebody.verify.bench import machine_rate
 
 LENGTH, CRANK, ROCKER, GRAVITY, STEP = 1.0, 0.3, 0.6, (6.0, -8.0, 0.0), 5e-4
 PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -83,7 +83,7 @@ def peer(steps: int = PEER_STEPS, modes: int = MODES) -> dict:
     from exudyn.rigidBodyUtilities import RigidBodyInertia
     from scipy.sparse import csr_matrix
 
-    from sebody.studies.bench.peer_models import new_system, solve
+    from sebody.verify.bench.peer_models import new_system, solve
 
     system, mbs = new_system()
     model, fem = fe_model(), FEMinterface()

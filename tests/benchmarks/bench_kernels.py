@@ -17,9 +17,9 @@ from sebody.contract.names import general_layout, superelement_name
 from sebody.kernels.abi import call_kernel
 from sebody.kernels.loader import load
 from sebody.scenes import hinged_beam, planar_hinged_beam
-from sebody.studies.check.states import arguments, difference, evaluate
-from sebody.studies.check.superelements import superelement_case
-from sebody.studies.references import tip_error
+from sebody.verify.check.states import arguments, difference, evaluate
+from sebody.verify.check.superelements import superelement_case
+from sebody.verify.references import tip_error
 
 KERNELS = (("f2", "converged_mean"), ("f2t1", "converged_mean"), ("f2t1", "positions"),
            ("planar-f2", "converged_mean"))

@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))      # for the helpers of the
 
 from plain_numbers import compared  # noqa: E402
 
-from sebody.studies.bench import SCENES  # noqa: E402
+from sebody.verify.bench import SCENES  # noqa: E402
 
 
 def measured(name: str, folder: Path) -> dict[str, float]:

@@ -23,7 +23,7 @@ from sebody.analysis import equilibrium, linearize, modes, vibrations
 from sebody.fem import hexahedral_block
 from sebody.reduction import RigidFace, craig_bampton
 from sebody.scenes import hinged_beam, slider_crank, spherical_beam_strong, spin_up
-from sebody.studies import references
+from sebody.verify import references
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from spinning_body import with_torsion

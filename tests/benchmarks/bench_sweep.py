@@ -13,10 +13,11 @@ import numpy as np
 
 from sebody import Model
 from sebody.analysis import final
+from sebody.explore.sweep import batches
+from sebody.explore.sweep import executors as places
+from sebody.explore.sweep.axes import Distribution
+from sebody.explore.sweep.design import design
 from sebody.scenes.scene import Scene
-from sebody.studies.sweep import batches, places
-from sebody.studies.sweep.axes import Distribution
-from sebody.studies.sweep.design import design
 
 MEMBERS, TASKS = 100, 200
 OUTPUTS = (("tip", final("tip.position")),)

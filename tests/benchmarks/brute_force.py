@@ -1,6 +1,6 @@
 """The cheapest model of a scene within a tolerance, by running everything on advise's axes.
 
-All forms of all parts with all steps are the choices, as `sebody.analysis.advice` has them in its
+All forms of all parts with all steps are the choices, as `sebody.explore.advice` has them in its
 table. Four rules save runs; no indicator of advise is used.
 
 1. Choices run in the order of predicted time, that of the poorest model with the same step and of
@@ -28,16 +28,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sebody.analysis.advice.changes import Builder, Choice, Step
-from sebody.analysis.advice.forms import Form, Part, parts_of
-from sebody.analysis.advice.laboratory import FINER, SHORTER
-from sebody.analysis.advice.quantities import Quantities, Values, difference, sizes_of
-from sebody.analysis.advice.search import LONGER
-from sebody.analysis.simulation import Simulation
-from sebody.analysis.tolerance import Tolerance
 from sebody.errors import InputError, SimulationError
+from sebody.explore.advice.changes import Builder, Choice, Step
+from sebody.explore.advice.forms import Form, Part, parts_of
+from sebody.explore.advice.quantities import Quantities, Values, difference, sizes_of
+from sebody.explore.advice.runner import FINER, SHORTER
+from sebody.explore.advice.search import LONGER
 from sebody.model.model import Model
-from sebody.studies.chart.timing import poor_variants, processor_seconds
+from sebody.runs.simulation import Simulation
+from sebody.runs.tolerance import Tolerance
+from sebody.verify.chart.timing import poor_variants, processor_seconds
 
 SLACK = 1.5
 SPOILS = 2.0

@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sebody import errors, simulate
-from sebody.analysis import first_run, progress
+from sebody import catalogue, errors, simulate
+from sebody.catalogue import scenes
 from sebody.cli import inputs, run
 from sebody.cli.entry import main
+from sebody.runs import first_run, progress
 from sebody.scenes import hinged_beam, planar_hinged_beam
-from sebody.studies import catalogue, check
-from sebody.studies.catalogue import scenes
-from sebody.studies.check.states import CheckRow
-from sebody.studies.references import reference, tip_error
+from sebody.verify import check
+from sebody.verify.check.states import CheckRow
+from sebody.verify.references import reference, tip_error
 
 ROOT = Path(__file__).parents[2]
 KEYS = {"t": (51,), "base.angular_velocity": (51, 3), "tip.position": (51, 3),

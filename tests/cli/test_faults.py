@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from sebody import InputError
-from sebody.analysis import progress
 from sebody.cli import interrupts, run
 from sebody.cli.entry import main
+from sebody.runs import progress
 from sebody.scenes import hinged_beam
 
 LONG = ["run", "hinged-beam", "--t-end", "1e6", "--every", "10000"]     # minutes

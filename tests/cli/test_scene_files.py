@@ -5,9 +5,9 @@ import inspect
 import numpy as np
 import pytest
 
+from sebody.catalogue import builder, scenes
 from sebody.cli.entry import main
 from sebody.cli.listing import meanings_of
-from sebody.studies.catalogue import builder, scenes
 
 PENDULUM = '''"""A pendulum of my own."""
 

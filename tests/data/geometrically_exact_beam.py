@@ -32,7 +32,7 @@ SECTION_INERTIA = DENSITY * INERTIA * np.array([2.0, 1.0, 1.0])
 POSITION, QUATERNION, VELOCITY, SPIN = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
 HINGE = np.array([0.0, 0.0, 1.0])  # free rotations of the base, body axes: z only
 SPHERICAL = np.ones(3)
-FOLDER = Path(__file__).parents[2] / "sebody" / "studies" / "references"
+FOLDER = Path(__file__).parents[2] / "sebody" / "verify" / "references"
 
 
 # Equal elements on a straight beam: arc length and summed quadrature weights of the nodes, then

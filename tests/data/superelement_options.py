@@ -9,7 +9,7 @@ no tangent and no generalized-alpha scheme in it.
 
     python tests/data/superelement_options.py
 
-prints the numbers that `sebody/studies/atlas/inertia.py` and `tests/scenes/test_spherical_beam.py`
+prints the numbers that `sebody/verify/atlas/inertia.py` and `tests/scenes/test_spherical_beam.py`
 quote, in some minutes.
 """
 

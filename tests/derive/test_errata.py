@@ -14,7 +14,7 @@ from sebody.derive.formulas.inertia import option_b
 from sebody.derive.kernels import linearize, superelement
 from sebody.kernels.loader import load
 from sebody.scenes.hinged_beam import build
-from sebody.studies.check import definitions, states, superelements
+from sebody.verify.check import definitions, states, superelements
 
 KERNEL = "superelement_f2_converged_mean_b"
 

@@ -35,9 +35,9 @@ from sebody.fem import Section, planar_beam
 from sebody.generated import options as generated
 from sebody.model import frames
 from sebody.reduction import craig_bampton
-from sebody.studies.check.motions import motion_case
-from sebody.studies.check.states import along_path, derivative
-from sebody.studies.check.superelements import Nodes
+from sebody.verify.check.motions import motion_case
+from sebody.verify.check.states import along_path, derivative
+from sebody.verify.check.superelements import Nodes
 
 NAME = "secant"
 

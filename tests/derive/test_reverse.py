@@ -21,8 +21,8 @@ from sebody.derive.formulas import arrays
 from sebody.derive.passes.reverse import Reversal, transposed_forms
 from sebody.derive.symbolic.variation import DerivationError
 from sebody.kernels.loader import load
-from sebody.studies.check.states import evaluate
-from sebody.studies.check.superelements import superelement_case
+from sebody.verify.check.states import evaluate
+from sebody.verify.check.superelements import superelement_case
 
 
 @pytest.mark.parametrize("layout, frame, inertia, options", [

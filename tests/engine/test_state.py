@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from sebody import Simulation
-from sebody.analysis.tolerance import Tolerance
 from sebody.contract import layout
 from sebody.contract.layout import COEFFICIENTS, RECORD
 from sebody.engine import state as codes
 from sebody.engine.loop import advance
 from sebody.engine.state import CHOSEN, ITERATIONS, REASONS, RECORDED, Record
+from sebody.runs.tolerance import Tolerance
 from sebody.scenes import chain, heavy_top, hinged_beam
 
 

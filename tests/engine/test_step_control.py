@@ -12,8 +12,6 @@ from sebody import (
     generalized_alpha,
     simulate,
 )
-from sebody.analysis.accuracy import difference, simulate_within
-from sebody.analysis.tolerance import Tolerance
 from sebody.engine import loop
 from sebody.engine.state import (
     AUX_STEP,
@@ -26,6 +24,8 @@ from sebody.engine.state import (
     TIME,
     Record,
 )
+from sebody.runs.accuracy import difference, simulate_within
+from sebody.runs.tolerance import Tolerance
 from sebody.scenes import (
     heavy_top,
     hinged_beam,

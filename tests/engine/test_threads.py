@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sebody import Simulation
-from sebody.analysis import simulation
-from sebody.analysis.tolerance import Tolerance
+from sebody.runs import simulation
+from sebody.runs.tolerance import Tolerance
 from sebody.scenes import chain, four_bar, hinged_beam, planar_hinged_beam, spherical_beam_strong
 
 # small and large systems, steps that are chosen, a history that is a compiled function

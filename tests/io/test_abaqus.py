@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sebody import InputError
+from sebody.explore.inspection import inspect
 from sebody.io import import_body, read_body_file, read_fe_model
-from sebody.studies.inspection import inspect
 
 mtx = pytest.importorskip("abaqus_mtx_parser", reason="its sample files were written by Abaqus")
 SAMPLES = Path(mtx.__file__).parent / "mtx"

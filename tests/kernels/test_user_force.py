@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
-from sebody.analysis.linearization import modes
 from sebody.fem import planar_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
+from sebody.small_motion.linearization import modes
 
 FINE = generalized_alpha(0.95, 1e-11)
 

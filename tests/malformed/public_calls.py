@@ -13,9 +13,9 @@ from malformed.run_cases import pendulum
 
 from sebody import Model, Result, Simulation, fem, io, reduction, results
 from sebody import analysis as an
-from sebody.analysis.ensembles import Output
+from sebody.explore.ensembles import Output
+from sebody.explore.sweep import axes, sweep
 from sebody.model import variants
-from sebody.studies.sweep import axes, sweep
 
 X, Y = (0.0, 0.0, 0.0), (4.0, 0.0, 0.0)
 MATERIAL = {"youngs_modulus": 1e4, "poisson_ratio": 0.25, "density": 1.5}

@@ -12,15 +12,15 @@ from scipy import sparse
 
 from sebody import Model, Result, Simulation, simulate
 from sebody.analysis import resume, save_state
-from sebody.analysis.ensembles import final
 from sebody.cli import scene_files
 from sebody.cli.inputs import checked_scene
+from sebody.explore.ensembles import final
+from sebody.explore.sweep import Table, sweep
+from sebody.explore.sweep.axes import distribution
 from sebody.fem import Section, planar_beam
 from sebody.io import import_body, load_body, save_body, write_sid
 from sebody.reduction import craig_bampton
-from sebody.studies.chart import references
-from sebody.studies.sweep import Table, sweep
-from sebody.studies.sweep.axes import distribution
+from sebody.verify.chart import references
 
 SECTION = Section(area=2.0, inertia_y=0.3, inertia_z=0.4, torsion=0.2, youngs_modulus=1e4,
                   poisson_ratio=0.25, density=1.5)

@@ -18,7 +18,7 @@ from sebody import (
     with_corners,
 )
 from sebody.analysis import equilibrium, linearize, resume, save_state
-from sebody.analysis.fingerprint import described
+from sebody.runs.fingerprint import described
 
 BEGIN = 0.5     # of the trouble
 LAST = 1e-3     # of a step: how near to it runs get

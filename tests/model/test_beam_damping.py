@@ -6,9 +6,9 @@ from scipy.optimize import brentq
 
 from sebody import InputError, Model, simulate
 from sebody.analysis import frequency_response, modes
-from sebody.analysis.simulation import Simulation
 from sebody.fem import Section
 from sebody.model.variants import divide, keep_modes, planar
+from sebody.runs.simulation import Simulation
 
 WIDE = Section(area=6e-4, inertia_y=2e-8, inertia_z=4.5e-8, torsion=3e-8, youngs_modulus=7e10,
                poisson_ratio=0.3, density=2700.0)

@@ -12,7 +12,7 @@ from sebody.contract.layout import ENERGY, STRAIN
 from sebody.engine import evaluate
 from sebody.scenes import hinged_beam, slider_crank, spherical_beam_strong, spin_up
 from sebody.scenes.hinged_beam import SECTION, TORQUE
-from sebody.studies import references
+from sebody.verify import references
 
 BERNOULLI = replace(SECTION, shear_factor=None)
 END = np.array([100.0, 100.0, 0.0])

@@ -16,8 +16,8 @@ from sebody.kernels.loader import load
 from sebody.model.frames import FRAMES
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
-from sebody.studies.check import states
-from sebody.studies.check.superelements import superelement_case
+from sebody.verify.check import states
+from sebody.verify.check.superelements import superelement_case
 
 GENERAL = [row for row in SUPERELEMENTS if ANY in row[0]]
 

@@ -12,7 +12,7 @@ from sebody.model import bodies as model_bodies
 from sebody.reduction import craig_bampton
 from sebody.scenes import box, right_angle_frame, shaft
 from sebody.scenes.hinged_beam import SECTION, TORQUE, build
-from sebody.studies import references
+from sebody.verify import references
 
 END = np.array([100.0, 100.0, 0.0])
 

@@ -10,8 +10,8 @@ from numba import njit
 
 from sebody import InputError, Model, Simulation, simulate, with_corners
 from sebody.analysis import Ensemble, equilibrium
-from sebody.analysis.fingerprint import described
 from sebody.model.histories import history
+from sebody.runs.fingerprint import described
 
 gain = 2.0
 pair = (2.0, (3.0, 4))

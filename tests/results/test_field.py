@@ -6,12 +6,11 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Result, simulate
-from sebody.assembly.numbering import number
+from sebody.assembly.numbering import number, record_counts
 from sebody.contract.layout import RECORD
 from sebody.fem import Section, planar_beam
 from sebody.fem import frame as frame_of_beams
 from sebody.reduction import ReducedBody, craig_bampton
-from sebody.results.recording import record_counts
 from sebody.scenes import hinged_beam
 
 SECTION = Section(0.02, 3e-5, 5e-5, 6e-5, 2.1e11, 0.3, 7800.0, 0.85)

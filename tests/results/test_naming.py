@@ -7,12 +7,12 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, Result, simulate
 from sebody.analysis import Ensemble, advise, final, frequency_response, maximum, modes, rms
 from sebody.cli.entry import main
+from sebody.explore.sweep import sweep
 from sebody.fem import rectangle, straight_beam
+from sebody.pictures.drawing import plot
 from sebody.reduction import ReducedBody, craig_bampton
-from sebody.results.drawing import plot
 from sebody.results.naming import component_names, split, values
 from sebody.scenes import planar_hinged_beam
-from sebody.studies.sweep import sweep
 
 SECTION = rectangle(0.1, 0.05, youngs_modulus=2e9, poisson_ratio=0.3, density=1000.0)
 ENDS = np.array([[0.2, -0.1, 0.3], [1.2, 0.4, 0.1]])

@@ -8,7 +8,7 @@ from helpers import order
 
 from sebody import generalized_alpha, hht, simulate
 from sebody.scenes.hinged_beam import build
-from sebody.studies import references
+from sebody.verify import references
 
 TORQUE_ENDS = 7.5
 

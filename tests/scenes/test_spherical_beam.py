@@ -9,7 +9,7 @@ import pytest
 
 from sebody import generalized_alpha, simulate
 from sebody.scenes import spherical_beam, spherical_beam_strong
-from sebody.studies import references
+from sebody.verify import references
 
 FORMS = [("converged_mean", None), ("converged_mean", "b"), ("mean", "b"), ("mean_small", "b"),
          ("node", None), ("node", "b")]

@@ -1,0 +1,113 @@
+"""The arrays of a state before the first step: the initial configuration, and scratch memory."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.assembly.build import work_size
+from sebody.assembly.numbering import Numbering, record_counts, stretch
+from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
+from sebody.engine.newton import SLOWEST
+from sebody.engine.state import (
+    AUX_STEP,
+    CLOCKS,
+    CONTRACTION,
+    CONTROLS,
+    CURRENT_STEP,
+    EVALUATED,
+    STEP,
+    WANTED,
+    State,
+)
+from sebody.engine.system import System
+from sebody.kernels.rotations import rotate
+from sebody.model.mechanism import Mechanism
+
+
+def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
+             dense: bool) -> State:
+    """The state of a model at t = 0, without accelerations and multipliers.
+
+    Parameters
+    ----------
+    h : float
+        Step of the output grid [time].
+    dense : bool
+        Whether the loop keeps an inverse of the iteration matrix.
+    """
+    counts = record_counts(numbering)
+    n, total, ports = numbering.free, numbering.total, counts["ports"]
+    q, v = _start(model, numbering)
+    R = _rotations(model, numbering)
+    zeros = np.zeros
+    acting = int(system.at_g[-1] - system.at_g[system.first_power[0]]) + len(system.prescribed)
+    clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
+    clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
+    clock[CONTRACTION] = SLOWEST
+    control[WANTED] = EVALUATED
+    coefficients = zeros(COEFFICIENTS.size(counts))
+    coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
+    state = State.of(
+        counts,
+        aux=zeros(total), aux_change=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
+        v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total),
+        T=_identities(len(R)),
+        loads=zeros(3 * ports), loads_old=zeros(3 * ports), acting=zeros(acting),
+        acting_old=zeros(acting), works_old=zeros(ports), powers=zeros(ports),
+        powers_old=zeros(ports),
+        coefficients=coefficients,
+        g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
+        rotated_matrix=zeros(int(system.width.max()) ** 2), residual=zeros(total),
+        forces=zeros(total), constraint_residuals=zeros(total), shift=zeros(total),
+        correction=zeros(whole_vectors(total) + LANES), solution=zeros(system.slot_unknowns.size),
+        last_correction=zeros(total), last_change=zeros(total),
+        moved=np.ones(len(system.summands), dtype=bool),
+        error_weights=zeros(total), expansion=zeros(_expansion_size(system)),
+        matrix=zeros(system.rows.size + 1), scale=np.ones(total + LANES), weight=zeros(total),
+        inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
+        relaxation=zeros(total), pulls=zeros(system.pulls.size), projected=zeros(total),
+        pulled=zeros(total),
+        column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
+        energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
+    state.q[:], state.v[:], state.R[:] = q, v, R
+    of_bodies = 9 * len(numbering.modes)
+    state.frames[:of_bodies] = state.frames_old[:of_bodies] = _identities(of_bodies)
+    return state
+
+
+def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
+    """Initial values and velocities of all coordinates."""
+    q, v = np.zeros((2, numbering.total))
+    for node in (*model.nodes.values(), *model.grounds):
+        for triplet in (node.position, node.rotation):
+            if triplet is not None and id(triplet) in numbering.triplets:
+                at = stretch(numbering, triplet)
+                # of a rotation in space R has it, and q the increment in a step
+                q[at] = 0.0 if id(triplet) in numbering.rotations else triplet.start
+                v[at] = triplet.rate if triplet.solved else 0.0
+    for body in model.bodies.values():
+        first = numbering.modes[body.name]
+        v[first:first + body.body.modes] = body.mode_rates
+    return q, v
+
+
+def _rotations(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Initial rotation matrices, row by row."""
+    found = _identities(9 * len(numbering.rotations))
+    for triplet in model.triplets():
+        if id(triplet) in numbering.rotations and triplet.start.any():
+            at = 9 * numbering.rotations[id(triplet)]
+            rotate(found, at, *triplet.start, found, at)
+    return found
+
+
+def _identities(size: int) -> NDArray:
+    """Identity matrices, row by row, of so many numbers."""
+    found = np.zeros(size)
+    found.reshape(-1, 9)[:, ::4] = 1.0
+    return found
+
+
+def _expansion_size(system: System) -> int:
+    """Numbers in `State.expansion`: a 3x3 block, half and wholly expanded element matrices."""
+    return 9 + int(max((w * wide + wide * wide for _, w, wide, *_ in system.links.elements),
+                       default=0))

@@ -1,0 +1,1 @@
+"""Many runs of one model: advice, ensembles, sweeps, charts; inspection of bodies."""

@@ -1,0 +1,147 @@
+"""Two further runs of the richest model, which the reference could not agree with by chance.
+
+One has steps that share no grid with those of all others: what falls between these, such as a pulse
+or a contact, falls on its steps. The other one is slightly disturbed, in all coordinates: where the
+motion is unstable, symmetry may keep every other run on a path that no real system follows.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from sebody.assembly.numbering import Numbering, stretch
+from sebody.explore.advice.measures import lengths
+from sebody.explore.advice.outcome import Doubt
+from sebody.explore.advice.quantities import Values
+from sebody.explore.advice.reference import Reference
+from sebody.model.model import Model
+from sebody.model.variants.copying import copied
+from sebody.results.result import Result
+
+OFF_GRID = 0.9271       # of the shortest step: a step that shares no grid with it
+NEAR = 4.5              # steps beside a jump of a load, where splines of forces ring
+JUMP = 0.05             # of a history's largest value, that counts as a jump
+EXPECTED = 3.0          # times the reference's error by its step, that another step may make
+
+SMALL = 1e-6            # of velocities, by which a run is disturbed
+FORCES = 0.01           # of that, as forces: soft directions yield by far more than stiff ones
+GROWTH = 20.0           # times what a drift at the disturbed velocity makes: more is unstable
+REAL = 1e-3             # of the motion, that real systems are disturbed by
+
+
+def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
+                 grid: float) -> Doubt:
+    """How far a run with steps that share no grid with others is from the reference.
+
+    Parameters
+    ----------
+    run : Result
+        Recorded at every step.
+    values : Values
+        Its quantities.
+    h : float
+        Its step.
+    reference : Reference
+    grid : float
+        Step of the reference's grid.
+    """
+    worst, where = 0.0, 0.0
+    for own, best, size in zip(values.histories, reference.values.histories, reference.sizes,
+                               strict=True):
+        times = grid * np.arange(len(best))
+        clear = (times <= run.t[-1]) & ~_near(times, _jumps(run.numbering), NEAR * h)
+        off = lengths(CubicSpline(run.t, own)(times[clear]) - best[clear]) / size
+        if off.size and off.max() > worst:
+            worst, where = float(off.max()), float(times[clear][np.argmax(off)])
+    if worst <= EXPECTED * (reference.step_error + reference.error):
+        worst = 0.0
+    return Doubt(worst, f"a run with steps of {h:.4g}, which share no grid with the others, is off "
+                 f"by {worst:.2g} at t = {where:.4g}: loads or forces act between steps",
+                 "give a smaller h")
+
+
+def _jumps(numbering: Numbering) -> NDArray:
+    """Times at which loads and drives jump, or may."""
+    found: list[float] = []
+    for history in numbering.histories:
+        if history.functions:
+            found += history.corners
+            continue
+        jumps = history.jumps()
+        sizes = np.max([np.abs(after) for _, _, after in jumps], axis=0) if jumps else 0.0
+        found += [t for t, before, after in jumps
+                  if (np.abs(after - before) > JUMP * np.maximum(sizes, np.abs(before))).any()]
+    return np.array(found)
+
+
+def _near(times: NDArray, others: NDArray, distance: float) -> NDArray:
+    """Which times are near one of others."""
+    found = np.zeros(len(times), dtype=bool)
+    for t in others:
+        found |= np.abs(times - t) <= distance
+    return found
+
+
+class Scales(NamedTuple):
+    """What a run moves by: travel and speeds of positions, speed of rotations, force, duration."""
+
+    travel: float
+    speed: float
+    spin: float
+    force: float
+    duration: float
+
+    @classmethod
+    def of(cls, run: Result) -> "Scales":
+        """Those of a run."""
+        places, turns = (_solved(run, kind) for kind in (False, True))
+        v = run.recorded("v")
+        travel = float(np.ptp(run.recorded("q")[:, places], axis=0).max(initial=0.0))
+        speed = float(np.abs(v[:, places]).max(initial=0.0))
+        spin = float(np.abs(v[:, turns]).max(initial=0.0))
+        energy = float((run["energy.kinetic"] + np.abs(run["energy.strain"])).max())
+        return cls(travel, speed, spin, energy / travel if travel > 0.0 else 0.0, float(run.t[-1]))
+
+
+def _solved(run: Result, rotational: bool) -> NDArray:
+    """Coordinates of all positions, or rotations, that are solved for."""
+    found = [range(run.numbering.free)[stretch(run.numbering, triplet)]
+             for triplet in run.model.triplets()
+             if triplet.solved and triplet.rotational == rotational]
+    return np.array([k for one in found for k in one], dtype=int)
+
+
+def disturbed(model: Model, scales: Scales) -> Model:
+    """A model with small random velocities and forces at all nodes that are free to move."""
+    found, rng = copied(model), np.random.default_rng(29)
+    for triplet in found.triplets():
+        if triplet.solved:
+            size = scales.spin if triplet.rotational else scales.speed
+            triplet.rate = triplet.rate + SMALL * size * rng.standard_normal(triplet.rate.shape)
+    free = [node for node in found.nodes.values() if node.position and node.position.solved]
+    for node in free if scales.force > 0.0 else ():
+        direction = rng.standard_normal(node.position.start.shape)
+        direction *= FORCES * SMALL * scales.force / len(free)
+        found.force(node, direction, name=f"disturbance of {node.name}")
+    return found
+
+
+def amplified(run: Result, still: Result, scales: Scales) -> Doubt:
+    """What a disturbance of a real system would make of the motion, if it grows.
+
+    Parameters
+    ----------
+    run, still : Result
+        With and without the disturbance, with the same steps.
+    """
+    off = np.abs(run.recorded("q") - still.recorded("q"))[:, _solved(still, rotational=False)]
+    factor = float(off.max(initial=0.0)) / (SMALL * scales.travel) if scales.travel > 0.0 else 0.0
+    drift = 1.0 + scales.speed * scales.duration / max(scales.travel, 1e-300)
+    growing = factor > GROWTH * drift
+    return Doubt(min(REAL * factor, 1.0) if growing else 0.0,
+                 f"the motion is unstable: a small disturbance of all velocities and loads grows "
+                 f"to {factor:.2g} times its size",
+                 "give the model the imperfection that it has, such as a small force aside, or "
+                 "an earlier end")

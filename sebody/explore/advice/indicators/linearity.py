@@ -1,0 +1,35 @@
+"""What large local rotations take from linear stiffness."""
+
+import numpy as np
+
+from sebody.explore.advice.forms import Form, Part
+from sebody.explore.advice.indicators.carried import carried
+from sebody.explore.advice.indicators.recorded import Recorded
+from sebody.explore.advice.indicators.vibration import strain_force
+
+MISSED = 0.5        # of the square of a local rotation, by which the deformation is off
+
+
+def local_rotations(recorded: Recorded, part: Part, bodies: int) -> list[float]:
+    """Largest rotations of nodes against the axes of their bodies, of a part in so many bodies."""
+    return [float(np.nan_to_num(np.linalg.norm(recorded.deformation(nodes).turns, axis=2)).max())
+            for nodes, _ in recorded.bodies(part, bodies)]
+
+
+def linearity(recorded: Recorded, part: Part, form: Form) -> float:
+    """Error from the local rotations theta in a form: ``theta^2 / 2`` of the deformation.
+
+    Of the bodies of a beam each is off by its own square, weighted by its part of the rotation.
+    """
+    if form.bodies == part.richest.bodies:
+        return 0.0
+    return bent(recorded, part, form.bodies)
+
+
+def bent(recorded: Recorded, part: Part, bodies: int) -> float:
+    """Error of linear theory in a part of so many bodies."""
+    whole = recorded.deformation(recorded.nodes(part))
+    found = np.array(local_rotations(recorded, part, bodies))
+    square = (found**3).sum() / max(found.sum(), 1e-300)
+    return min(MISSED * square, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
+                                               strain_force(recorded, part))

@@ -1,0 +1,72 @@
+"""What stresses and a spin do to the stiffness of bodies that do not know of it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.explore.advice.forms import Form, Part
+from sebody.explore.advice.indicators.carried import Force, carried
+from sebody.explore.advice.indicators.coordinates import compliance, flat, nodal
+from sebody.explore.advice.indicators.recorded import Recorded
+from sebody.explore.advice.indicators.vibration import detuned, first_frequency, strain_force
+from sebody.reduction import ReducedBody
+
+SPIN = {"a": 1.0, "b": 1.0, "d": 0.3, "c": 0.0}     # of the square of spin over frequency
+
+
+def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
+    """Error from forces of second order that a form does not know of.
+
+    With the recorded boundary deformation y of a body the strains of its resultants are
+    ``e = E . y + y . Ghat y / (2 lam)``. Their forces ``sum e Ghat y`` stiffen: the body gives way
+    to them as its stiffness allows, and the work that they do on y, relative to its strain energy,
+    changes the period of the vibration. What bends shortens: by displacements u with the strains
+    ``E . u = y . Ghat y / (2 lam)``.
+    """
+    if form.stiffening:
+        return 0.0
+    whole = recorded.nodes(part)
+    shifts, turns = (0.0 * one for one in recorded.deformation(whole)[:2])
+    work = energy = 0.0
+    force = Force()
+    for nodes, body in recorded.bodies(part, form.bodies):
+        if body.invariants is None or not body.invariants.resultants:
+            continue
+        n = len(body.stiffness) - body.modes
+        found = recorded.deformation(nodes)
+        y = flat(body, found.shifts, found.turns)
+        forces, shorter = _second_order(body, y)
+        one, other = nodal(body, forces @ compliance(body) + shorter)
+        places = [whole.index(node) for node in nodes]
+        shifts[:, places] += one
+        turns[:, places] += other
+        energy += np.einsum("ni,ij,nj->n", y, body.stiffness[:n, :n], y).mean()
+        work += float((y * forces).sum(axis=1).mean())
+        force = force.with_(Force.of(body, forces))
+    return (carried(recorded, part, shifts, turns, force)
+            + detuned(recorded, part, min(abs(work) / max(energy, 1e-300) / 2, 1.0)))
+
+
+def _second_order(body: ReducedBody, y: NDArray) -> tuple[NDArray, NDArray]:
+    """Forces at the boundary, and its displacements by shortening, (n, boundary)."""
+    i, n = body.invariants, y.shape[1]
+    E, G = i.E[:n], i.Ghat[:, :n, :n]
+    shorter = np.einsum("ni,eij,nj->ne", y, G, y, optimize=True) / (2.0 * i.lam)
+    # of displacements with these strains of the resultants, the smallest
+    return (np.einsum("ne,eij,nj->ni", y @ E + shorter, G, y, optimize=True),
+            shorter @ np.linalg.pinv(E))
+
+
+def spin(recorded: Recorded, part: Part, form: Form) -> float:
+    """Error of options that soften with a spin: ``(spin / frequency)^2`` of the deformation.
+
+    The frequency is the first one of the body with a node held.
+    """
+    share = SPIN[form.inertia]
+    if share == 0.0:
+        return 0.0
+    change = max(share * (float(np.abs(recorded.spins(nodes)).max()) / first_frequency(body))**2
+                 for nodes, body in recorded.bodies(part, form.bodies))
+    whole = recorded.deformation(recorded.nodes(part))
+    return (min(change, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
+                                       strain_force(recorded, part))
+            + detuned(recorded, part, min(change / 2, 1.0)))

@@ -1,0 +1,86 @@
+"""What the richest model itself may be off by: linear theory in each body, and its last modes."""
+
+from functools import lru_cache
+
+from sebody.errors import InputError, SimulationError
+from sebody.explore.advice.changes import Step
+from sebody.explore.advice.estimates import UNSURE
+from sebody.explore.advice.forms import Part
+from sebody.explore.advice.indicators.linearity import bent, local_rotations
+from sebody.explore.advice.indicators.omission import omission
+from sebody.explore.advice.indicators.recorded import Recorded
+from sebody.explore.advice.outcome import TRUSTED, Doubt
+from sebody.explore.advice.runner import Laboratory, Tried
+from sebody.explore.advice.search import Search
+from sebody.model.variants import divide
+
+LEFT = 4.0 / 3.0        # of what a division into twice as many bodies changes: of second order
+FALL = 0.1      # of an error by omitted modes, with each doubling of their number, at least
+
+
+@lru_cache(maxsize=1)
+def limits(lab: Laboratory) -> list[Doubt]:
+    """Of all parts, the largest first; of beams measured where the estimate casts doubt."""
+    recorded = lab.estimates.recorded
+    found, doubtful = [], []
+    for part in lab.parts:
+        own = [_linear(recorded, part), _modal(recorded, part)]
+        if part.beam and max(one.error for one in own) > TRUSTED * lab.tolerance:
+            doubtful.append(part)
+        else:
+            found += own
+    if doubtful:
+        found.append(_divided(lab, doubtful))
+    return sorted(found, key=lambda one: -one.error)
+
+
+def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
+    """What twice as many bodies in some beams change, with the same step: by runs."""
+    whole, names = lab.builder.build(lab.richest), ", ".join(part.name for part in parts)
+    for part in parts:
+        form = part.richest
+        whole = divide(whole, part.name, 2 * form.bodies, 2 * part.elements).model
+    step = Step(max(lab.bases))
+    sentence = f"{names} divided into twice as many bodies than the richest model has, gave it"
+    try:
+        run = lab.runs.run(whole, step)
+    except (InputError, SimulationError) as reason:
+        return Doubt(1.0, f"{names} divided further does not run: {reason}", "give a smaller h")
+    return Doubt(LEFT * lab.apart(run, step.h), sentence, "build it of several beams")
+
+
+def _linear(recorded: Recorded, part: Part) -> Doubt:
+    turn = max(local_rotations(recorded, part, part.richest.bodies))
+    return Doubt(bent(recorded, part, part.richest.bodies),
+                 f"linear theory: {part.name} turns by {turn:.2g} rad within a body",
+                 "divide it")
+
+
+def _modal(recorded: Recorded, part: Part) -> Doubt:
+    """By how errors fall when half of the modes are left out, and all but a quarter."""
+    most = part.richest.modes
+    half, quarter = (omission(recorded, part, part.richest._replace(modes=most // k))
+                     for k in (2, 4))
+    fall = max(half / quarter, FALL) if most >= 4 and quarter > half > 0.0 else FALL
+    return Doubt(fall * half, f"modes: {part.name} has {most}", "reduce it with more modes")
+
+
+def doubts(lab: Laboratory) -> list[Doubt]:
+    """What the richest model may be off by, by theory and by its guards, the largest first."""
+    found = [*limits(lab), *lab.doubts]
+    return sorted((one for one in found if one.error > 0.0), key=lambda one: -one.error)
+
+
+def refusal(search: Search, found: Tried) -> str:
+    """Why a tolerance is not reached, empty if it is."""
+    lab = search.lab
+    largest = next(iter(limits(lab)), None)
+    if largest and largest.error > UNSURE * search.tolerance:
+        return (f"the tolerance {search.tolerance:g} is not reached by the richest model, whose "
+                f"error is limited by {largest.sentence}, which makes an error of about "
+                f"{largest.error:.1g}: {largest.remedy}, or give a larger tolerance")
+    if found.error <= search.tolerance:
+        return ""
+    return (f"no model that was tried is within {search.tolerance:g}: the best has an error of "
+            f"{found.error:.2g} with the step {found.choice.step}, which limits it; give a smaller "
+            "h, a larger tolerance or a larger budget")

@@ -1,0 +1,87 @@
+"""What a search has found, as advice."""
+
+from sebody.explore.advice.changes import Choice
+from sebody.explore.advice.labels import limiting
+from sebody.explore.advice.limits import doubts
+from sebody.explore.advice.outcome import Advice
+from sebody.explore.advice.reasons import neighbours, reasons
+from sebody.explore.advice.runner import Tried
+from sebody.explore.advice.search import Search
+from sebody.runs.tolerance import Tolerance
+
+REPEATS = 2         # further runs of what is compared in time
+QUICK = 0.2         # seconds of runs that are repeated: longer ones are not disturbed much
+
+
+def conclusion(search: Search, found: Tried, given: Tried | None = None,
+               interrupted: bool = False) -> Advice:
+    """Advice from a choice that was found.
+
+    Parameters
+    ----------
+    given : Tried, optional
+        The model as it was given, with the given step.
+    """
+    lab, choice = search.lab, found.choice
+    made = lab.builder.make(choice)
+    seconds = found.seconds if interrupted else _quickest(search, found)
+    remarks = [] if given is None or interrupted else [
+        *lab.remarks, *_saved(search, seconds, given), *neighbours(search, choice)]
+    warnings = lab.warnings if interrupted else _warnings(search, found)
+    return Advice(
+        made.model, choice.step.h, made.sentences, float(found.error), lab.tolerance,
+        tuple(lab.table), tuple(search.untried),
+        None if choice.step.local is None else Tolerance(choice.step.local),
+        float(found.predicted), seconds, lab.runs.t_end,
+        tuple(change.code() for change in made.changes), tuple(reasons(search, choice)),
+        tuple(remarks), interrupted, tuple(doubts(lab)), warnings,
+        _kept(search, found), lab.runs.balanced)
+
+
+def _kept(search: Search, found: Tried) -> str:
+    """What is kept how well, in the quantity's unit, when it is worst, and what limits it."""
+    worst = found.worst
+    if not worst.quantity or found.error == float("inf"):
+        return ""
+    when = "" if worst.row is None else f", worst at t = {worst.row * found.h:.4g}"
+    parts = search.lab.estimates.contributions(found.choice)
+    largest = max(parts, key=lambda one: one.error).kind if parts else ""
+    return (f"Keeps {worst.quantity} within {found.error * worst.size:.2g} "
+            f"({100 * found.error:.2g} % of {worst.size:.3g}){when}; limited by "
+            f"{limiting(search.lab.parts, largest)}")
+
+
+def _quickest(search: Search, found: Tried) -> float:
+    """Time of a run, the least of several where it is short."""
+    seconds = found.seconds
+    if seconds <= QUICK and not search.spent():
+        seconds = min([seconds, *(search.lab.run(found.choice).seconds for _ in range(REPEATS))])
+    return seconds
+
+
+def _warnings(search: Search, found: Tried) -> tuple[str, ...]:
+    """Those of the reference, and of the chosen model, which runs once more."""
+    lab = search.lab
+    own = lab.run(found.choice, watched=True).result.warnings if found.error < float("inf") else ()
+    return tuple(dict.fromkeys((*lab.warnings, *own)))
+
+
+def _saved(search: Search, seconds: float, given: Tried) -> list[str]:
+    """What a run saves against the richest model and the given one."""
+    lab = search.lab
+    richest: Choice = lab.richest
+    whole = next(one for one in lab.tried if one.choice == richest).seconds
+    least = given.seconds
+    if given.error < float("inf"):
+        least = _quickest(search, given)
+    told = (f"a run takes {_time(seconds)}, the richest model {_time(whole)}, "
+            f"{whole / seconds:.3g} times as long")
+    if given.error < float("inf"):
+        told += (f", the given one with its step {_time(least)}, {least / seconds:.3g} times, with "
+                 f"an error of {given.error:.2g}")
+    return [told, f"the search took {len(lab.table)} runs, as much as {lab.spent():.2g} of the "
+                  "richest model"]
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.3g} s" if seconds >= 1 else f"{1e3 * seconds:.3g} ms"

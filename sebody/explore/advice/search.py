@@ -1,0 +1,245 @@
+"""The search: one axis at a time, then all together, cheapest first."""
+
+from math import inf
+
+from sebody.contract.names import ANY
+from sebody.errors import InputError
+from sebody.explore.advice.changes import Choice, Step
+from sebody.explore.advice.combinations import combinations
+from sebody.explore.advice.cost import of_form
+from sebody.explore.advice.estimates import expected, least
+from sebody.explore.advice.forms import Form, alike
+from sebody.explore.advice.indicators.activity import activity
+from sebody.explore.advice.reference import ORDER_FACTOR
+from sebody.explore.advice.runner import FINER, Laboratory, Tried
+
+LONGER = (4, 2)             # steps that are tried, in given ones
+MOST_ALONE = 12             # forms of a part that are tried alone
+APART = 0.5                 # of the budget, that all of them may take
+MOST_TOGETHER = 24          # choices that are tried
+MISSED = 0.2                # of a load, that steps which are tried may not see
+SHARE = 0.5                 # of the tolerance, that one part may use
+EXACT = 0.05                # of the tolerance, that a change may make that should make none
+RARE = 0.5                  # steps of variable length relative to fixed ones, that pay
+LOCAL = 8.0                 # factor of local tolerances: half as many steps
+
+
+class Search:
+    """A search for the cheapest model.
+
+    Parameters
+    ----------
+    lab : Laboratory
+        With its reference.
+    budget : float
+        Runs of the richest model that the work may be worth.
+    """
+
+    def __init__(self, lab: Laboratory, budget: float):
+        self.lab, self.budget, self.tolerance = lab, budget, lab.tolerance
+        self.untried: list[str] = []
+        self.planar = self.shared = self.dropped = self.variable = False
+        self.exact: dict[str, float] = {}       # errors of what should change nothing
+        self.groups = [[k] for k in range(len(lab.parts))]      # of parts that get like forms
+        self._failed: list[Choice] = []
+
+    def go(self) -> Tried:
+        """The whole search."""
+        self._exact()
+        self._variable()
+        self._parts()
+        return self._together()
+
+    def _parts(self) -> None:
+        """Try forms of parts: of those that are alike together, of costly ones first."""
+        groups = sorted(alike(self.lab.parts), key=lambda group: -sum(
+            of_form(self.lab.parts[k], self.lab.parts[k].richest, self.planar) for k in group))
+        self.groups = []
+        for place, group in enumerate(groups):
+            rest = len(groups) - place
+            if self.spent():
+                self.untried += [self.lab.parts[k].name for k in group]
+                self.groups.append(group)
+            elif self._alone(group, rest) or len(group) == 1:
+                self.groups.append(group)
+            else:
+                self.groups += [[k] for k in group]
+                for n, k in enumerate(group):
+                    if self.spent():
+                        self.untried.append(self.lab.parts[k].name)
+                    else:
+                        self._alone([k], rest + len(group) - 1 - n)
+        self.untried.sort(key=[part.name for part in self.lab.parts].index)
+
+    def spent(self) -> bool:
+        """Whether the budget is used up."""
+        return self.lab.spent() > self.budget
+
+    @property
+    def base(self) -> Choice:
+        """The richest choice, with the longest step it ran with and all exact changes."""
+        return self.lab.richest._replace(step=Step(max(self.lab.bases)), planar=self.planar,
+                                         shared=self.shared, dropped=self.dropped)
+
+    def _exact(self) -> None:
+        """Try what should change nothing: shared and dropped triplets, a planar model."""
+        for name in ("shared", "dropped", "planar"):
+            changed = self.base._replace(**{name: True})
+            if name == "planar" and self.lab.unstable:
+                continue
+            if self.spent() or not self._applies(changed):
+                continue
+            found, run = self.lab.attempt(changed, "alone")
+            if run:
+                self.exact[name] = self.lab.apart(run, changed.step.h)
+            if self.exact.get(name, inf) <= EXACT * self.tolerance:
+                setattr(self, name, True)
+
+    def _applies(self, choice: Choice) -> bool:
+        """Whether a choice can be made, differs from that before, and has kernels of its own."""
+        before = self.lab.builder.make(self.base)
+        try:
+            after = self.lab.builder.make(choice)
+        except InputError:      # the model is planar, or not symmetric
+            return False
+        general = [any(f"_{ANY}_" in body.kernel for body in made.model.bodies.values())
+                   for made in (before, after)]
+        return after.changes != before.changes and general[1] <= general[0]
+
+    def _variable(self) -> None:
+        """Try variable steps where the motion is quiet but for short times."""
+        finest = self.lab.bases[min(self.lab.bases)]
+        if self.spent() or not self.lab.quantities.histories or (
+                activity(finest.result) > RARE):
+            return
+        step = Step(self.lab.runs.h, self.tolerance / LOCAL)
+        found, run = self.lab.attempt(self.base._replace(step=step), "alone")
+        if run:
+            self.variable = True
+            self.lab.estimates.learn_step(step, found.error)
+
+    def _alone(self, group: list[int], rest: int) -> bool:
+        """Try forms of a part, or of several alike, the others as rich as they are.
+
+        Parameters
+        ----------
+        rest : int
+            Groups that share what is left of the budget for this.
+
+        Returns
+        -------
+        bool
+            Whether one was good enough.
+        """
+        part, base = self.lab.parts[group[0]], self.base
+        failed: list[Form] = []
+        best = inf
+
+        def cost(form: Form) -> float:
+            return of_form(part, form, self.planar)
+        forms = sorted((form for form in part.forms if form != part.richest), key=cost)
+        left = max(APART * self.budget - self.lab.spent(), 0.0) / rest
+        most = self.lab.spent() + left
+        for _ in range(MOST_ALONE):
+            form = next((
+                f for f in forms if cost(f) < best and not any(f.poorer(one) for one in failed)
+                and least([one for k in group for one in self.lab.estimates.of_form(k, f)])
+                <= SHARE * self.tolerance), None)
+            if form is None or self.lab.spent() > most:
+                break
+            forms.remove(form)
+            choice = base._replace(forms=tuple(
+                form if i in group else one for i, one in enumerate(base.forms)))
+            _, run = self.lab.attempt(choice, "alone")
+            error = self.lab.apart(run, base.step.h) if run else inf
+            for k in group:     # errors add up as squares
+                self.lab.estimates.learn_form(k, form, error / len(group)**0.5)
+            if error <= SHARE * self.tolerance:
+                best = cost(form)
+            else:
+                failed.append(form)
+        return best < inf
+
+    def steps(self) -> list[Step]:
+        """Steps that are tried; frequencies do not depend on it."""
+        h, shortest = self.lab.runs.h, min(self.lab.bases)
+        if not self.lab.quantities.histories:
+            return [Step(h)]
+        count = round(self.lab.runs.t_end / h)
+        found = [Step(k * h) for k in LONGER
+                 if count % k == 0 and self.lab.missed(k * h).share <= MISSED]
+        found += [Step(h / k) for k in sorted(FINER)]
+        while found[-1].h > shortest or expected(
+                self.lab.estimates.of_step(found[-1])) > SHARE * self.tolerance:
+            found.append(found[-1].finer())
+        if self.variable:
+            found += [Step(h, self.tolerance * LOCAL**k) for k in (2, 1, 0, -1, -2, -3)]
+        return found
+
+    def _together(self) -> Tried:
+        """Try choices of all forms and steps, cheapest first; the first that is confirmed."""
+        for _ in range(MOST_TOGETHER):
+            choice = self.next(self.tolerance)
+            if choice is None or self.spent():
+                break
+            found = self._tried(choice) or self._attempt(choice)
+            if found.error <= self.tolerance and self._confirmed(found):
+                return found
+            self._failed.append(choice)
+        return self.best()
+
+    def _tried(self, choice: Choice) -> Tried | None:
+        """A choice that ran already, perhaps alone."""
+        return next((one for one in self.lab.tried if one.choice == choice), None)
+
+    def _attempt(self, choice: Choice) -> Tried:
+        found, run = self.lab.attempt(choice, "together")
+        if run:
+            self.lab.estimates.learn(choice, found.error)
+        return found
+
+    def best(self) -> Tried:
+        """The quickest run that was good enough; the most exact one where none was."""
+        passing = [one for one in self.lab.tried if one.error <= self.tolerance
+                   and one.choice not in self._failed]
+        if not passing:
+            return min(self.lab.tried, key=lambda one: one.error)
+        return min(passing, key=lambda one: one.seconds)
+
+    def next(self, tolerance: float, sure: bool = False) -> Choice | None:
+        """The cheapest choice that may be within a tolerance, or that should be."""
+        judged = expected if sure else least
+        forms = [[part.richest] if part.name in self.untried else list(part.forms)
+                 for part in self.lab.parts]
+        found = [self.base._replace(forms=one, step=step)
+                 for one in combinations(self.lab.parts, forms, self.lab.estimates, self.planar,
+                                       self.groups)
+                 for step in self.steps()]
+        done = [] if sure else [*self._failed, *(
+            one.choice for one in self.lab.tried if one.error > self.tolerance)]
+        return next((one for one in sorted(found, key=self.lab.cost.of)
+                     if not any(self._excludes(other, one) for other in done)
+                     and judged(self.lab.estimates.contributions(one)) <= tolerance), None)
+
+    def _excludes(self, failed: Choice, one: Choice) -> bool:
+        """Whether a choice that was not enough says that another one is not, either.
+
+        The vibrations of the richest model ask for shorter steps than poorer ones may need.
+        """
+        whole = failed.forms == self.lab.richest.forms
+        return one == failed if whole else one.poorer(failed)
+
+    def halved(self, choice: Choice) -> float | None:
+        """Error of the step of a choice, from its run with half of it; None without one."""
+        coarse, fine = self._tried(choice), self._tried(choice._replace(step=choice.step.finer()))
+        if coarse is None or fine is None or inf in (coarse.error, fine.error):
+            return None
+        return ORDER_FACTOR / (ORDER_FACTOR - 1.0) * abs(coarse.error - fine.error)
+
+    def _confirmed(self, found: Tried) -> bool:
+        """Whether the error stays within the tolerance with half the step."""
+        half = found.choice._replace(step=found.choice.step.finer())
+        if half.step.local is None and half.step.h < min(self.lab.bases):
+            return True
+        again = self._tried(half) or self.lab.attempt(half, "confirmation")[0]
+        return again.error <= self.tolerance

@@ -1,0 +1,16 @@
+"""Many runs of one model with other numbers."""
+
+from sebody.explore.ensembles.ensemble import Ensemble
+from sebody.explore.ensembles.outcome import Outcome
+from sebody.explore.ensembles.outputs import (
+    Output,
+    at_time,
+    final,
+    integral,
+    maximum,
+    minimum,
+    rms,
+)
+
+__all__ = ["Ensemble", "Outcome", "Output", "at_time", "final", "integral", "maximum", "minimum",
+           "rms"]

@@ -1,0 +1,189 @@
+"""Many runs of one model with other numbers, in threads."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from threading import Lock
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sebody import inputs, memory
+from sebody.engine.state import Scheme
+from sebody.errors import InputError
+from sebody.explore.ensembles.changes import Handle
+from sebody.explore.ensembles.handles import given, handles
+from sebody.explore.ensembles.member import kinematic_quantities
+from sebody.explore.ensembles.outcome import Outcome
+from sebody.explore.ensembles.outputs import Output, outputs_of
+from sebody.explore.ensembles.start_values import Image
+from sebody.explore.ensembles.work import Work, processors
+from sebody.model.model import Model
+from sebody.model.tables import summary
+from sebody.reduction import ReducedBody
+from sebody.results.result import Result
+from sebody.runs.progress import showing
+from sebody.runs.simulation import MOST_STEPS, Simulation
+from sebody.runs.user_faults import refuse_changed
+
+PLACING = ".position", ".rotation"      # parameters that move where runs begin
+Values = ArrayLike | Sequence[ReducedBody]
+
+
+class Ensemble:
+    """Many runs of a model with different numbers: built once, run in threads.
+
+    Parameters
+    ----------
+    model : Model
+        Must not be changed while runs go on; `run` leaves it as it was.
+    h : float
+        Fixed step, also the output grid [time].
+    scheme : Scheme, optional
+        `generalized_alpha` with rho 0.9 by default.
+    output_every : int
+        Every so many steps a state is recorded, from which outputs are made.
+    start : Result, optional
+        State at which all runs start, see `Simulation`: initial positions and rotations cannot be
+        varied then.
+
+    Raises
+    ------
+    InputError
+        As `Simulation`.
+
+    Examples
+    --------
+    >>> ensemble = Ensemble(model, h=0.01)
+    >>> outcome = ensemble.run({"motor.amplitude": amplitudes, "beam.stiffness": factors},
+    ...                        t_end=3.0, outputs={"tip": maximum("tip.position")})
+    >>> outcome["tip"].shape
+    (10000, 3)
+    """
+
+    def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
+                 output_every: int = 1, start: Result | None = None):
+        self.model, self.scheme = model, scheme
+        self._template = Simulation(model, h, scheme, output_every, start=start)
+        self.h, self.every = self._template.h, self._template.every
+        self._lock = Lock()         # the model is changed for moments
+        self._images: dict[tuple[str, ...], Image] = {}
+
+    def __repr__(self) -> str:
+        return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}>"
+
+    @property
+    def parameters(self) -> list[str]:
+        """Names of all that can be varied; see `sebody.explore.ensembles.handles`."""
+        return list(handles(self.model))
+
+    def run(self, parameters: Mapping[str, Values], t_end: float,
+            outputs: Mapping[str, Output | str], threads: int | None = None,
+            progress: Callable[[float], None] | bool | None = None) -> Outcome:
+        """Run the model once for each set of values.
+
+        Results do not depend on the number of threads, bit for bit, nor on which runs are asked for
+        together.
+
+        Parameters
+        ----------
+        parameters : mapping
+            Values by name: the first axis of each array counts the runs. Without any the model is
+            run once, as it is.
+        t_end : float
+            End of all runs [time].
+        outputs : mapping
+            What is kept of each run, by names of your choice: a quantity (its history), or what
+            `maximum`, `minimum`, `rms`, `integral`, `final` or `at_time` return.
+        threads : int, optional
+            By default one for each processor.
+        progress : callable or bool, optional
+            Called with the part of the runs that is done; True shows a bar, as of `simulate`.
+
+        Raises
+        ------
+        InputError
+            Before the first run: unknown names, arrays of different lengths, values that a body
+            cannot have, an unknown quantity, a time that is not a multiple of the step.
+        """
+        refuse_changed(self.model)
+        threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
+        found, runs, last, kept = self._checked(parameters, t_end, outputs)
+        kinematic, shapes = kinematic_quantities(self._template, kept)
+        values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
+        outcome = self._empty(kept, shapes, runs, last)
+        began = time.perf_counter()
+        work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
+                    self._lock)
+        with showing(progress) as show:
+            work.go(min(threads, max(runs, 1)), show)
+        outcome.seconds = time.perf_counter() - began
+        return outcome
+
+    def check(self, parameters: Mapping[str, Values], t_end: float,
+              outputs: Mapping[str, Output | str]) -> None:
+        """Refuse what `run` would refuse, without running anything.
+
+        Raises
+        ------
+        InputError
+            See `run`.
+        """
+        *_, kept = self._checked(parameters, t_end, outputs)
+        kinematic_quantities(self._template, kept)
+
+    def _checked(self, parameters: Mapping[str, Values], t_end: float,
+                 outputs: Mapping[str, Output | str]
+                 ) -> tuple[dict[str, Handle], int, int, dict[str, Output]]:
+        """Handles, number of runs, last step, outputs."""
+        parameters = inputs.mapping(parameters, "parameters",
+                                    "give a dict of names and arrays of values")
+        found, runs = given(self.model, parameters) if parameters else ({}, 1)
+        if placing := [name for name in found if self._template.begun and name.endswith(PLACING)]:
+            raise InputError(f"{placing[0]} cannot be varied: all runs begin at the start that was "
+                             "given; leave it out, or build an ensemble without a start")
+        last = self._last_step(t_end)
+        return found, runs, last, outputs_of(outputs, last * self.h)
+
+    def _last_step(self, t_end: float) -> int:
+        t_end = inputs.number(t_end, "t_end", above=0)
+        if t_end / self.h > MOST_STEPS:
+            raise InputError(f"t_end is {t_end:g}: that is {t_end / self.h:.3g} steps of "
+                             f"{self.h:g}, give an earlier time or a longer step")
+        last = round(t_end / self.h)
+        if last < 1 or abs(t_end / self.h - last) > 1e-6:
+            raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {self.h:g}: "
+                             "give one")
+        return last
+
+    def _image(self, found: dict[str, Handle]) -> Image:
+        """What runs begin with that these parameters vary in."""
+        with self._lock:
+            key = tuple(found)
+            if key not in self._images:
+                self._images[key] = Image(self._template, found)
+            return self._images[key]
+
+    def _check_memory(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
+                      runs: int, count: int) -> None:
+        """Refuse outputs that do not fit, before they are asked for."""
+        sizes = {name: 8.0 * runs * (count if one.kind == "history" else 1)
+                 * (1 if one.norm else np.prod(shapes[one.quantity], initial=1.0))
+                 for name, one in outputs.items()}
+        largest = max(sizes, key=sizes.get)
+        memory.check(sum(sizes.values()) + 8.0 * count, f"output {largest!r} of {runs} runs of "
+                     f"{count} recorded states, with the others,",
+                     "keep a maximum or the like instead of a history, fewer states with "
+                     "output_every, or make fewer runs at a time")
+
+    def _empty(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
+               runs: int, last: int) -> Outcome:
+        count = last // self.every + 1
+        self._check_memory(outputs, shapes, runs, count)
+        values = {}
+        for name, one in outputs.items():
+            shape = () if one.norm else shapes[one.quantity]
+            values[name] = np.full((runs, *((count,) if one.kind == "history" else ()), *shape),
+                                   np.nan)
+        return Outcome(values, np.arange(count) * self.every * self.h, np.full(runs, np.nan))

@@ -1,0 +1,121 @@
+"""What can be varied in a model, by name: ``<owner>.<quantity>``, as quantities of results are.
+
+==========================  ========================================================================
+``<node>.position``         initial position, (3,), planar (2,) [length]
+``<node>.velocity``         initial velocity; it counts as given, others are fitted to it
+``<node>.rotation``         initial rotation against the model as built, a vector, planar an angle
+``<node>.angular_velocity``
+``<joint>.position``        of a joint with the ground: where it holds its node [length]
+``<body>.stiffness``        factor, of a superelement's stiffness and of its geometric stiffness
+``<body>.mass``             factor, of a superelement or rigid body with its inertia
+``<body>.damping``          factor, of a superelement that has damping
+``<body>.body``             a whole `ReducedBody` of the same boundary nodes, in the same axes
+``<load>.amplitude``        factor of a force or torque
+``<load>.table``            values at the times of its table, (rows,)
+``<drive>.amplitude``       factor of a motion given by a table or profile
+``<spring>.stiffness``      and damping, cubic, length, rest, turning_stiffness, turning_damping:
+                            the value itself
+``gravity``                 acceleration of free fall, (3,), planar (2,) [length/time^2]
+==========================  ========================================================================
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.explore.ensembles import changes
+from sebody.explore.ensembles.changes import Handle
+from sebody.model.model import Model
+from sebody.spelling import unknown
+
+GRAVITY = "gravity"
+
+
+class Kind(NamedTuple):
+    """A kind of named parts of a model, and what can be varied of them."""
+
+    title: str
+    parts: Callable[[Model], Mapping[str, Any]]
+    quantities: Mapping[str, Callable[[Model, Any, str], Handle]]
+
+
+def handle(model: Model, name: str) -> Handle:
+    """What a name stands for.
+
+    Raises
+    ------
+    InputError
+        A name that nothing has, or a quantity its owner does not have.
+    """
+    inputs.name(name, "name of a parameter")
+    if name == GRAVITY:
+        return changes.gravity(model)
+    owner, _, quantity = name.rpartition(".")
+    for kind in KINDS:
+        parts = kind.parts(model)
+        if owner in parts and quantity in kind.quantities:
+            return kind.quantities[quantity](model, parts[owner], name)
+    raise unknown("parameter", name, handles(model), "the model has")
+
+
+def handles(model: Model) -> Iterable[str]:
+    """Names of all that can be varied."""
+    yield GRAVITY
+    for kind in KINDS:
+        for owner, part in kind.parts(model).items():
+            for quantity, make in kind.quantities.items():
+                try:
+                    make(model, part, f"{owner}.{quantity}")
+                except InputError:      # a part that does not have it
+                    continue
+                yield f"{owner}.{quantity}"
+
+
+def _springs(model: Model) -> dict[str, Any]:
+    return {e.name: e for e in model.loads if e.constants.keys() & set(changes.OF_SPRINGS.values())}
+
+
+def _drives(model: Model) -> dict[str, Any]:
+    moved = {m.name: (t, m) for t in model.triplets() for m in t.motions}
+    return moved | {j.name: j for j in model.joints if j.history is not None}
+
+
+KINDS = (
+    Kind("node", lambda model: model.nodes, {
+        "position": changes.position, "velocity": changes.velocity,
+        "rotation": changes.rotation, "angular_velocity": changes.angular_velocity}),
+    Kind("superelement", lambda model: model.bodies, {
+        "stiffness": changes.body_factor("stiffness"), "mass": changes.body_factor("mass"),
+        "damping": changes.body_factor("damping"), "body": changes.whole_body}),
+    Kind("rigid body", lambda model: model.rigid_bodies, {"mass": changes.rigid_mass}),
+    Kind("drive", _drives, {"amplitude": changes.drive_amplitude}),
+    Kind("joint", lambda model: {j.name: j for j in model.joints}, {
+        "position": changes.joint_position}),
+    Kind("spring", _springs, {quantity: changes.spring_constant(quantity)
+                              for quantity in changes.OF_SPRINGS}),
+    Kind("load", lambda model: {e.name: e for e in model.loads}, {
+        "amplitude": changes.load_amplitude, "table": changes.load_table}),
+)
+
+
+def given(model: Model, parameters: Mapping[str, Any]) -> tuple[dict[str, Handle], int]:
+    """Handles of some parameters, and the number of their values.
+
+    Raises
+    ------
+    InputError
+        Unknown names, values of another shape or outside their bounds, arrays of different
+        lengths, or none at all.
+    """
+    if not isinstance(parameters, Mapping) or not parameters:
+        raise inputs.refusal("parameters", parameters, "give a dict of names and arrays of values")
+    found = {name: handle(model, name) for name in parameters}
+    lengths = {name: len(found[name].checked(name, values))
+               for name, values in parameters.items()}
+    if len(set(lengths.values())) > 1:
+        raise InputError("parameters have different numbers of values: " + ", ".join(
+            f"{name} {count}" for name, count in lengths.items()) + "; give one for each run")
+    # whole bodies first: factors are those of the body that is there
+    found = dict(sorted(found.items(), key=lambda item: not item[1].whole))
+    return found, next(iter(lengths.values()))

@@ -1,0 +1,210 @@
+"""One run of many: a workspace of a thread, the start of a run, and what is kept of it."""
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.engine.evaluate import move_prescribed, set_loads
+from sebody.engine.links import place_dependent
+from sebody.engine.loop import advance
+from sebody.engine.state import (
+    ASKED,
+    DONE,
+    FAILED,
+    REASON,
+    REASONS,
+    RECORDED,
+    RESTART,
+    TIME,
+    Record,
+    State,
+)
+from sebody.engine.step import write_record
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.explore.ensembles.outputs import Fold, Output
+from sebody.explore.ensembles.start_values import Image
+from sebody.results.naming import look_up
+from sebody.results.recording import Recording
+from sebody.runs.row_exchanges import RowExchanges
+from sebody.runs.simulation import Simulation
+
+MOST_NUMBERS = 2_000_000    # of recorded states at a time in a thread: 16 MB
+CHUNK = 0.2                 # seconds in the loop until a thread looks whether it is to stop
+Stop = Callable[[], bool]
+
+
+class Copies:
+    """Runs that begin with a copy of all numbers: the arrays of one thread."""
+
+    def __init__(self, image: Image):
+        one = image.template
+        self.image, self.dense = image, one.dense
+        self.floats = image.floats.copy()
+        self.system: System = image.places.packed(one.system, self.floats)
+        state = image.places.packed(one.state, self.floats)
+        self.control, self.moved = one.state.control.copy(), one.state.moved.copy()
+        self.state: State = _with_own_integers(state)
+        self.exchanges = RowExchanges(self.system, self.state)
+        self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
+        self._record: Record | None = None
+        self.none = Record.of(self.state, 0)
+
+    def record(self, rows: int, every: int) -> Record:
+        """Room for recorded states, the same for all runs: fresh memory costs as much as a start.
+        """
+        if self._record is None or self._record.rows.shape[0] != rows:
+            self._record = Record.of(self.state, rows, every)
+        return self._record
+
+    def begin(self, change: NDArray) -> bool:
+        """Begin a run; False if Python's own start is needed.
+
+        Parameters
+        ----------
+        change : (components,)
+            Values of the parameters less those of the model as built.
+
+        Raises
+        ------
+        InputError
+            The initial state cannot be evaluated.
+        """
+        lines, system, state = self.image.lines, self.system, self.state
+        self.floats[:] = self.image.floats
+        state.control[:], state.moved[:] = self.control, self.moved
+        self.floats[lines.slots] += lines.slopes @ change
+        set_loads(system, state.loads, 0.0)
+        state.loads_old[:] = state.loads
+        move_prescribed(system, state)
+        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        state.control[RESTART] = ASKED
+        code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
+        if code == FAILED:
+            raise InputError("the initial state has no accelerations: "
+                             f"{REASONS[int(state.control[REASON])]}")
+        state.control[:] = self.control
+        state.frames_old[:] = state.frames
+        state.aux_old[:] = state.aux
+        return code == DONE
+
+
+def _with_own_integers(state: State) -> State:
+    """The same state with integers and flags of its own: threads write to them."""
+    own = {name: value.copy() if value.dtype != np.float64 else value
+           for name, value in ((f, getattr(state, f)) for f in State.__annotations__)}
+    return State(**own)
+
+
+class Course:
+    """The steps of a run that has begun, and its outputs.
+
+    Parameters
+    ----------
+    run : Copies or Simulation
+        With system, state, numbering and scheme.
+    every : int
+        Grid steps between recorded states.
+    outputs : mapping
+        What is kept.
+    kinematic : set of str
+        Quantities that are read from recorded states alone.
+    """
+
+    def __init__(self, run: Copies | Simulation, every: int, outputs: Mapping[str, Output],
+                 kinematic: set[str]):
+        self.run, self.every, self.kinematic = run, every, kinematic
+        self.outputs = outputs
+        self.folds = {name: Fold(o) for name, o in outputs.items() if o.kind != "history"}
+        self.histories: dict[str, list[NDArray]] = {name: [] for name, o in outputs.items()
+                                                    if o.kind == "history"}
+        self.reason = ""
+
+    def go(self, last: int, stop: Stop) -> bool:
+        """Run to a grid step, or until a step fails; False if it was stopped before."""
+        run, state = self.run, self.run.state
+        rows = max(2, min(last // self.every + 1, MOST_NUMBERS // state.now.size))
+        record = run.record(rows, self.every) if isinstance(run, Copies) else Record.of(
+            state, rows, self.every)
+        state.control[RECORDED] = 0
+        write_record(state, record)
+        reached, code = 0, DONE
+        while reached < last and code == DONE:
+            room = rows - int(state.control[RECORDED])
+            reached = min(last, (reached // self.every + room) * self.every)
+            code = self._advance(record, reached, stop)
+            self._take(record.rows[:state.control[RECORDED]])
+            state.control[RECORDED] = 0
+        if code == FAILED:
+            reason = REASONS[int(state.control[REASON])]
+            self.reason = f"stopped at t = {state.clock[TIME]:.6g}: {reason}"
+        return code in (DONE, FAILED) or run is None
+
+    def _advance(self, record: Record, last: int, stop: Stop) -> int:
+        run, state, chunk = self.run, self.run.state, 1000
+        while True:
+            run.exchanges.serve()
+            began = time.perf_counter()
+            code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
+            if code in (DONE, FAILED) or stop():
+                return code
+            chunk = max(1, int(chunk * min(8.0, CHUNK / max(time.perf_counter() - began, 1e-9))))
+
+    def _take(self, rows: NDArray) -> None:
+        """Read the outputs of recorded states."""
+        run = self.run
+        plain = Recording(run.model, run.numbering, None, None, rows, 0.0)
+        whole = Recording(run.model, run.numbering, run.system, run.state, rows, 0.0)
+        t, found = rows[:, 0].copy(), {}
+        for name, output in self.outputs.items():
+            quantity = output.quantity
+            if quantity not in found:
+                found[quantity] = look_up(plain if quantity in self.kinematic else whole, quantity)
+            if name in self.folds:
+                self.folds[name].add(t, found[quantity])
+            else:
+                self.histories[name].append(np.array(found[quantity]))
+
+    def values(self) -> dict[str, Any]:
+        """What the outputs are; None of those without a value."""
+        return {name: self.folds[name].value() if name in self.folds
+                else np.concatenate(self.histories[name]) for name in self.outputs}
+
+
+def kinematic_quantities(simulation: Simulation, outputs: Mapping[str, Output]
+                         ) -> tuple[set[str], dict[str, tuple[int, ...]]]:
+    """Quantities that recorded states alone give, and the shape of each quantity.
+
+    Raises
+    ------
+    InputError
+        A quantity that the model does not have.
+    """
+    kinematic, shapes = set(), {}
+    rows = simulation.rows[0]
+    for quantity in {o.quantity for o in outputs.values()}:
+        try:
+            found = look_up(_States(simulation.model, simulation.numbering, None, None, rows, 0.0),
+                            quantity)
+            kinematic.add(quantity)
+        except _NeedsElements:
+            found = look_up(Recording(simulation.model, simulation.numbering, simulation.system,
+                                      simulation.state, rows, 0.0), quantity)
+        shapes[quantity] = found.shape[1:]
+    return kinematic, shapes
+
+
+class _NeedsElements(Exception):
+    """A quantity that elements have to be evaluated for."""
+
+
+class _States(Recording):
+    """Recorded states without elements."""
+
+    def _refuse(self) -> NDArray:
+        raise _NeedsElements
+
+    energies = forces = balance = powers = constraint_residuals = counters = property(_refuse)

@@ -1,0 +1,162 @@
+"""The numbers a run begins with, as functions of its parameters.
+
+Many parameters change some of the numbers in a model's arrays, and each of these linearly: a force
+its direction, a stiffness the entries of a matrix. Which ones, and by how much, is found by
+building the model with three values of the parameter. Runs then begin with a copy of all numbers
+and additions to a few. Parameters of another kind have the model built anew for each of their runs.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from sebody.assembly.allocation import allocate
+from sebody.assembly.build import build
+from sebody.engine.packing import Places, patterns
+from sebody.engine.state import State
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.explore.ensembles.changes import BODIES, MOTION, Handle
+from sebody.runs.simulation import Simulation
+
+LINEAR = 1e-12      # largest deviation from a line, relative to the largest of the numbers compared
+
+
+class Lines(NamedTuple):
+    """Numbers that depend linearly on parameters."""
+
+    slots: NDArray      # (k,) places in the buffer
+    slopes: csr_array   # (k, components of the parameters)
+
+
+class Image:
+    """All numbers of the run of a model as built, and those that parameters change.
+
+    Parameters
+    ----------
+    template : Simulation
+        Of the model as built, before its first step.
+    handles : mapping
+        The parameters that vary.
+
+    Attributes
+    ----------
+    linear : bool
+        Whether runs can begin with a copy.
+    """
+
+    def __init__(self, template: Simulation, handles: Mapping[str, Handle]):
+        self.template, self.handles = template, handles
+        self.lines = None
+        if not handles:         # a single run of the model as it is
+            return
+        self.places = Places(template.system, template.state)
+        self.floats = np.zeros(self.places.size)
+        self.places.packed(template.system, self.floats)
+        self.places.packed(template.state, self.floats)
+        self.lines = self._lines(handles) if self._can_copy(handles) else None
+
+    @property
+    def linear(self) -> bool:
+        """Whether runs can begin with a copy."""
+        return self.lines is not None
+
+    def _can_copy(self, handles: Mapping[str, Handle]) -> bool:
+        """Whether the start needs accelerations alone: no fitted velocities, no redundancy."""
+        one = self.template
+        constrained = bool(one.numbering.multipliers) or bool(one.system.prescribed.size)
+        touched = {handle.touches for handle in handles.values()}
+        return not (any(handle.whole for handle in handles.values())
+                    or one.scheme.stabilized or one.system.relaxed[0]
+                    or ((constrained or one.begun) and MOTION in touched)
+                    or (one.start.changed and touched & {BODIES, MOTION}))
+
+    def _lines(self, handles: Mapping[str, Handle]) -> Lines | None:
+        """Slopes of all numbers; None unless they depend linearly on all parameters together."""
+        base, slopes, steps = self._numbers(), [], []
+        for handle in handles.values():
+            for k in range(handle.base.size):
+                slopes.append(self._slope(handle, k, base))
+                if slopes[-1] is None:
+                    return None
+            # another part of a step for every component
+            steps.append(_step(handle) * (1 + np.arange(len(slopes) - handle.base.size,
+                                                        len(slopes))) / len(slopes))
+        together = self._at(list(handles.values()), steps)
+        change = np.concatenate(steps) @ np.array(slopes)
+        if together is None or not _equal(together - base, change, base, together):
+            return None
+        slots = np.flatnonzero(np.any(np.array(slopes) != 0.0, axis=0))
+        return Lines(slots, csr_array(np.array(slopes)[:, slots].T))
+
+    def _slope(self, handle: Handle, k: int, base: NDArray) -> NDArray | None:
+        """Change of all numbers by one component of a parameter; None if it is not linear."""
+        steps = np.zeros(handle.base.size)
+        steps[k] = _step(handle)[k]
+        one, two = self._at([handle], [steps]), self._at([handle], [2 * steps])
+        if one is None or two is None or not _equal(two - base, 2 * (one - base), base, two):
+            return None
+        change = one - base
+        rounding = LINEAR * np.maximum(np.abs(base), np.abs(one))
+        return np.where(np.abs(change) > rounding, change, 0.0) / steps[k]
+
+    def _at(self, handles: list[Handle], steps: list[NDArray]) -> NDArray | None:
+        """All numbers with some parameters changed; None if a body cannot have these values."""
+        try:
+            for handle, step in zip(handles, steps, strict=True):
+                handle.set(handle.base + step.reshape(handle.base.shape))
+            return self._numbers()
+        except InputError:
+            return None
+        finally:
+            for handle in reversed(handles):
+                handle.reset()
+
+    def _numbers(self) -> NDArray | None:
+        """All numbers of the model as it is now, before its start; None if its pattern differs."""
+        one = self.template
+        system, numbering = build(one.model)
+        system.routines[:] = one.system.routines
+        state = allocate(one.model, system, numbering, one.h, one.dense)
+        if not (_alike(system, one.system) and _alike(state, one.state, sizes_only=True)):
+            return None
+        found = np.zeros(self.places.size)
+        same = Places(system, state)
+        same.packed(system, found)
+        same.packed(state, found)
+        return found
+
+
+def _step(handle: Handle) -> NDArray:
+    """By how much the components of a parameter are changed to see what follows."""
+    return np.maximum(1.0, np.abs(handle.base)).ravel()
+
+
+def _equal(one: NDArray, other: NDArray, *numbers: NDArray) -> bool:
+    """Whether two changes are the same but for rounding of the numbers that changed."""
+    size = max(np.abs(n).max(initial=0.0) for n in numbers)
+    return bool((np.abs(one - other) <= LINEAR * size).all())
+
+
+def _alike(group: System | State, other: System | State, sizes_only: bool = False) -> bool:
+    """Whether two groups have the same integers, and floats of the same sizes."""
+    if group._facts != other._facts or any(
+            a.shape != b.shape for a, b in zip(_arrays(group), _arrays(other), strict=True)):
+        return False
+    return sizes_only or all(np.array_equal(a, b) for a, b in
+                             zip(patterns(group), patterns(other), strict=True))
+
+
+def _arrays(group: Any) -> list[NDArray]:
+    found = []
+    for value in vars(group).values():
+        if isinstance(value, np.ndarray):
+            found.append(value)
+        elif hasattr(value, "_facts"):
+            found += _arrays(value)
+    return found
+
+

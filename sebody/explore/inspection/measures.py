@@ -1,0 +1,211 @@
+"""The numbers of a body file: mass, rigid motion, frequencies, conditioning.
+
+Matrices may be wrong in any way but shape, so nothing here builds a `ReducedBody`. They are
+compared in unit-free form, as `sebody.reduction.checks` does.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import LinAlgError, eigh
+
+from sebody.errors import InputError
+from sebody.io.body_file import BodyFile
+from sebody.limits.thresholds import PERIOD
+from sebody.reduction import frame_weights
+from sebody.reduction.checks import (
+    asymmetry,
+    check_layout,
+    coordinate_names,
+    rigid_residual,
+    unit_scale,
+)
+from sebody.reduction.rigid import rigid_motions
+
+SHOWN = 12          # frequencies
+_MASSLESS = 1e-12   # eigenvalue of the unit-free mass, relative to the largest
+
+
+@dataclass(frozen=True, eq=False)
+class Matrices:
+    """The reduced matrices of a file with the layout of their rows, made symmetric.
+
+    Parameters
+    ----------
+    asymmetry : dict
+        Largest unit-free difference across the diagonal of stiffness and mass, by name.
+    rigid : (n, 6), planar (n, 3)
+        Rigid motions about the mean of the boundary nodes.
+    """
+
+    stiffness: NDArray
+    mass: NDArray
+    coordinates: NDArray
+    keeps: tuple[str, ...]
+    names: list[str]
+    asymmetry: dict[str, float]
+    rigid: NDArray
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self.coordinates.shape[1]
+
+
+def stiffening(file: BodyFile, body: Matrices) -> dict[str, int]:
+    """Load modes and resultants of second order, and elastic motions that could have a resultant.
+
+    Nothing of a body without constants of inertia.
+    """
+    i = file.parts.get("invariants")
+    if i is None:
+        return {}
+    boundary = body.rigid[:len(body.rigid) - file.parts.get("modes", 0)]
+    return {"load_modes": i.slaved, "resultants": i.resultants,
+            "motions": len(boundary) - int(np.linalg.matrix_rank(boundary))}
+
+
+def matrices_of(file: BodyFile) -> Matrices:
+    """The matrices of a body file.
+
+    Raises
+    ------
+    InputError
+        Shapes that do not fit together, or numbers that are not finite: nothing can be said.
+    """
+    parts = file.parts
+    coordinates, keeps = np.asarray(parts["coordinates"], dtype=float), tuple(parts["keeps"])
+    check_layout(coordinates, keeps)
+    names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0), file.names)
+    found, differences = {}, {}
+    for name in ("stiffness", "mass"):
+        matrix = np.asarray(parts[name], dtype=float)
+        if matrix.shape != (len(names),) * 2:
+            raise InputError(f"{name} has shape {matrix.shape}, but the layout of the file has "
+                             f"{len(names)} coordinates: import the body again")
+        if not np.isfinite(matrix).all():
+            i, j = np.argwhere(~np.isfinite(matrix))[0]
+            raise InputError(f"{name}[{i}, {j}] is {matrix[i, j]} ({names[i]}, {names[j]}): export "
+                             "the matrix again")
+        differences[name] = float(asymmetry(matrix, names, coordinates).max())
+        found[name] = (matrix + matrix.T) / 2
+    rigid = rigid_motions(coordinates, keeps, len(names), coordinates.mean(axis=0))
+    return Matrices(**found, coordinates=coordinates, keeps=keeps, names=names,
+                    asymmetry=differences, rigid=rigid)
+
+
+def mass_properties(body: Matrices) -> dict:
+    """Mass, centre, inertia about it, and how far R^T M R is from what geometry allows.
+
+    ``R^T M R = [[m I, -m skew(c)], [m skew(c), J]]`` of a rigid body with any c and J: what it has
+    else, relative to the mass and the size of the body, is a defect.
+    """
+    D = body.dimension
+    gyration = body.rigid.T @ body.mass @ body.rigid
+    mass = float(np.trace(gyration[:D, :D]) / D)
+    size = float(np.ptp(body.coordinates, axis=0).max()) or 1.0
+    defect = [np.abs(gyration[:D, :D] - mass * np.eye(D)).max()]
+    moment = gyration[:D, D:]
+    if D == 2:
+        centre = np.array([moment[1, 0], -moment[0, 0]]) / mass
+        inertia = gyration[2:, 2:] - mass * centre @ centre
+    else:
+        skew = (moment - moment.T) / 2
+        defect.append(np.abs(moment + moment.T).max() / 2 / size)
+        centre = np.array([skew[1, 2], skew[2, 0], skew[0, 1]]) / mass
+        inertia = gyration[3:, 3:] - mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    moments, axes = np.linalg.eigh(inertia)
+    if D == 3:      # a right-handed triad, each axis with its largest component positive
+        axes = axes * np.sign(axes[np.argmax(np.abs(axes), axis=0), range(3)])
+        axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    return {"mass": mass, "centre": centre + body.coordinates.mean(axis=0), "inertia": inertia,
+            "principal_moments": moments, "principal_axes": axes,
+            "mass_geometry_defect": float(max(defect) / abs(mass)) if mass else np.inf}
+
+
+def rigid_residuals(body: Matrices) -> dict:
+    """``|K r|`` over ``|K_B| |r|`` of every rigid motion, and the coordinate it is worst at."""
+    motions = (["translation x", "translation y", "rotation"] if body.dimension == 2 else
+               [f"{kind} {axis}" for kind in ("translation", "rotation") for axis in "xyz"])
+    each = {name: rigid_residual(body.stiffness, body.rigid[:, [k]], body.names)[0]
+            for k, name in enumerate(motions)}
+    whole, row = rigid_residual(body.stiffness, body.rigid, body.names)
+    return {"each": each, "largest": whole, "worst": body.names[row]}
+
+
+def definiteness(body: Matrices) -> dict:
+    """Lowest unit-free eigenvalues over the largest of stiffness and mass, condition numbers."""
+    found = {}
+    for name in ("stiffness", "mass"):
+        matrix = getattr(body, name)
+        scale = unit_scale(matrix, body.names)
+        values, vectors = np.linalg.eigh(matrix / np.outer(scale, scale))
+        largest = np.abs(values).max() or 1.0
+        found[name] = {"lowest": float(values[0] / largest),
+                       "worst": body.names[int(np.argmax(np.abs(vectors[:, 0])))]}
+        flexible = values[body.rigid.shape[1]:] if name == "stiffness" else values
+        found[name]["condition"] = (float(largest / flexible[0]) if len(flexible)
+                                    and flexible[0] > 0 else np.inf)
+    return found
+
+
+def frequencies(body: Matrices) -> dict:
+    """Free vibrations: squares of all angular frequencies, and the first flexible ones in Hz.
+
+    The lowest ones are those of rigid motion, as many as there are rigid motions.
+    """
+    size = np.sqrt(np.outer(*[unit_scale(body.mass, body.names)] * 2))
+    scaled = body.mass / size
+    stiffness = body.stiffness / size
+    try:
+        if np.linalg.eigvalsh(scaled)[0] <= _MASSLESS * np.abs(scaled).max():
+            raise LinAlgError
+        squares = eigh(stiffness, scaled, eigvals_only=True)
+    except LinAlgError:     # coordinates without mass: the inverse problem knows no infinity
+        squares = _massless(stiffness, scaled)
+    rigid = body.rigid.shape[1]
+    hertz = np.sqrt(np.abs(squares)) / (2 * np.pi)
+    flexible = hertz[rigid:]
+    last = flexible[-1] if len(flexible) else np.nan
+    first = flexible[0] if len(flexible) else np.nan
+    return {"rigid": hertz[:rigid], "flexible": flexible[:SHOWN], "count": len(flexible),
+            "highest": float(last), "step_first": 1 / (PERIOD * first) if first > 0 else np.inf,
+            "step_highest": 1 / (PERIOD * last) if last > 0 else np.inf}
+
+
+def free_modes(body: Matrices, most: int) -> tuple[NDArray, NDArray]:
+    """Frequencies (k,) in Hz of the lowest free vibrations, and their motions (n, k)."""
+    size = np.sqrt(unit_scale(body.mass, body.names))
+    stiffness, mass = (matrix / np.outer(size, size) for matrix in (body.stiffness, body.mass))
+    rigid = body.rigid.shape[1]
+    shift = np.trace(np.abs(stiffness)) / max(np.trace(mass), 1e-300) * 1e-6
+    try:        # the inverse problem: coordinates may be massless
+        inverse, shapes = eigh(mass, stiffness + shift * mass)
+    except LinAlgError:
+        return np.zeros(0), np.zeros((len(size), 0))
+    inverse, shapes = inverse[::-1], shapes[:, ::-1]
+    there = inverse[rigid:] > 1e-14 * inverse[0]
+    squares = 1 / inverse[rigid:][there] - shift
+    found = shapes[:, rigid:][:, there] / size[:, None]
+    return np.sqrt(np.maximum(squares, 0.0))[:most] / (2 * np.pi), found[:, :most]
+
+
+def _massless(stiffness: NDArray, mass: NDArray) -> NDArray:
+    """Squares of the finite angular frequencies of a semidefinite mass."""
+    shift = np.trace(stiffness) / max(np.trace(mass), 1e-300) * 1e-6
+    try:
+        inverse = eigh(mass, stiffness + shift * mass, eigvals_only=True)[::-1]
+    except LinAlgError:
+        return np.zeros(0)
+    inverse = inverse[inverse > 1e-14 * inverse[0]]
+    return 1 / inverse - shift
+
+
+def frame(body: Matrices, centre: NDArray) -> dict:
+    """Weights of the position nodes in the mean frame, and its origin."""
+    points = body.coordinates[[keep != "rotation" for keep in body.keeps]]
+    weights = frame_weights(points, centre)
+    origin = weights @ points
+    return {"weights": weights, "origin": origin, "off_centre": float(np.linalg.norm(
+        origin - centre)), "size": float(np.ptp(points, axis=0).max())}

@@ -1,0 +1,209 @@
+"""The table of a sweep: parameters and outputs of every run, in memory and in files."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.errors import InputError
+from sebody.explore.sweep.batches import Answer
+from sebody.files import members, replacing
+from sebody.files.arrays import json_of, opened
+from sebody.files.checksums import changed, checksums
+
+if TYPE_CHECKING:
+    import pandas
+
+VERSION = 1
+ROUNDING = 1e-13         # of the largest component
+QUANTILES = (0.05, 0.5, 0.95)
+
+
+@dataclass
+class Table:
+    """Runs of a sweep.
+
+    Attributes
+    ----------
+    design : str
+        What was asked for: a sweep goes on from a file with the same text only.
+    parameters : dict
+        Values by name, (runs,).
+    outputs : dict
+        By name, (runs, ...); NaN of runs that are not done or failed.
+    done : (runs,)
+        Whether the run was done, perhaps in vain.
+    failures : (runs,) of str
+        Why a run failed; empty of others.
+    """
+
+    design: str
+    parameters: dict[str, NDArray]
+    outputs: dict[str, NDArray]
+    done: NDArray
+    failures: NDArray = field(default_factory=lambda: np.zeros(0, dtype=object))
+
+    @classmethod
+    def empty(cls, design: str, parameters: dict[str, NDArray], runs: int) -> "Table":
+        """A table of runs that are still to be done."""
+        failures = np.empty(runs, dtype=object)
+        failures[:] = ""
+        return cls(design, parameters, {}, np.zeros(runs, dtype=bool), failures)
+
+    @property
+    def runs(self) -> int:
+        """Number of runs."""
+        return len(self.done)
+
+    @property
+    def good(self) -> NDArray:
+        """Runs that reached the end, (runs,)."""
+        return self.done & (self.failures == "")
+
+    def __getitem__(self, name: str) -> NDArray:
+        """A parameter or output by name.
+
+        Raises
+        ------
+        InputError
+            There is none of this name.
+        """
+        for values in (self.outputs, self.parameters):
+            if name in values:
+                return values[name]
+        raise InputError(f"{name!r} is not a column: there are "
+                         f"{', '.join([*self.parameters, *self.outputs])}")
+
+    def has(self, columns: Mapping[str, NDArray]) -> bool:
+        """Whether its parameters are those of a design."""
+        return columns.keys() == self.parameters.keys() and all(
+            np.array_equal(_storable(self.parameters[name]), _storable(values))
+            for name, values in columns.items())
+
+    def take(self, answer: Answer) -> None:
+        """Enter what a batch gave."""
+        for name, values in answer.values.items():
+            if name not in self.outputs:
+                self.outputs[name] = np.full((self.runs, *values.shape[1:]), np.nan)
+            if self.outputs[name].shape[1:] != values.shape[1:]:
+                raise InputError(f"output {name} has shape {values.shape[1:]}, in the table "
+                                 f"{self.outputs[name].shape[1:]}: give another --output")
+            self.outputs[name][answer.rows] = values
+        for row, reason in answer.failures.items():
+            self.failures[row] = reason
+        self.done[answer.rows] = True
+
+    def columns(self) -> dict[str, NDArray]:
+        """Everything by runs, (runs,) each: components of vectors have an index in their name."""
+        found = {"run": np.arange(self.runs), **self.parameters}
+        for name, values in self.outputs.items():
+            flat = values.reshape(self.runs, -1)
+            found |= ({name: flat[:, 0]} if values.ndim == 1 else
+                      {f"{name}[{k}]": flat[:, k] for k in range(flat.shape[1])})
+        return {**found, "done": self.done, "failure": self.failures}
+
+    def quantiles(self) -> dict[str, NDArray]:
+        """5 %, median and 95 % of every column of the outputs, over the good runs."""
+        outputs = [name for name in self.columns() if name.partition("[")[0] in self.outputs]
+        if not self.good.any():
+            return {}
+        return {name: np.nanquantile(self.columns()[name][self.good].astype(float), QUANTILES)
+                for name in outputs}
+
+    def rounding(self, column: str) -> float:
+        """What is rounding in a column of the outputs: components of a vector share their size."""
+        values = np.abs(self.outputs[column.partition("[")[0]][self.good])
+        return ROUNDING * float(np.max(values, initial=0.0))
+
+    def summary(self) -> str:
+        """Numbers of runs, and quantiles of the outputs, as text."""
+        failed = self.done & ~self.good
+        lines = [f"{int(self.done.sum())} of {self.runs} runs done, {int(failed.sum())} failed"]
+        reasons = sorted(set(self.failures[failed]), key=list(self.failures[failed]).count)
+        lines += [f"  {list(self.failures).count(r)} x {r}" for r in reasons[-3:][::-1]]
+        found = self.quantiles()
+        if found:
+            width = max(map(len, found))
+            lines.append(f"{'output':{width}} {'5 %':>12} {'median':>12} {'95 %':>12}")
+            lines += [f"{name:{width}} " + " ".join(
+                f"{q if abs(q) > self.rounding(name) else 0.0:12.6g}" for q in values)
+                      for name, values in found.items()]
+        return "\n".join(lines)
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """The columns as a data frame.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError as error:
+            raise InputError('tables as data frames need pandas: pip install "sebody[tables]"'
+                             ) from error
+        return pandas.DataFrame({name: [str(v) for v in values] if values.dtype == object
+                                 and name not in self.parameters else values
+                                 for name, values in self.columns().items()})
+
+    def save(self, path: Path) -> None:
+        """Write an npz file, in the place of an older one at once."""
+        arrays = {f"parameter/{n}": _storable(v) for n, v in self.parameters.items()}
+        arrays |= {f"output/{n}": v for n, v in self.outputs.items()}
+        arrays |= {"design": np.array(self.design), "version": np.array(VERSION),
+                   "done": self.done, "failure": _storable(self.failures)}
+        noted = np.array(json.dumps(checksums(arrays)))
+        with replacing(path, "table") as file:
+            np.savez_compressed(file, **arrays, checksums=noted)
+
+    @classmethod
+    def load(cls, path: Path) -> "Table":
+        """A table from its npz file.
+
+        Raises
+        ------
+        InputError
+            A file of another kind or version, or members that do not fit together.
+        """
+        what, remedy = "table of a sweep", "give another --output, or remove it"
+        with opened(path, what, remedy) as reader:
+            version = reader.read("version")
+            if version.shape or version != VERSION:
+                raise InputError(f"table {path} is of version {version}, this program "
+                                 f"reads {VERSION}: give another --output")
+            noted = json_of(reader, "checksums") if "checksums" in reader.headers else None
+            table = members.Table(f"{what} {path}", remedy, _members(reader.headers))
+            found = table.read(reader, others=["checksums"])
+            if odd := changed(found, noted):
+                raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+            parts = {kind: {name.partition("/")[2]: values for name, values in found.items()
+                            if name.startswith(kind + "/")} for kind in ("parameter", "output")}
+            return cls(str(found["design"]), parts["parameter"], parts["output"], found["done"],
+                       found["failure"].astype(object))
+
+
+def _members(headers: Mapping[str, members.Header]) -> dict[str, members.Member]:
+    """What a table with these members must have: parameters of any kind, outputs of any shape."""
+    one = members.Member
+    found = {"design": one((), "U"), "version": one((), "i"), "done": one(("runs",), "b"),
+             "failure": one(("runs",), "U")}
+    for name, header in headers.items():
+        if name.startswith("parameter/"):
+            kind = header.dtype.kind
+            found[name] = one(("runs",), kind if kind in members.KINDS else "f")
+        elif name.startswith("output/"):
+            found[name] = one(("runs", ...), finite=False)
+    return found
+
+
+def _storable(values: NDArray) -> NDArray:
+    """An array of plain numbers or texts."""
+    if values.dtype != object:
+        return values
+    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for v in values)
+    return values.astype(float) if numbers else np.array([str(v) for v in values])

@@ -1,0 +1,1 @@
+"""Plots, films, pages and reports of results."""

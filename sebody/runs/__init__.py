@@ -1,0 +1,1 @@
+"""Runs of models: simulations, starts, schemes, restarts, equilibria."""

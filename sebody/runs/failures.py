@@ -1,0 +1,39 @@
+"""Why a run stopped, and what to do about it."""
+
+from sebody.assembly.numbering import Numbering
+from sebody.engine.state import (
+    ADAPTIVE,
+    CHOSEN,
+    FINEST,
+    GAP,
+    NO_START,
+    REASON,
+    REASONS,
+    STEP,
+    TIME,
+    State,
+)
+from sebody.engine.system import System
+from sebody.model.model import Model
+from sebody.runs import user_faults
+from sebody.runs.redundancy import contradiction
+
+KEPT = "results up to this time are kept"
+
+
+def explained(model: Model, system: System, state: State, numbering: Numbering) -> str:
+    """The message of a run whose last step failed."""
+    time, reason = float(state.clock[TIME]), int(state.control[REASON])
+    stopped = f"stopped at t = {time:.6g}"
+    if fault := user_faults.fault(model, time):
+        return f"{stopped}: {fault}; {KEPT}"
+    if reason == GAP:
+        return f"{stopped}: {contradiction(system, state, numbering)}; {KEPT}"
+    if reason == NO_START:
+        return (f"{stopped}, where loads jump: {REASONS[reason]}; {KEPT}. Check loads and joints "
+                "at this time")
+    variable = state.control[ADAPTIVE] == 1
+    shortest = state.clock[CHOSEN] if variable else state.clock[STEP] / FINEST
+    remedy = "a larger tolerance" if variable else "a smaller step"
+    return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
+            f"Use {remedy}, check the loads, or split the body into more superelements")

@@ -1,0 +1,151 @@
+"""What a first run compiles: the kernels of its models and the time loop, side by side.
+
+The parts of the loop are compiled for the types of a small model's arrays, which are those of
+every model. Kernels are known by name. Nothing is said or done where all is in the cache.
+"""
+
+from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+from threading import Lock
+from typing import NamedTuple
+
+import numpy as np
+from numba import typeof
+
+from sebody.assembly.allocation import allocate
+from sebody.assembly.build import build
+from sebody.assembly.motions import motion_kernel
+from sebody.compiler.choice import way
+from sebody.compiler.decorators import is_compiled
+from sebody.compiler.first_run import Job, compile_apart
+from sebody.compiler.workers import Task
+from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, step_control
+from sebody.engine.routines import compile_routine
+from sebody.engine.state import Record
+from sebody.kernels import loader
+from sebody.kernels.loader import USER_FORCE, element_kernel_name, find
+from sebody.model.mechanism import Mechanism
+from sebody.model.model import Model
+from sebody.results import motion, postprocessing
+from sebody.runs.schemes import generalized_alpha
+
+SECONDS_A_LETTER = 7e-5         # of a kernel's file, of one processor
+
+_lock = Lock()
+_ready = set()          # kernels and parts of the loop this process need not ask for again
+
+
+class Part(NamedTuple):
+    """A function of the loop, and what it is compiled for."""
+
+    function: Callable | None       # None where it is compiled with what calls it alone
+    arguments: str                  # names in `_examples`
+    seconds: float                  # of one processor, on its own
+    after: tuple[str, ...] = ()     # parts it calls, or takes most of
+    compile: Callable = way().compile_for
+
+
+_callee = way().part_of_callers
+LOOP = {        # callees of the loop, which waits for them
+    "forces in the loop": Part(_callee(evaluate.assemble), "whole whole system state vector", 0.6),
+    "output": Part(_callee(step_control.write_between), "system state record whole", 1.2),
+    "correction": Part(_callee(newton.apply_correction), "system state scheme flag", 1.1),
+    "evaluation": Part(_callee(loop._evaluate), "system state scheme whole flag", 0.8,
+                       ("forces in the loop",)),
+    "conclusion": Part(_callee(loop._conclude), "system state record scheme whole", 1.4),
+    "solution": Part(_callee(matrix.solve), "system state flag", 0.5),
+    "beginning": Part(_callee(step.begin_step), "system state scheme", 0.7),
+    "choice": Part(_callee(step_control.choose_step), "system state", 0.1),
+}
+PARTS = {name: part for name, part in LOOP.items() if part.function} | {
+    "loop": Part(loop.advance, "system state record scheme whole whole flag", 3.6, tuple(LOOP)),
+    "sums": Part(matrix.sum_matrices, "system state vector", 1.4),
+    "matrix": Part(matrix.refactorize, "system state whole flag", 3.4, ("sums",), compile_routine),
+    "restart": Part(restart.restart, "system state number flag", 2.0, ("solution",),
+                    compile_routine),
+    "forces": Part(evaluate.assemble, "whole whole system state vector", 0.3,
+                   ("forces in the loop",)),
+    "constraints": Part(postprocessing._evaluate_constraints, "system state table table", 0.6,
+                        ("forces in the loop",)),
+    "energies": Part(postprocessing._evaluate_energies, "system state table table", 0.3,
+                     ("forces in the loop",)),
+    "reactions": Part(postprocessing._evaluate_forces, "system state table table table", 0.4,
+                      ("forces in the loop",)),
+    "loads": Part(evaluate.set_loads, "system vector number", 0.3),
+    "motions": Part(evaluate.move_prescribed, "system state", 0.2),
+    "links": Part(links.place_dependent, "links vector vector vector vector", 0.3),
+    "axes": Part(evaluate.to_body_axes, "system vector vector flag", 0.2),
+    "movements": Part(motion._evaluate, "whole whole whole indices vector table places vector "
+                      "vector movements", 0.3),
+    "records": Part(step.write_record, "state record", 0.1),
+}
+
+
+def prepare(models: Iterable[Mechanism]) -> None:
+    """Compile what runs of models need and the cache lacks; a line says so."""
+    models = list(models)
+    bodies = [body for model in models for body in model.bodies.values()]
+    kernels = {body.kernel for body in bodies} | {motion_kernel(body) for body in bodies}
+    kernels |= {element_kernel_name(e.kind) for model in models
+                for e in (*model.rigid_bodies.values(), *model.constraints, *model.loads)}
+    if not _ready.issuperset(kernels) or not _ready.issuperset(PARTS):
+        compile_missing(kernels, PARTS)
+
+
+def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
+                    report: Callable[[str, float], None] | None = None) -> None:
+    """Compile kernels and parts of the loop by name, where the cache lacks them.
+
+    Parameters
+    ----------
+    report : callable, optional
+        Called with the name of everything that was compiled and the seconds it took.
+    """
+    with _lock:
+        kernels = {name: path for name in sorted(set(kernels) - _ready) if (path := _file(name))}
+        missing = {name: path for name, path in kernels.items() if not is_compiled(path)}
+        lacking = [name for name in parts
+                   if name not in _ready and not way().is_compiled(PARTS[name].function)]
+        _ready.update(kernels, parts)
+        what = ["the time loop"] * bool(lacking)
+        what += [f"{len(missing)} kernel{'s' * (len(missing) > 1)}"] * bool(missing)
+        compile_apart(_jobs(missing, lacking), " and ".join(what), Path(loop.__file__), report)
+
+
+def _jobs(kernels: dict[str, Path], parts: list[str]) -> list[Job]:
+    return [*(Job(Task(name, f"{__name__}:compile_part", (name,), PARTS[name].after),
+                  PARTS[name].seconds) for name in parts),
+            *(Job(Task(name, "sebody.kernels.loader:load", (name,)), _seconds(path))
+              for name, path in kernels.items())]
+
+
+def compile_part(name: str) -> None:
+    """Compile a part of the loop here, or find it in the cache."""
+    part = PARTS[name]
+    part.compile(part.function, tuple(_examples()[name] for name in part.arguments.split()))
+
+
+@cache
+def _examples() -> dict:
+    """Types of arguments, by the names in `PARTS`: from a model that compiles next to nothing."""
+    model = Model(planar=True)
+    model.node("point", (0.0, 0.0))
+    model.rigid_body("mass", "point", 1.0, 1.0)
+    system, numbering = build(model)
+    state = allocate(model, system, numbering, 1.0, True)
+    found = {"system": system, "state": state, "record": Record.of(state, 1), "links": system.links,
+             "scheme": generalized_alpha(), "vector": state.residual, "table": state.inverse,
+             "movements": np.zeros((1, 1, 1)), "indices": np.zeros((1, 1), dtype=np.int64),
+             "places": np.zeros(1, dtype=np.int64), "whole": 1, "number": 1.0, "flag": True}
+    return {name: typeof(value) for name, value in found.items()}
+
+
+def _file(name: str) -> Path | None:
+    if name == USER_FORCE:
+        return Path(loader.__file__).with_name("user_force.py")
+    return find(name)
+
+
+def _seconds(path: Path) -> float:
+    return SECONDS_A_LETTER * path.stat().st_size

@@ -1,0 +1,83 @@
+"""Equilibria that only the model has: bodies without stiffening that fold up under tension."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import null_space
+
+from sebody.assembly.motions import Motions, motions
+from sebody.assembly.numbering import record_counts
+from sebody.contract.layout import MOTION
+from sebody.limits.axial import Axial, Load
+from sebody.limits.body_limits import limits_of, remedy
+from sebody.limits.thresholds import FOLDED
+from sebody.model.parts import Superelement
+from sebody.results.motion import evaluated
+from sebody.runs.simulation import Simulation
+from sebody.runs.state_derivatives import derivative
+
+NEAR = 0.9          # of the tension at which a body folds up: no equilibrium is found there
+UNSTABLE = 1e-9     # stiffness below zero, of the largest of the scaled matrix
+
+
+class Tensions(NamedTuple):
+    """Bodies of a run that may fold up under tension."""
+
+    bodies: dict[str, Superelement]
+    axial: dict[str, Axial]
+    groups: list[Motions]
+
+    @classmethod
+    def of(cls, run: Simulation) -> "Tensions":
+        """All bodies of its model that have no geometric stiffening."""
+        own = {name: limits.axial for name, limits in limits_of(run.model.bodies.values()).items()
+               if limits.axial is not None}
+        bodies = {name: run.model.bodies[name] for name in own}
+        return cls(bodies, own, motions(run.model, run.numbering, bodies.values()))
+
+    def spurious(self, run: Simulation) -> str:
+        """What is wrong with an equilibrium, empty if nothing is.
+
+        Beyond the limit of a body that is clamped nothing needs to be wrong but its stiffness.
+        """
+        worst = self._worst(run)
+        if worst is None or worst[1].folding < NEAR:
+            return ""
+        load, said = worst[1], self._said(*worst)
+        if load.tilt > FOLDED:
+            return (f"is none of the structure, with a frame {load.tilt:.2g} rad off the line of "
+                    f"the nodes: {said}")
+        return f"is unstable: {said}" if load.folding > 1.0 and _unstable(run) else ""
+
+    def reason(self, run: Simulation) -> str:
+        """Why no equilibrium is found from a state on, empty if it is not for a tension."""
+        worst = self._worst(run)
+        return self._said(*worst) if worst and worst[1].folding > NEAR else ""
+
+    def _said(self, name: str, load: Load) -> str:
+        return (f"body {name!r} folds up in its frame under {load.described} (limit "
+                f"{load.force / load.folding:.3g}), as its stiffness does not grow with tension: "
+                f"{remedy(self.bodies[name])}")
+
+    def _worst(self, run: Simulation) -> tuple[str, Load] | None:
+        """The body whose tension is largest against that at which it folds up."""
+        found = []
+        for group in self.groups:
+            motion, _ = evaluated(group, run.state.now[None], record_counts(run.numbering))
+            y = motion[0][:, MOTION.slices(group.counts)["y"]]
+            found += [(name, self.axial[name].load(y[k])) for k, name in enumerate(group.bodies)
+                      if self.axial[name].bound(y[k:k + 1])[0] > NEAR]
+        return max(found, key=lambda item: item[1].folding, default=None)
+
+
+def _unstable(run: Simulation) -> bool:
+    """Whether a motion that the constraints allow has a negative stiffness."""
+    stiffness = derivative(run, 0.0, 0.0, 1.0).toarray()
+    fixed = run.system.is_multiplier[:len(stiffness)] > 0.0
+    stiffness = (stiffness + stiffness.T) / 2
+    scale = 1.0 / np.sqrt(np.maximum(np.abs(stiffness).max(axis=0), 1e-300))
+    stiffness = scale[:, None] * stiffness * scale
+    basis = (null_space(stiffness[np.ix_(fixed, ~fixed)]) if fixed.any() else
+             np.eye(len(stiffness)))
+    values = np.linalg.eigvalsh(basis.T @ stiffness[np.ix_(~fixed, ~fixed)] @ basis)
+    return bool(len(values) and values[0] < -UNSTABLE * np.abs(values).max())

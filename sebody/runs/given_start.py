@@ -1,0 +1,71 @@
+"""A start from a state that was computed: an equilibrium, or the end of another run."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.assembly.numbering import Numbering, coordinates, record_counts, stretch
+from sebody.contract.layout import RECORD
+from sebody.engine.state import State
+from sebody.errors import InputError
+from sebody.model.extent import extent
+from sebody.model.mechanism import Mechanism
+from sebody.results.result import Result
+
+APART = 1e-8        # of the extent, or rad: by which fixed and driven coordinates may differ
+
+
+def take(model: Mechanism, numbering: Numbering, state: State, given: Result) -> None:
+    """Put positions, rotations and modes of the last state of a result in a state at t = 0.
+
+    Velocities are those of that state, too, but for those the model gives.
+
+    Raises
+    ------
+    InputError
+        No result, one of another model, or fixed and driven coordinates that are elsewhere.
+    """
+    inputs.instance(given, "start", Result, "give the Result of an equilibrium or of a run")
+    if given.numbering.names != numbering.names or record_counts(given.numbering) != record_counts(
+            numbering):
+        raise InputError("start is a state of another model: give the Result of an equilibrium of "
+                         "this one, with the same nodes, bodies and joints")
+    row, parts = given.rows[-1], RECORD.slices(record_counts(numbering))
+    q, R, v = (row[parts[name]].copy() for name in ("q", "R", "v"))
+    for triplet in model.triplets():
+        if id(triplet) not in numbering.triplets:
+            continue
+        own, k = stretch(numbering, triplet), numbering.rotations.get(id(triplet))
+        is_given = triplet.given or bool(triplet.rate.any())
+        if is_given or not triplet.solved:
+            v[own] = state.v[own]
+        if k is not None:
+            q[own] = 0.0        # in space R has the rotation, and q the increment in a step
+            if is_given:        # in global axes
+                v[own] = R[9 * k:9 * k + 9].reshape(3, 3).T @ state.v[own]
+    for body in model.bodies.values():
+        if np.any(body.mode_rates):
+            own = slice(numbering.modes[body.name], numbering.modes[body.name] + body.body.modes)
+            v[own] = body.mode_rates
+    _check_held(model, numbering, state, q, R)
+    state.q[:], state.R[:], state.v[:] = q, R, v
+    state.q_old[:], state.R_old[:], state.v_old[:] = q, R, v
+    state.frames[:] = state.frames_old[:] = row[parts["frames"]]
+
+
+def _check_held(model: Mechanism, numbering: Numbering, state: State, q: NDArray,
+                R: NDArray) -> None:
+    """Refuse a state whose fixed and driven positions and rotations are not those of t = 0."""
+    length = extent(model)
+    for triplet in model.triplets():
+        if not triplet.fixed or id(triplet) not in numbering.triplets:
+            continue
+        own, k = coordinates(numbering, triplet), numbering.rotations.get(id(triplet))
+        apart = np.abs(q[own] - state.q[own]).max() / (1.0 if triplet.rotational else
+                                                       max(length, 1e-300))
+        if k is not None:
+            apart = np.abs(R[9 * k:9 * k + 9] - state.R[9 * k:9 * k + 9]).max()
+        if apart > APART:
+            raise InputError(f"start: {triplet.name} is not where the model holds or moves it at "
+                             "t = 0: give a state at which drives have not moved yet, such as the "
+                             "equilibrium at t = 0")

@@ -1,0 +1,159 @@
+"""A consistent start: positions and velocities that fit the joints."""
+
+from copy import copy
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+
+from sebody.assembly.evaluation import evaluate, matrix
+from sebody.assembly.numbering import Numbering, coordinates
+from sebody.contract.layout import ACCELERATION, RESIDUAL, VELOCITY
+from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
+from sebody.engine.links import place_dependent
+from sebody.engine.state import ASKED, RESTART, State
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.model.mechanism import Mechanism
+from sebody.results.recording import Start
+from sebody.runs.redundancy import Solver, least, part_sizes
+from sebody.runs.rigid_start import follow_drives
+from sebody.runs.user_faults import fault
+
+WHAT = "the initial state"
+SMALL = 1e-8            # largest residual of constraints, relative to positions or velocities
+HEAVY = 1e10            # added mass, relative, that keeps velocities the user gave
+
+
+def begin(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
+    """Fit the velocities to the constraints, and ask for accelerations and multipliers.
+
+    The time loop solves for these before its first step, see `sebody.engine.restart`.
+
+    Raises
+    ------
+    InputError
+        Initial positions violate a joint, given velocities do not fit, constraints contradict
+        each other, or an unknown has no mass.
+    """
+    set_loads(system, state.loads, 0.0)
+    state.loads_old[:] = state.loads
+    move_prescribed(system, state)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    multipliers = np.flatnonzero(system.is_multiplier)
+    masses = _masses(system, state)
+    if did := fault(model, 0.0):
+        raise InputError(f"{WHAT} cannot be evaluated: {did}")
+    residuals = state.residual[multipliers]
+    _check(residuals, _lengths(model, system, numbering, state)[multipliers], "position",
+           multipliers, numbering, "start from a state the joints allow")
+    system.inertias[:numbering.free] = part_sizes(masses, system)
+    solver = Solver(masses, system, numbering)
+    changed = follow_drives(model, system, numbering, state, masses,
+                            _rates(system, state, multipliers))
+    changed |= _fit_velocities(model, system, numbering, state, masses, solver, multipliers)
+    if solver.redundant:
+        _check_accelerations(system, numbering, state, solver)
+    state.frames_old[:] = state.frames
+    system.relaxed[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
+    state.control[RESTART] = ASKED
+    return Start(changed, solver.redundant, solver.shared)
+
+
+def _check_accelerations(system: System, numbering: Numbering, state: State,
+                         solver: Solver) -> None:
+    """Refuse redundant constraints that demand different accelerations of the same thing."""
+    moving = system.is_multiplier[:numbering.total] == 0
+    solved = np.arange(numbering.total) < numbering.free
+    state.a[solved & moving], state.q[~moving] = 0.0, 0.0
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    evaluate(system, state, RESIDUAL, ACCELERATION, WHAT)
+    to_body_axes(system, state.frames, state.residual, False)
+    solver.check(state.residual[:numbering.free].copy())
+
+
+def _masses(system: System, state: State) -> csc_matrix:
+    """Matrix of masses and constraints; the forces are left in `state.residual`."""
+    return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0)
+
+
+def _lengths(model: Mechanism, system: System, numbering: Numbering, state: State) -> NDArray:
+    """What residuals of constraints are compared with: sizes of positions, or one radian."""
+    found = np.full(numbering.total, max(np.abs(state.q).max(), system.magnitude.max()))
+    for equation in model.constraints:
+        if all(triplet.rotational for triplet in equation.triplets):
+            first = numbering.multipliers[id(equation)]
+            found[first:first + equation.multipliers] = 1.0
+    return found
+
+
+def _check(values: NDArray, size: NDArray | float, what: str, multipliers: NDArray,
+           numbering: Numbering, remedy: str) -> None:
+    if values.size:
+        excess = np.abs(values) / np.maximum(size, 1e-300)
+        worst = int(np.argmax(excess))
+        if not excess[worst] <= SMALL:
+            of = numbering.names[multipliers[worst]].partition(" of ")[2]
+            raise InputError(f"the initial {what} violates {of!r} by {abs(values[worst]):.3g}: "
+                             f"{remedy}")
+
+
+def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, state: State,
+                    masses: csc_matrix, solver: Solver,
+                    multipliers: NDArray) -> dict[str, float]:
+    """Fit velocities by the smallest change in the norm of kinetic energy; given ones are kept.
+
+    Returns the triplets whose velocity changed, and by how much.
+    """
+    if not multipliers.size:
+        return {}
+    size = max(np.abs(state.v).max(), 1e-300)
+    rates = _rates(system, state, multipliers)
+    if np.abs(rates).max() <= SMALL * size:
+        return {}
+    triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
+    given = [t for t in triplets if t.given]
+    held = np.array([i for triplet in given for i in coordinates(numbering, triplet)], dtype=int)
+    demand = np.zeros(numbering.free)
+    demand[multipliers] = -rates
+    answer = np.zeros(numbering.total)
+    solve = (least(_with_mass(masses, held), system) if held.size else
+             least(masses, system, solver.system))
+    answer[:numbering.free] = solve(demand)
+    answer[multipliers] = 0.0
+    to_body_axes(system, state.frames, answer, True)
+    state.v[:] += answer
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    size = max(size, np.abs(state.v).max())     # everything may have been at rest before
+    for triplet in given:
+        change = np.abs(answer[coordinates(numbering, triplet)]).max()
+        if change > 1e-6 * size:
+            demanded = _shown(state.v[coordinates(numbering, triplet)])
+            raise InputError(f"the given initial velocity of {triplet.name}, "
+                             f"{_shown(triplet.rate)}, contradicts joints, drives or other initial "
+                             f"velocities, which demand {demanded}: leave some of them out, they "
+                             "are solved for")
+    _check(_rates(system, state, multipliers), size, "velocity", multipliers, numbering,
+           "no velocities satisfy all joints, drives and initial velocities; change one of them")
+    changes = {t.name: float(np.abs(answer[coordinates(numbering, t)]).max()) for t in triplets}
+    return {name: change for name, change in changes.items() if change > SMALL * size}
+
+
+def _shown(value: NDArray) -> str:
+    return "(" + ", ".join(f"{number:.6g}" for number in value) + ")"
+
+
+def _with_mass(masses: csc_matrix, held: NDArray) -> csc_matrix:
+    """Masses with so much more at some coordinates that these keep their velocities."""
+    across = masses.shape[0]
+    diagonal = np.flatnonzero(       # all of it is stored, see `assembled`
+        masses.indices == np.repeat(np.arange(across), np.diff(masses.indptr)))
+    found = copy(masses)        # shares the pattern: SciPy's own copy verifies it once more
+    found.data = masses.data.copy()
+    found.data[diagonal[held]] += HEAVY * np.abs(masses.data[diagonal]).max()
+    return found
+
+
+def _rates(system: System, state: State, multipliers: NDArray) -> NDArray:
+    evaluate(system, state, RESIDUAL, VELOCITY, WHAT)
+    return state.residual[multipliers]

@@ -1,0 +1,181 @@
+"""Solution for accelerations and multipliers where constraints are redundant or mass is missing."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+
+from sebody.assembly.numbering import Numbering
+from sebody.engine.matrix import THIN
+from sebody.engine.state import State
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.runs.kkt_solver import Relaxed, Scaled
+
+WEAK = 1e-6             # pivot of a redundant constraint; of another one, its strength
+CONTRADICTION = 1e-7    # residual that contradicting constraints leave, relative to the largest
+MASSLESS = 1e-13        # inertia of a motion that has none, relative to that of its body
+SHARED = 0.1            # residual of a constraint that has part in a contradiction, of the largest
+SHARPENED = 3           # times that `Relaxed.unmoved` leaves RELAXATION of what exerts a force
+UNSHARED = 1e-6         # part in what exerts no force that is rounding, of the largest
+PROBES = 8              # iterations after which the motion with the least inertia is left
+HALF = 0.5              # of such a motion, `Relaxed.unmoved` leaves all; of others little
+
+
+def least(matrix: csc_matrix, system: System,
+          direct: Scaled | None = None) -> Callable[[NDArray], NDArray]:
+    """What solves for given right sides: with least norm where the matrix is singular.
+
+    Parameters
+    ----------
+    direct : Scaled, optional
+        Factors of the matrix, if there are any yet.
+    """
+    direct = direct or Scaled(matrix)
+    if direct.regular:
+        return direct.solve
+    relaxed = Relaxed(matrix, part_sizes(matrix, system), system)
+    return lambda demand: relaxed.least(demand)[0]
+
+
+def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
+    """Largest diagonal entry of every unknown's position or rotation, (n,).
+
+    Where these are zero, a typical one of the model by the magnitudes of coordinates.
+    """
+    n = matrix.shape[0]
+    diagonal, part = np.abs(matrix.diagonal()), system.part[:n]
+    # of a model whose only place is the origin: magnitudes are zero
+    magnitude = np.where(system.magnitude[:n] > 0.0, system.magnitude[:n], 1.0)
+    found = np.zeros(n)
+    np.maximum.at(found, part, diagonal)
+    found = found[part]
+    typical = (diagonal * magnitude**2).max() or 1.0    # one of a model without any inertia
+    empty = found == 0.0
+    found[empty] = typical / magnitude[empty]**2
+    return found
+
+
+class Solver:
+    """Masses and constraints at the start; finds redundant constraints and missing mass.
+
+    Parameters
+    ----------
+    matrix : (n, n)
+        Masses and constraints.
+
+    Attributes
+    ----------
+    redundant : tuple of str
+        Joints with constraints that those numbered before them contain.
+    shared : tuple of str
+        Joints whose multipliers are not unique.
+
+    Raises
+    ------
+    InputError
+        Something without mass can move.
+    """
+
+    def __init__(self, matrix: csc_matrix, system: System, numbering: Numbering):
+        self.system, self.names = Scaled(matrix), numbering.names
+        self.redundant: tuple[str, ...] = ()
+        self.shared: tuple[str, ...] = ()
+        self.relaxed: Relaxed | None = None
+        if self.system.suspicious:
+            system.thin[:matrix.shape[0]] = thin_parts(matrix, system)
+            self.relaxed = Relaxed(matrix, part_sizes(matrix, system), system)
+            self._check_mass(system)
+            self._find_redundant(system)
+
+    @property
+    def massless(self) -> bool:
+        """Whether a motion has stiffness and no mass, as of MacNeal's bodies."""
+        return not self.redundant and not self.system.regular
+
+    def check(self, residual: NDArray) -> None:
+        """Refuse redundant constraints that demand what no accelerations give.
+
+        Parameters
+        ----------
+        residual : (n,)
+            Without accelerations and multipliers.
+
+        Raises
+        ------
+        InputError
+            Constraints that contradict each other.
+        """
+        _, left = self.relaxed.least(residual)
+        if left.max() > CONTRADICTION * max(np.abs(self.relaxed.scale * residual).max(), 1e-300):
+            raise InputError(f"the constraints contradict each other at "
+                             f"{self.names[int(np.argmax(left))]}: they demand different values "
+                             "of the same acceleration; remove a joint or a drive")
+
+    def _find_redundant(self, system: System) -> None:
+        """Joints with constraints whose pivots are those of the regularization."""
+        multipliers = multiplying(system)
+        weak = (self.relaxed.pivots < WEAK) & multipliers
+        self.redundant = joints(self.names, weak)
+        if not self.redundant:
+            return
+        part = np.where(multipliers, np.random.default_rng(0).normal(size=weak.size), 0.0)
+        for _ in range(SHARPENED):      # one without force has, at random, part of every such one
+            part = np.where(multipliers, self.relaxed.unmoved(part), 0.0)
+        self.shared = joints(self.names, np.abs(part) > UNSHARED * np.abs(part).max())
+
+    def _check_mass(self, system: System) -> None:
+        """Refuse a motion that the constraints leave free and that has no mass."""
+        moving = ~multiplying(system)
+        probe = np.where(moving, np.random.default_rng(0).normal(size=moving.size), 0.0)
+        for _ in range(PROBES):
+            probe /= np.linalg.norm(probe)
+            probe = np.where(moving, self.relaxed.unmoved(probe), 0.0)
+            if not probe.any():
+                return
+        shape = self.relaxed.scale * probe / np.linalg.norm(probe)
+        if np.linalg.norm(probe) > HALF and shape @ (self.relaxed.matrix @ shape) < MASSLESS:
+            name = self.names[int(np.argmax(np.abs(probe)))]
+            raise InputError(f"the mass matrix is singular: {name} moves no mass; add mass or "
+                             "inertia there, fix it, or leave it out")
+
+
+def contradiction(system: System, state: State, numbering: Numbering) -> str:
+    """What a failed step cannot meet: constraints, or a force on something without mass."""
+    n = system.diagonal.size
+    left = np.abs(state.scale[:n] * (state.residual[:n] + state.constraint_residuals[:n]))
+    worst = int(np.argmax(left))
+    if not multiplying(system)[worst]:
+        return (f"a force acts on {numbering.names[worst]}, which moves no mass: add mass or "
+                "inertia there, or fix it")
+    parties = (left > SHARED * left.max()) & multiplying(system)
+    return (f"the constraints of {', '.join(joints(numbering.names, parties))} contradict each "
+            "other: no motion satisfies all of them; remove one, or give the drives motions that "
+            "the joints allow")
+
+
+def joints(names: list[str], chosen: NDArray) -> tuple[str, ...]:
+    """Names of the joints of some multipliers, (unknowns,) of bool, by the names of these."""
+    return tuple(dict.fromkeys(names[k].partition(" of ")[2] for k in np.flatnonzero(chosen)))
+
+
+def thin_parts(matrix: csc_matrix, system: System) -> NDArray:
+    """Sizes of the positions and rotations with nearly no inertia along an axis, zeros else."""
+    n = matrix.shape[0]
+    part, inertias = system.part[:n], system.inertias[:n]
+    blocks = np.tile(np.eye(3), (n, 1, 1))
+    entries = matrix.tocoo()
+    own = (part[entries.row] == part[entries.col]) & ~multiplying(system)[entries.row]
+    row, column, value = entries.row[own], entries.col[own], entries.data[own]
+    first = part[row]
+    diagonal = np.arange(n) - part
+    blocks[part, diagonal, diagonal] = 0.0
+    np.add.at(blocks, (first, row - first, column - first), value / inertias[first])
+    least = np.linalg.eigvalsh(blocks)[:, 0]
+    return np.where((least[part] < THIN) & ~multiplying(system), inertias, 0.0)
+
+
+def multiplying(system: System) -> NDArray:
+    """Which unknowns are multipliers, (n,) of bool."""
+    return system.is_multiplier[:system.diagonal.size] > 0.0

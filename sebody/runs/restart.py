@@ -1,0 +1,191 @@
+"""Save a run to a file and continue it later, bit for bit as if it had not been stopped."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.contract.layout import RECORD_T
+from sebody.engine.state import (
+    ADAPTIVE,
+    AHEAD,
+    CORNER,
+    CURRENT_STEP,
+    DUE,
+    EVALUATED,
+    FINEST,
+    GRID,
+    INSIDE,
+    JUMP,
+    LEVEL,
+    MEETS,
+    PHASE,
+    PIVOTED,
+    REASON,
+    REASONS,
+    RELAXED,
+    RESTART,
+    SECANT,
+    SOLVED,
+    SPLIT,
+    STEP,
+    TIME,
+    UNIT,
+    WANTED,
+    Scheme,
+    State,
+)
+from sebody.errors import InputError
+from sebody.files import check_target, replacing
+from sebody.files.arrays import json_of, opened
+from sebody.files.checksums import changed, checksums
+from sebody.files.members import Header, Member, Table
+from sebody.model.model import Model
+from sebody.runs.fingerprint import fingerprint
+from sebody.runs.simulation import MOST_STEPS, Simulation
+from sebody.runs.tolerance import Tolerance
+
+VERSION = 3
+TARGET = "restart file", (".npz",)      # see `files.check_target`
+SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
+OF_START = "relaxed", "massless", "inertias", "thin"    # of the system, found at the start
+REMEDY, REPEAT = "give one that was saved by sebody.analysis.save_state", "run the model again"
+OFF = 1e-6          # of a step, by which rounding may put a time off
+# largest values of counters; others count steps, of which no run has more than MOST_STEPS
+MOST = {PHASE: SOLVED, UNIT: FINEST, LEVEL: FINEST.bit_length(), WANTED: EVALUATED,
+        REASON: max(REASONS), PIVOTED: 1, ADAPTIVE: 1, SECANT: 1, RELAXED: 1,
+        MEETS: JUMP, SPLIT: 1, INSIDE: 1, RESTART: AHEAD, DUE: 1}
+FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old")
+
+
+def save_state(run: Simulation, path: str | Path) -> Path:
+    """Write the state of a simulation and what it has recorded to an npz file.
+
+    Raises
+    ------
+    InputError
+        A target that cannot be written, see `check_target`.
+    WriteError
+        Writing fails; an older file is unchanged.
+    """
+    path = check_target(path, *TARGET)
+    inputs.instance(run, "run", Simulation, "give a Simulation")
+    arrays = {field.name: getattr(run.state, field.name) for field in fields(State)}
+    arrays |= {name: getattr(run.system, name) for name in OF_START}
+    arrays["rows"] = np.concatenate(run.rows)
+    settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
+                "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
+                "model": fingerprint(run), "checksums": checksums(arrays)}
+    with replacing(path, TARGET[0]) as file:
+        np.savez(file, settings=json.dumps(settings), **arrays)
+    return path
+
+
+def resume(model: Model, path: str | Path) -> Simulation:
+    """The simulation of a file, to go on with `run_to`; `model` is built as it was.
+
+    Raises
+    ------
+    InputError
+        No such file, another kind of file, another model, or numbers that no run has.
+    """
+    file = f"{TARGET[0]} {path}"
+    with opened(path, TARGET[0], REMEDY, TARGET[1]) as reader:
+        settings = _settings(file, json_of(reader, "settings"), reader.headers)
+        run = _begun(file, model, settings)
+        table = Table(file, REPEAT, _members(run), {"width": run.rows[0].shape[1]})
+        try:
+            arrays = table.read(reader, others=["settings"])
+        except InputError as error:
+            same = reader.headers.keys() - {"settings"} == table.members.keys()
+            if same and " of shape " in str(error):
+                raise _other_model(file) from error
+            raise
+    _check_numbers(table, run, arrays)
+    if odd := changed(arrays, settings.get("checksums")):
+        raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+    for field in fields(State):
+        getattr(run.state, field.name)[...] = arrays[field.name]
+    for name in OF_START:
+        getattr(run.system, name)[:] = arrays[name]
+    run.rows = [arrays["rows"]]
+    run.seconds = settings["seconds"]
+    if run.state.control[PIVOTED]:
+        run.exchanges.factorize()
+    return run
+
+
+def _settings(file: str, settings: Any, headers: Mapping[str, Header]) -> dict:
+    """What the file says of the run, of a version and with the members that are read."""
+    if settings["version"] != VERSION:
+        raise InputError(f"{file} is of version {settings['version']}, this program writes "
+                         f"{VERSION}: {REPEAT}")
+    wanted = {"settings", *OF_START, "rows", *(field.name for field in fields(State))}
+    differing = SETTINGS - set(settings) | set(headers) ^ wanted
+    if differing:
+        raise InputError(f"{file} was written by another version of sebody (it differs in "
+                         f"{', '.join(sorted(differing))}): {REPEAT}")
+    return settings
+
+
+def _begun(file: str, model: Model, settings: dict) -> Simulation:
+    """A simulation with the settings of a file, at its start."""
+    inputs.instance(model, "model", Model, "give a sebody.Model")
+    for name, kind in (("scheme", list), ("model", str), ("tolerance", list | None)):
+        if not isinstance(settings[name], kind):
+            raise InputError(f"{file} has {inputs.shown(settings[name])} for its {name}: {REPEAT}")
+    inputs.number(settings["seconds"], f"{file}: seconds", least=0, remedy=REPEAT)
+    try:
+        tolerance = settings["tolerance"] and Tolerance(*settings["tolerance"])
+        run = Simulation(model, settings["h"], Scheme(*settings["scheme"]), settings["every"],
+                         tolerance)
+    except TypeError as error:      # too many numbers of the scheme or the tolerance, or too few
+        raise InputError(f"{file} has an unknown scheme {settings['scheme']} or tolerance "
+                         f"{settings['tolerance']}: {REPEAT}") from error
+    if settings["model"] != fingerprint(run):
+        raise _other_model(file)
+    return run
+
+
+def _other_model(file: str) -> InputError:
+    return InputError(f"{file} is of another model: build the one it was saved from, with the same "
+                      "bodies, joints and loads")
+
+
+def _members(run: Simulation) -> dict[str, Member]:
+    """What the members of a file of this run are; scratch memory may hold anything."""
+    found = {"rows": Member((None, "width")), "relaxed": Member((1,), "i", least=0),
+             "massless": Member((1,), "i", least=0)}
+    for name in ("inertias", "thin"):
+        found[name] = Member(getattr(run.system, name).shape, least=0)
+    for field in fields(State):
+        array = getattr(run.state, field.name)
+        found[field.name] = Member(array.shape, array.dtype.kind, finite=field.name in FINITE)
+    return found
+
+
+def _check_numbers(table: Table, run: Simulation, arrays: Mapping[str, NDArray]) -> None:
+    """Refuse counters and times that no run can have reached."""
+    control, clock, rows = arrays["control"], arrays["clock"], arrays["rows"]
+    for k, value in enumerate(control):
+        most = MOST.get(k, MOST_STEPS if k != CORNER else run.system.corners.size)
+        if not 0 <= value <= most:
+            raise table.fault(f"holds {value} in control at {k}, outside 0 to {most:g}")
+    for k in (TIME, STEP, CURRENT_STEP):
+        if not np.isfinite(clock[k]):
+            raise table.fault("holds numbers in clock that are not finite")
+    t, grid, h = rows[:, RECORD_T], control[GRID], run.h
+    reached = (grid + control[UNIT] / FINEST) * h
+    past = OFF * h if run.tolerance is None else np.inf     # variable steps go past the grid
+    if clock[STEP] != h or not reached - OFF * h <= clock[TIME] <= reached + past:
+        raise table.fault(f"holds the time {clock[TIME]:g} after {grid} steps of {clock[STEP]:g}")
+    if not 0.0 < clock[CURRENT_STEP] <= h + past:
+        raise table.fault(f"holds a step of {clock[CURRENT_STEP]:g} with an output grid of {h:g}")
+    if not len(t) or not (np.diff(t) > 0).all() or t[-1] > clock[TIME] + OFF * h:
+        raise table.fault("holds states that are not in the order of their times up to "
+                          f"{clock[TIME]:g}")

@@ -1,0 +1,235 @@
+"""A steady rotation of everything, and matrices of small motion in axes that rotate with it.
+
+In axes that rotate with the angular velocity W of the state, a position moves as x + xi, a rotation
+as R exp(theta). Then dv = xi' + W x xi, da = xi'' + 2 W x xi' + W x (W x xi), and with the material
+W of the node dOmega = theta' + W x theta, dA = theta'' + W x theta'. This holds for the ends of
+rigid links, too, whose xi follows from those of root and arms: so element matrices are summed for
+all coordinates, in global axes, combined, and only then reduced to the unknowns.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csc_matrix
+
+from sebody import inputs
+from sebody.assembly.numbering import coordinates
+from sebody.contract.layout import AT_FRAME, AT_POSITIONS
+from sebody.model.parts import Triplet
+from sebody.results.result import Result
+from sebody.runs.simulation import Simulation
+
+
+class Spin:
+    """A steady rotation of everything about the origin."""
+
+    def __init__(self, velocity: NDArray, planar: bool):
+        self.velocity, self.planar = velocity, planar
+
+    @classmethod
+    def of(cls, run: Simulation | Result, velocity: ArrayLike | None) -> "Spin":
+        """The spin a user gives, none by default.
+
+        Raises
+        ------
+        InputError
+            The wrong shape or no numbers.
+        """
+        planar = run.model.planar
+        if velocity is None:
+            velocity = 0.0 if planar else np.zeros(3)
+        return cls(np.array(inputs.number(velocity, "spin", remedy="give a number")) if planar else
+                   inputs.vector(velocity, "spin", 3, remedy="give three numbers"), planar)
+
+    def times(self, factor: float) -> "Spin":
+        """The spin multiplied by a factor."""
+        return Spin(factor * self.velocity, self.planar)
+
+    @property
+    def rotates(self) -> bool:
+        """Whether the angular velocity is not zero."""
+        return bool(np.any(self.velocity))
+
+    @property
+    def squared(self) -> float:
+        """Square of the angular velocity."""
+        return float(np.sum(self.velocity**2))
+
+    def move(self, run: Simulation) -> None:
+        """Set velocities and accelerations to those of the rotation, of fixed nodes, too."""
+        state = run.state
+        state.v[:], state.a[:] = 0.0, 0.0
+        if not self.rotates:
+            return
+        for triplet, at in _triplets(run):
+            if triplet.rotational:
+                state.v[at] = self.velocity if self.planar else _material(run, triplet, self)
+            else:
+                state.v[at] = self.across @ state.q[at]
+                state.a[at] = self.across @ state.v[at]
+
+    @property
+    def across(self) -> NDArray:
+        """The operator ``W x``."""
+        if self.planar:
+            return float(self.velocity) * np.array([[0.0, -1.0], [1.0, 0.0]])
+        return skew(self.velocity)
+
+    def operators(self, run: Simulation | Result) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
+        """Derivatives of velocity and acceleration by motion, and of acceleration by its rate.
+
+        Of all coordinates, in global axes.
+        """
+        velocity, place, rate = (_Blocks() for _ in range(3))
+        for triplet, at in _triplets(run):
+            if not triplet.rotational:
+                own = self.across
+                velocity.add(at, at, own)
+                place.add(at, at, own @ own)
+                rate.add(at, at, 2.0 * own)
+            elif not self.planar:
+                own = skew(_material(run, triplet, self))
+                velocity.add(at, at, own)
+                rate.add(at, at, own)
+        total = run.numbering.total
+        return tuple(one.matrix(total, total) for one in (velocity, place, rate))
+
+
+def motion(run: Simulation | Result) -> csc_matrix:
+    """Motion of all coordinates, in global axes, by that of the unknowns, in the axes of these.
+
+    Fixed and prescribed coordinates rest; the end of a rigid link moves as
+    ``xi = xi_root + sum_i R_i (theta_i x r_i)``.
+    """
+    numbering, blocks = run.numbering, _Blocks()
+    axes = _axes_of_positions(run)
+    ordinary = np.ones(numbering.free, dtype=bool)
+    for first, own in axes.items():
+        at = list(range(first, first + len(own)))
+        ordinary[at] = False
+        blocks.add(at, at, own)
+    ones = np.flatnonzero(ordinary)
+    blocks.add_entries(ones, ones, np.ones(len(ones)))
+    for triplet in numbering.dependent:
+        at, root = (coordinates(numbering, t) for t in (triplet, triplet.root))
+        if triplet.root.solved:
+            blocks.add(at, root, axes.get(root[0], np.eye(len(at))))
+        for rotation, arm in triplet.arms:
+            if rotation.solved:
+                blocks.add(at, coordinates(numbering, rotation), _lever(run, rotation, arm))
+    return blocks.matrix(numbering.total, numbering.free)
+
+
+def summed(run: Simulation | Result) -> csc_matrix:
+    """Sum of the element matrices of all coordinates, in global axes, as they are in `State.J`."""
+    system, state, blocks = run.system, run.state, _Blocks()
+    for b, (count, width, stride) in enumerate(zip(system.count, system.width, system.stride,
+                                                   strict=True)):
+        unknowns = system.g_unknown[system.at_g[b]:system.at_g[b + 1]].reshape(count, width)
+        J = state.J[system.at_J[b]:system.at_J[b + 1]].reshape(count, width, width).copy()
+        if b < system.first_joint[0]:       # superelements: in the axes of their frames
+            index = system.index[system.at_index[b]:system.at_index[b + 1]].reshape(count, stride)
+            frames = np.array([_frame(run, k) for k in index[:, AT_FRAME]])
+            d = frames.shape[1]
+            for first in range(0, d * index[0, AT_POSITIONS], d):
+                part = slice(first, first + d)
+                J[:, part] = frames @ J[:, part]
+                J[:, :, part] = J[:, :, part] @ frames.transpose(0, 2, 1)
+        rows, columns = np.broadcast_arrays(unknowns[:, :, None], unknowns[:, None, :])
+        blocks.add_entries(rows.ravel(), columns.ravel(), J.ravel())
+    return blocks.matrix(run.numbering.total, run.numbering.total)
+
+
+def of_levers(run: Simulation | Result, forces: NDArray) -> csc_matrix:
+    """Derivative of the moments of the forces at the ends of rigid links as their arms turn.
+
+    Parameters
+    ----------
+    forces : (coordinates,)
+        Sums of the element forces, in global axes.
+    """
+    numbering, blocks = run.numbering, _Blocks()
+    for triplet in numbering.dependent:
+        force = forces[coordinates(numbering, triplet)]
+        for rotation, arm in triplet.arms:
+            if not rotation.solved:
+                continue
+            at = coordinates(numbering, rotation)
+            if run.model.planar:
+                blocks.add(at, at, np.array([[-(_rotation(run, rotation) @ arm) @ force]]))
+            else:
+                blocks.add(at, at, skew(arm) @ skew(_rotation(run, rotation).T @ force))
+    return blocks.matrix(numbering.free, numbering.free)
+
+
+def skew(a: NDArray) -> NDArray:
+    """The operator ``a x``."""
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+class _Blocks:
+    """Entries of a sparse matrix; those at one place add up."""
+
+    def __init__(self) -> None:
+        self._rows: list[NDArray] = [np.zeros(0, dtype=int)]
+        self._columns: list[NDArray] = [np.zeros(0, dtype=int)]
+        self._values: list[NDArray] = [np.zeros(0)]
+
+    def add(self, rows: list[int], columns: list[int], values: NDArray) -> None:
+        """Add a block."""
+        row, column = np.broadcast_arrays(np.array(rows)[:, None], np.array(columns)[None])
+        self.add_entries(row.ravel(), column.ravel(), values.ravel())
+
+    def add_entries(self, rows: NDArray, columns: NDArray, values: NDArray) -> None:
+        """Add single entries."""
+        self._rows.append(rows)
+        self._columns.append(columns)
+        self._values.append(values)
+
+    def matrix(self, height: int, width: int) -> csc_matrix:
+        """All of them."""
+        values, rows, columns = (np.concatenate(one) for one in (
+            self._values, self._rows, self._columns))
+        return csc_matrix((values, (rows, columns)), shape=(height, width))
+
+
+def _triplets(run: Simulation | Result) -> list[tuple[Triplet, list[int]]]:
+    """Triplets of the model's nodes that are in it, with their coordinates."""
+    nodes = run.model.nodes.values()
+    triplets = {id(t): t for n in nodes for t in (n.position, n.rotation) if t is not None}
+    return [(t, coordinates(run.numbering, t)) for key, t in triplets.items()
+            if key in run.numbering.triplets]
+
+
+def _rotation(run: Simulation | Result, triplet: Triplet) -> NDArray:
+    if run.model.planar:
+        angle = run.state.q[run.numbering.triplets[id(triplet)]]
+        return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    k = run.numbering.rotations[id(triplet)]
+    return run.state.R[9 * k:9 * k + 9].reshape(3, 3)
+
+
+def _material(run: Simulation | Result, triplet: Triplet, spin: Spin) -> NDArray:
+    return _rotation(run, triplet).T @ spin.velocity
+
+
+def _lever(run: Simulation | Result, rotation: Triplet, arm: NDArray) -> NDArray:
+    """``R (theta x r)`` by theta."""
+    R = _rotation(run, rotation)
+    if run.model.planar:
+        x, y = R @ arm
+        return np.array([[-y], [x]])
+    return -R @ skew(arm)
+
+
+def _frame(run: Simulation | Result, k: int) -> NDArray:
+    """The frame of a superelement, (d, d)."""
+    frame = run.state.frames[9 * k:9 * k + 9].reshape(3, 3)
+    if run.model.planar:
+        c, s = frame[0, 0], frame[1, 0]
+        return np.array([[c, -s], [s, c]])
+    return frame
+
+
+def _axes_of_positions(run: Simulation | Result) -> dict[int, NDArray]:
+    """First unknown of every position that is not solved for in global axes -> its axes."""
+    return {int(first): _frame(run, k) for first, k in run.system.rotated}

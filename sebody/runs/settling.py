@@ -1,0 +1,190 @@
+"""Where a loaded structure comes to rest: by Newton's iteration, or by a motion to there.
+
+A cable that is slack, a chain or any other mechanism has no stiffness until it has moved to where
+its loads stretch it. It gets there in steps, each of which is the equilibrium of the loads and of
+springs to where the step began,
+
+    r(x) + rate W (x - x_0) = 0
+
+with the masses and the largest moments of inertia W: the proximal-point iteration for the least
+potential (R. T. Rockafellar, SIAM J. Control and Optimization 14, 1976, p. 877). The rate falls
+until the springs are soft beside the loads; then the steps are repeated until nothing is left of
+them, by a factor of about `LAST` in each.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix, diags
+
+from sebody.engine.evaluate import to_body_axes, update_rotations
+from sebody.errors import InputError
+from sebody.results import rotations
+from sebody.runs.kkt_solver import Scaled
+from sebody.runs.rotating_frame import Spin
+from sebody.runs.simulation import Simulation
+from sebody.runs.state_derivatives import rotating
+
+ITERATIONS = 25
+PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
+ROUNDED = 1e-13             # part of the forces of all elements that is rounding of their sums
+STEPS = 300                 # of a motion to rest
+FIRST, LAST = 10.0, 1e-4    # rate, by the square of that at which loads begin to move the structure
+SLOWEST, FASTEST = 1.5, 5.0  # factor by which the rate falls after a step that was found
+AGAIN = 4.0                 # factor by which it rises after one that was not
+ROUGH = 0.2                # tolerance of a step, by its length: the next one corrects it
+DRIFT = 1e3                 # of a step that gets no shorter, by the tolerance: what rounding moves
+FAR = 0.5                   # longest step and correction, in extents or radians
+FURTHEST = 100.0            # extents of the model that it may move until it is no structure
+
+
+class Springs(NamedTuple):
+    """Springs of all unknowns to where a step began."""
+
+    stiffness: NDArray      # (unknowns,) zeros at multipliers
+    q: NDArray
+    R: NDArray
+
+
+def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | None = None,
+            stiff: bool = False) -> bool:
+    """Newton's iteration with the exact tangent; False where it does not converge.
+
+    With springs it may end where a correction is `ROUGH` times what they are stretched by. Of
+    `stiff` structures none is asked that has motions without stiffness.
+    """
+    state, n = run.state, run.numbering.free
+    state.frames_old[:] = state.frames
+    far = FAR if np.any(run.system.magnitude[:n] > 0.0) else 1.0    # else of what it leads to
+    for _ in range(ITERATIONS):
+        try:
+            tangent, residual = _linear(run, spin, springs)
+        except InputError:              # too far: a state that no element can evaluate
+            return False
+        solver, correction = Scaled(tangent), np.zeros(run.numbering.total)
+        if stiff and not solver.regular:
+            return False
+        correction[:n] = _solution(run, solver, residual)
+        change = size(run, correction[:n])
+        if not np.isfinite(change) or change > far:     # perhaps to an unstable place
+            return False
+        to_body_axes(run.system, state.frames, correction, True)
+        state.R_old[:], state.dq[:] = state.R, -correction
+        state.q[:] -= correction
+        update_rotations(run.system, state)
+        if change < tolerance or springs and change < ROUGH * size(run, _displacement(
+                run, springs.q, springs.R)):
+            spin.move(run)
+            return True
+    return False
+
+
+def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
+    """Let the structure move to where it rests; False where it does not come to rest.
+
+    Parameters
+    ----------
+    near : bool
+        Whether it rests nearly where it is.
+    """
+    pace, start = _pace(run, spin), run.state.now.copy()
+    if not 0.0 < pace < np.inf:
+        return False
+    rate, faster = (LAST if near else FIRST) * pace, FASTEST
+    last = np.inf
+    for _ in range(STEPS):
+        kept, ending = run.state.now.copy(), rate <= LAST * pace
+        found = balance(run, tolerance, spin, _springs(run, rate))
+        moved = size(run, _moved(run, kept))
+        if not found or moved > FAR:
+            run.state.now[:] = kept
+            rate, faster = AGAIN * rate, max(np.sqrt(faster), SLOWEST)
+            if rate > pace / LAST:
+                return False
+            continue
+        if ending and (moved < tolerance or last / 2.0 < moved < DRIFT * tolerance):
+            return True
+        last = moved
+        if size(run, _moved(run, start)) > FURTHEST:
+            return False
+        rate, faster = max(rate / faster, LAST * pace), min(SLOWEST * faster, FASTEST)
+    return False
+
+
+def size(run: Simulation, change: NDArray) -> float:
+    """Size of a change of the unknowns, relative to magnitudes of positions and rotations.
+
+    Modes and multipliers have no magnitude. Where nothing has one, as in a body that is held at all
+    its nodes, the change is compared with what it leads to.
+    """
+    n = run.numbering.free
+    magnitude = run.system.magnitude[:n]
+    if np.any(magnitude > 0.0):
+        return float(np.abs(change[magnitude > 0.0] / magnitude[magnitude > 0.0]).max())
+    largest = np.abs(run.state.q[:n] - change).max()
+    return 0.0 if largest == 0.0 else float(np.abs(change).max() / largest)
+
+
+def _linear(run: Simulation, spin: Spin, springs: Springs | None) -> tuple[csc_matrix, NDArray]:
+    """Tangent and residual, with those of the springs."""
+    spin.move(run)
+    tangent, residual = rotating(run, spin)
+    if springs is None:
+        return tangent, residual
+    pull = springs.stiffness * _displacement(run, springs.q, springs.R)
+    return csc_matrix(tangent + diags(springs.stiffness)), residual + pull
+
+
+def _solution(run: Simulation, solver: Scaled, residual: NDArray) -> NDArray:
+    """Correction; motions without stiffness and load, such as the angle of a spin, are kept.
+
+    No numbers where a load acts on such a motion.
+    """
+    if solver.regular:
+        return solver.solve(residual)
+    answer, left = solver.least(residual)
+    n, sums = len(residual), np.zeros(run.numbering.total)
+    np.add.at(sums, run.system.g_unknown, np.abs(run.state.g))
+    forces = max(PUSH * np.abs(solver.scale * residual).max(),
+                 ROUNDED * np.abs(solver.scale * sums[:n]).max())
+    places = ROUNDED * run.system.magnitude[:n] / solver.scale      # by rounding of unknowns
+    return np.full(n, np.nan) if np.any(left > np.maximum(forces, places)) else answer
+
+
+def _springs(run: Simulation, rate: float) -> Springs:
+    n = run.numbering.free
+    moving = run.system.is_multiplier[:n] == 0.0
+    return Springs(np.where(moving, rate * run.system.inertias[:n], 0.0), run.state.q.copy(),
+                   run.state.R.copy())
+
+
+def _moved(run: Simulation, before: NDArray) -> NDArray:
+    """Displacement of the unknowns since a state, (unknowns,)."""
+    parts = run.state.recorded_parts
+    return _displacement(run, before[parts["q"]], before[parts["R"]])
+
+
+def _displacement(run: Simulation, q: NDArray, R: NDArray) -> NDArray:
+    """From a configuration to the present one, (unknowns,): rotation vectors, else differences.
+
+    In the axes of the unknowns.
+    """
+    state, n = run.state, run.numbering.free
+    found = state.q - q
+    if len(R):
+        relative = np.swapaxes(R.reshape(-1, 3, 3), 1, 2) @ state.R.reshape(-1, 3, 3)
+        at = run.system.rotation_at[:, None] + np.arange(3)
+        found[at] = rotations.vectors(relative)
+    found *= run.system.is_multiplier[:found.size] == 0.0
+    to_body_axes(run.system, state.frames, found, False)
+    return found[:n]
+
+
+def _pace(run: Simulation, spin: Spin) -> float:
+    """Square of the rate at which the loads begin to move the structure [1/time^2]."""
+    unit = _springs(run, 1.0).stiffness
+    tangent, residual = _linear(run, spin, None)
+    alone = diags((unit > 0.0).astype(float))
+    inert = tangent - alone @ tangent @ alone + diags(unit)
+    return size(run, _solution(run, Scaled(csc_matrix(inert)), residual))

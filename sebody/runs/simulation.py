@@ -1,0 +1,313 @@
+"""Simulations: a consistent initial state, then calls of the compiled loop."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs, memory
+from sebody.assembly.allocation import allocate
+from sebody.assembly.build import build
+from sebody.assembly.numbering import placed, rotational
+from sebody.engine.loop import advance
+from sebody.engine.routines import addresses
+from sebody.engine.state import (
+    ADAPTIVE,
+    CHOSEN,
+    CHUNK,
+    CURRENT_STEP,
+    DONE,
+    FAILED,
+    GRID,
+    LARGEST_ERROR,
+    MATRICES,
+    REASON,
+    REASONS,
+    RECORDED,
+    TIME,
+    Record,
+    Scheme,
+)
+from sebody.engine.step import write_record
+from sebody.errors import InputError, Interrupted, SimulationError
+from sebody.limits.watch import Watch
+from sebody.model.model import Model
+from sebody.model.tables import summary
+from sebody.results.recording import Start
+from sebody.results.result import Result
+from sebody.runs import user_faults
+from sebody.runs.failures import explained
+from sebody.runs.first_run import prepare
+from sebody.runs.given_start import take
+from sebody.runs.initial_state import begin
+from sebody.runs.initial_velocities import refuse_contradicted
+from sebody.runs.progress import showing
+from sebody.runs.pulses import unseen, untold
+from sebody.runs.row_exchanges import RowExchanges
+from sebody.runs.schemes import checked, generalized_alpha
+from sebody.runs.start_remarks import start_remarks
+from sebody.runs.tolerance import UNSIZED, Tolerance, given
+
+FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerated at the start
+LOOK = 0.2              # seconds in the loop until it returns to Python, which sees Ctrl-C then
+FIRST_CHUNK = 1         # steps before the first return
+GROWTH = 8.0            # largest factor from one chunk of steps to the next
+OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's
+MOST_STEPS = 1e12       # of a run: weeks, at a microsecond each
+
+
+class Simulation:
+    """A run that is computed piece by piece: ``run_to(t)`` as often as wanted.
+
+    Parameters
+    ----------
+    model : Model
+    h : float
+        Time step, also the output grid [time].
+    scheme : Scheme, optional
+        `generalized_alpha` with rho 0.9 by default.
+    output_every : int
+        Keep every so many steps.
+    tolerance : Tolerance, optional
+        Allowed error of a step. With a tolerance, step lengths are chosen, steps end at corners of
+        load tables, and `h` is only the output grid, on which the state is interpolated. Errors of
+        many steps add up: see `simulate_within` for the error of the whole run.
+    start : Result, optional
+        State to start from in place of the model as built: of an `equilibrium`, at which nothing
+        rings, or the end of a run. Initial velocities that the model gives stay.
+
+    Attributes
+    ----------
+    begun : Result or None
+        The state that was given to start from.
+    start : Start
+        Initial velocities that were solved for, redundant constraints.
+
+    Raises
+    ------
+    InputError
+        Bad step or tolerance, functions that read what has changed since they were compiled,
+        singular mass, contradicting constraints, an initial state that
+        violates them, or variable steps with constraints of index 3.
+    """
+
+    def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
+                 output_every: int = 1, tolerance: Tolerance | None = None,
+                 start: Result | None = None):
+        self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
+        self.h = inputs.number(h, "the time step", above=0)
+        self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
+                                    remedy="give a whole number of steps >= 1")
+        if scheme is not None:
+            checked(scheme)
+        tolerance = given(tolerance)
+        user_faults.refuse_changed(model)
+        prepare([model])
+        self.system, self.numbering = build(model)
+        self.scheme = self._fitting(scheme, tolerance is not None)
+        self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
+        self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
+        self.rows: list[NDArray] = []       # recorded states, stretch by stretch
+        self.watch = Watch()
+        self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
+        self.seconds = 0.0
+        self.failure = ""
+        self.exchanges = RowExchanges(self.system, self.state)
+        user_faults.forget(model)
+        self.begun = start
+        if start is not None:
+            take(model, self.numbering, self.state, start)
+        self.start: Start = begin(model, self.system, self.numbering, self.state)
+        refuse_contradicted(model, self.numbering, self.state)
+        if start is None:
+            for key, message in start_remarks(model, self.numbering, self.state).items():
+                self.watch.say(key, message)
+        self.tolerance = tolerance
+        self._accelerate()
+        if tolerance is not None:
+            self._choose_steps(tolerance)
+        first = Record.of(self.state, 1, self.every)
+        self.state.control[RECORDED] = 0
+        write_record(self.state, first)
+        self.rows.append(first.rows)
+
+    def __repr__(self) -> str:
+        return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
+                f"{self.h:.6g}, t = {self.time:.6g}>")
+
+    @property
+    def time(self) -> float:
+        """Time reached."""
+        return float(self.state.clock[TIME])
+
+    def run_to(self, t_end: float,
+               progress: Callable[[float], None] | bool | None = None) -> Simulation:
+        """Advance to the grid step nearest to `t_end`.
+
+        Parameters
+        ----------
+        progress : callable or bool, optional
+            Called several times a second with the part of the run that is done. What it raises
+            stops the run between two steps; a later call goes on from there. True shows a bar on
+            a terminal or in a notebook once the run takes longer than a second.
+
+        Raises
+        ------
+        InputError
+            A time that is past, or a function of a load or drive that reads a value which has
+            changed since it was compiled.
+        SimulationError
+            When a step does not converge however small; what was computed is kept, also in the
+            error's `result`.
+        Interrupted
+            Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
+        """
+        user_faults.refuse_changed(self.model)
+        last = self._last_step(t_end)
+        if abs(t_end / self.h - last) > OFF_GRID:
+            self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "
+                           f"the run ends at t = {last * self.h:.9g}")
+        if self.state.control[ADAPTIVE] == 0:
+            for name, message in unseen(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"peak {name}", message)
+            for name, message in untold(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"jump {name}", message)
+        record = self._room(last)
+        self.state.control[RECORDED] = 0
+        code = CHUNK
+        try:
+            with showing(progress, t_end) as show:
+                code = self._advance(record, last, t_end, show)
+        except KeyboardInterrupt:
+            pass                        # the rows come first
+        finally:
+            self.rows.append(record.rows[:self.state.control[RECORDED]])
+        self.watch.look(self.model, self.numbering, self.rows[-1])
+        if code == FAILED:
+            self.failure = explained(self.model, self.system, self.state, self.numbering)
+            raise SimulationError(self.failure, self.result())
+        if code != DONE:
+            result = self.result()
+            result.failure = f"interrupted at t = {self.time:.6g}: results up to this time are kept"
+            raise Interrupted(result.failure, result)
+        return self
+
+    def _last_step(self, t_end: float) -> int:
+        """The grid step nearest to a time.
+
+        Raises
+        ------
+        InputError
+            A time that is past, less than half a step away, or too many steps away.
+        """
+        past = f"cannot run to t = {inputs.shown(t_end)} from t = {self.time}: give a later time"
+        t_end = inputs.number(t_end, "t_end", remedy=past)
+        steps = t_end / self.h
+        if steps > MOST_STEPS:
+            raise InputError(f"t_end is {t_end:g}: that is {steps:.3g} steps of {self.h:g}, give "
+                             "an earlier time or a longer step")
+        if round(steps) < self.state.control[GRID]:
+            raise InputError(past)
+        there = abs(t_end - self.time) <= OFF_GRID * min(self.h, max(t_end, self.time))
+        if round(steps) == self.state.control[GRID] and not there:
+            raise InputError(f"cannot run to t_end = {t_end:g} from t = {self.time:g}: the step is "
+                             f"{self.h:g}; give a later time or a smaller step (the step comes "
+                             "first)")
+        return round(steps)
+
+    def _room(self, last: int) -> Record:
+        """An empty record for the states up to a step of the grid."""
+        count = last // self.every - int(self.state.control[GRID]) // self.every
+        memory.check(8.0 * count * self.state.now.size, f"a record of {count} states",
+                     "keep fewer with output_every, or give an earlier t_end")
+        return Record.of(self.state, count, self.every)
+
+    def _advance(self, record: Record, last: int, t_end: float,
+                 progress: Callable[[float], None] | None) -> int:
+        """Call the loop until it is done or fails, in chunks of steps that take about `LOOK`."""
+        code, chunk, looked = CHUNK, FIRST_CHUNK, time.perf_counter()
+        while code not in (DONE, FAILED):
+            began = time.perf_counter()
+            self.exchanges.serve()
+            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
+            now = time.perf_counter()
+            self.seconds += now - began
+            waited = max(now - looked, 1e-9)
+            if code in (CHUNK, DONE):
+                chunk = max(1, int(chunk * min(GROWTH, LOOK / waited)))
+                if progress:
+                    progress(1.0 if code == DONE else min(self.time / t_end, 1.0))
+                looked = time.perf_counter()
+            elif waited > LOOK:         # steps that Python helps with are not counted: stop at
+                chunk = 0               # the beginning of the next one
+        return code
+
+    def result(self) -> Result:
+        """The results computed so far."""
+        found = Result(self.model, self.numbering, self.system, self.state,
+                       np.concatenate(self.rows), self.seconds, self.failure, self.start)
+        found.warnings = (self.watch.judge(found) if found.steps else
+                          tuple(self.watch.messages))
+        return found
+
+    def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
+        """The given scheme, or by default one that suits the steps and the constraints."""
+        constrained = bool(self.numbering.multipliers)
+        if scheme is None:
+            return _default(2 if constrained and variable else 3)
+        if variable and constrained and not scheme.stabilized:
+            raise InputError("with constraints of index 3 errors grow where the step changes: give "
+                             "generalized_alpha(index=2), or a fixed step")
+        return scheme if constrained else scheme._replace(stabilized=False)
+
+    def _choose_steps(self, tolerance: Tolerance) -> None:
+        """Switch on variable steps; the first step is short against the accelerations."""
+        n, state = self.numbering.free, self.state
+        own = np.flatnonzero(placed(self.model, self.numbering)[:n])
+        sizes = self.system.magnitude[own]
+        if tolerance.position == 0.0 and not np.all(sizes):
+            self.watch.say("unsized", UNSIZED)
+        state.error_weights[own] = 1.0 / tolerance.allowed(
+            sizes, rotational(self.model, self.numbering)[own])
+        bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
+        state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
+        state.clock[LARGEST_ERROR] = 0.0
+        state.control[ADAPTIVE] = 1
+
+    def _accelerate(self) -> None:
+        """Solve for the accelerations and multipliers of the start, by the loop without a step.
+
+        So the loop is compiled, or read from the cache, before time is measured.
+        """
+        state, code = self.state, CHUNK
+        self.system.routines[:] = addresses(self.system, state)
+        if self.tolerance is not None:
+            state.clock[CURRENT_STEP] = FIRST_STEP * self.h     # so far ahead it looks
+        none = Record.of(state, 0, self.every)
+        while code not in (DONE, FAILED):
+            self.exchanges.serve()
+            code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
+        if code == FAILED:
+            raise InputError("the initial state has no accelerations: "
+                             f"{REASONS[int(state.control[REASON])]}; check the loads and the "
+                             "joints at t = 0")
+        state.control[MATRICES] = 0
+        state.aux_old[:] = state.aux
+
+
+@cache
+def _default(index: int) -> Scheme:
+    """The scheme of constraints of an index, with its checks made once."""
+    return generalized_alpha(index=index)
+
+
+def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
+             output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
+             tolerance: Tolerance | None = None, start: Result | None = None) -> Result:
+    """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
+    run = Simulation(model, h, scheme, output_every, tolerance, start)
+    return run.run_to(t_end, progress).result()

@@ -1,0 +1,49 @@
+"""Exact derivatives of the forces in a state of a run, in axes at rest or that rotate."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+
+from sebody.assembly.evaluation import matrix
+from sebody.engine.evaluate import to_body_axes
+from sebody.engine.state import EVALUATED, WANTED
+from sebody.results.result import Result
+from sebody.runs.rotating_frame import Spin, motion, of_levers, summed
+from sebody.runs.simulation import Simulation
+
+
+def derivative(run: Simulation | Result, mass: float, damping: float,
+               stiffness: float) -> csc_matrix:
+    """Weighted sum of the exact derivatives, in body axes.
+
+    Weights are those of the derivatives with respect to accelerations, velocities, and positions
+    and rotations. Constraints go with the last.
+    """
+    state = run.state
+    state.control[WANTED] = EVALUATED     # a run that goes on needs its own matrix again
+    state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
+    return matrix(run.system, state, "the state", mass=mass, damping=damping,
+                  stiffness=stiffness, constraint=stiffness)
+
+
+def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
+    """Tangent stiffness in axes that rotate with the spin, and the residual."""
+    stiffness = turning(run, spin)[2] if spin.rotates else derivative(run, 0.0, 0.0, 1.0)
+    residual = run.state.residual.copy()
+    to_body_axes(run.system, run.state.frames, residual, False)
+    return csc_matrix(stiffness), residual[:run.numbering.free]
+
+
+def turning(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
+    """Mass, damping and stiffness in axes that rotate with the spin; see `rotating_frame`."""
+    mass, damping, stiffness = (weighted(run, *weights) for weights in np.eye(3))
+    velocity, place, rate = spin.operators(run)
+    G = motion(run)
+    return (G.T @ mass @ G, G.T @ (damping + mass @ rate) @ G,
+            G.T @ (stiffness + damping @ velocity + mass @ place) @ G
+            + of_levers(run, run.state.residual))
+
+
+def weighted(run: Simulation | Result, *weights: float) -> csc_matrix:
+    derivative(run, *weights)
+    return summed(run)

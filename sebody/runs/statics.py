@@ -1,0 +1,101 @@
+"""Static equilibrium under loads applied in steps, also in a steadily rotating frame."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sebody import inputs, memory
+from sebody.contract.layout import FIELD, RECORD_T
+from sebody.engine.evaluate import set_loads
+from sebody.errors import SimulationError
+from sebody.model.model import Model
+from sebody.results.result import Result
+from sebody.runs import user_faults
+from sebody.runs.folding import Tensions
+from sebody.runs.rotating_frame import Spin
+from sebody.runs.settling import balance, settle
+from sebody.runs.simulation import Simulation
+
+SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
+
+
+def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = 1e-11,
+                spin: ArrayLike | None = None) -> Result:
+    """Equilibrium under gravity and the loads of a time, applied in equal steps.
+
+    Parameters
+    ----------
+    steps : int
+        Load steps; divided where Newton's iteration does not converge.
+    t : float
+        Time at which the time functions of the loads are evaluated [time].
+    tolerance : float
+        Of the last correction, relative to the model's characteristic length or in radians.
+    spin : (3,) array_like or float, optional
+        Angular velocity of a frame about the origin in which everything rests, fixed nodes,
+        supports and loads included [1/time]; a number in a plane.
+
+    Returns
+    -------
+    Result
+        One row a load step; its time is the share of the load, from 0 to 1. Velocities and
+        accelerations are those of the rotation.
+
+    Raises
+    ------
+    InputError
+        Not a positive number of steps, a spin of the wrong shape.
+    SimulationError
+        No equilibrium is found, or one that only the model has, in which bodies without geometric
+        stiffening fold up under tension; what was found before is in its `result`.
+    """
+    steps = inputs.integer(steps, "steps", least=1)
+    t = inputs.number(t, "t")
+    tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
+    run = Simulation(model, 1.0)
+    memory.check(8.0 * steps * run.state.now.size, f"steps is {steps}: the record of all",
+                 "give fewer")
+    state, field = run.state, run.state.coefficients[FIELD:].copy()
+    steady = Spin.of(run, spin)
+    state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
+    state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
+    set_loads(run.system, state.loads, t)
+    loads = state.loads.copy()
+    run.rows = [state.now[None].copy()]
+    tensions = Tensions.of(run)
+    share, step, slack = 0.0, 1.0 / steps, False
+    while share < 1.0 - 1e-12:
+        kept = state.now.copy()
+        target = min(share + step, 1.0)
+        state.loads[:], state.coefficients[FIELD:] = target * loads, target * field
+        spinning = steady.times(np.sqrt(target))
+        found = balance(run, tolerance, spinning, stiff=slack)
+        if not found and (slack or steady.rotates or share == 0.0 and step == 1.0 / steps):
+            # nothing may hold it at the start, and motions of one that spins may have no stiffness
+            state.now[:] = kept
+            found = settle(run, tolerance, spinning, near=slack)
+            slack |= found and not steady.rotates
+        if found:
+            if not steady.rotates and (folded := tensions.spurious(run)):
+                state.now[:] = kept
+                raise SimulationError(f"the equilibrium at {target:.4g} of the load {folded}",
+                                      _result(run))
+            share = target
+            state.now[RECORD_T] = share
+            run.rows.append(state.now[None].copy())
+            continue
+        state.now[:] = kept
+        step /= 2
+        if step < SMALLEST:
+            reason = user_faults.fault(model, -np.inf) or tensions.reason(run) or (
+                "the structure may buckle, or a mechanism may be free to move; use more steps or "
+                "supports")
+            raise SimulationError(f"no equilibrium was found above {share:.4g} of the load: "
+                                  f"{reason}", _result(run))
+    return _result(run)
+
+
+def _result(run: Simulation) -> Result:
+    run.watch.look(run.model, run.numbering, np.concatenate(run.rows))
+    return run.result()

@@ -1,0 +1,1 @@
+"""Small motion about a state: linearization, vibrations, frequency responses, Campbell."""

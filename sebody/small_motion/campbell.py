@@ -1,0 +1,124 @@
+"""Frequencies and real parts of eigenvalues of small motion over the speed of a steady rotation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody import inputs, tabular
+from sebody.errors import InputError
+from sebody.model.model import Model
+from sebody.pictures.frequency_pictures import save_campbell
+from sebody.runs.statics import equilibrium
+from sebody.small_motion.linearization import Modes, modes
+
+
+@dataclass(frozen=True, eq=False)
+class Campbell:
+    """Modes over speed, each column one that is followed by its shape; see `campbell`.
+
+    Attributes
+    ----------
+    speeds : (m,)
+        Angular velocities [1/time].
+    omega : (m, count)
+        Angular frequencies in axes that rotate with the model [1/time].
+    growth : (m, count)
+        Real parts of the eigenvalues, negative where the motion decays [1/time].
+    """
+
+    speeds: NDArray
+    omega: NDArray
+    growth: NDArray
+
+    def __repr__(self) -> str:
+        return tabular.text(*self._table())
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return tabular.titled(*self._table())
+
+    def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
+        first, last = (f"{speed:.6g}" for speed in (self.speeds[0], self.speeds[-1]))
+        title = (f"{self.omega.shape[1]} modes at {len(self.speeds)} speeds from {first} to {last} "
+                 "rad/s")
+        heads = "mode", f"[Hz] at {first} rad/s", f"[Hz] at {last} rad/s", "largest real part [1/s]"
+        hertz = self.omega / (2 * np.pi)
+        return title, heads, [
+            (str(k + 1), f"{hertz[0, k]:.6g}", f"{hertz[-1, k]:.6g}", f"{growth.max():.4g}")
+            for k, growth in enumerate(self.growth.T)]
+
+    def save_picture(self, path: str | Path) -> Path:
+        """Draw frequencies and real parts of eigenvalues over the speed: png, pdf or svg.
+
+        Raises
+        ------
+        InputError
+            A picture that cannot be made.
+        """
+        return save_campbell(path, self.speeds, self.omega, self.growth)
+
+
+def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, count: int = 8,
+             steps: int = 4) -> Campbell:
+    """Campbell diagram of a model that rotates steadily about the origin, supports included.
+
+    At every speed the equilibrium in the rotating axes is found, and the modes about it. Whirls
+    of a rotor seen from fixed axes differ by the speed: they are at ``|omega -+ speed|``.
+
+    Parameters
+    ----------
+    model : Model
+    speeds : (m,)
+        Angular velocities, at least two, ascending [1/time].
+    axis : (3,), optional
+        Axis of rotation in space; none in a plane.
+    count : int
+        Lowest modes at the first speed to follow.
+    steps : int
+        Load steps of each equilibrium.
+
+    Raises
+    ------
+    InputError
+        Speeds that do not ascend, no axis, or fewer modes than `count`.
+    SimulationError
+        A speed without an equilibrium.
+    """
+    inputs.instance(model, "model", Model, "give a Model")
+    speeds = inputs.vector(speeds, "speeds")
+    if len(speeds) < 2 or not np.all(np.diff(speeds) > 0):
+        raise InputError("speeds must ascend, at least two of them: give them in order")
+    count = inputs.integer(count, "count", least=1)
+    if model.planar:
+        spins = speeds
+    elif axis is None:
+        raise InputError("in space a Campbell diagram needs axis=, three numbers")
+    else:
+        direction = inputs.vector(axis, "axis", 3)
+        length = np.linalg.norm(direction)
+        if not length > 0.0:
+            raise InputError("axis has no length: give its direction")
+        spins = speeds[:, None] * (direction / length)
+    found: list[Modes] = [modes(equilibrium(model, steps, spin=spin), spin) for spin in spins]
+    if len(found[0].values) < count:
+        raise InputError(f"count is {count}, but there are {len(found[0].values)} modes: ask for "
+                         "fewer")
+    chosen = [np.arange(count)]
+    for last, now in zip(found, found[1:], strict=False):
+        chosen.append(_followed(last, chosen[-1], now))
+    values = np.array([one.values[own] for one, own in zip(found, chosen, strict=True)])
+    return Campbell(speeds, values.imag, values.real)
+
+
+def _followed(last: Modes, own: NDArray, now: Modes) -> NDArray:
+    """The modes most like those of the last speed, by shape and by value."""
+    from scipy.optimize import linear_sum_assignment  # takes 0.1 s to import
+
+    likeness = np.abs(last.shapes[:, own].conj().T @ now.shapes)**2
+    scale = np.abs(last.values[own]).max()
+    change = np.abs(last.values[own][:, None] - now.values[None]) / max(scale, 1e-300)
+    return linear_sum_assignment(1.0 - likeness + change)[1]

@@ -1,0 +1,198 @@
+"""Small motion about a state, at rest or in steady rotation: exact matrices and eigenvalues."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import LinAlgError, eigh, null_space
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.limits.watch import Watch
+from sebody.results.result import Result
+from sebody.runs import user_faults
+from sebody.runs.rotating_frame import Spin
+from sebody.runs.simulation import Simulation
+from sebody.runs.state_derivatives import derivative, turning
+from sebody.small_motion import mode_tables
+from sebody.small_motion.eigenvalues import eigenvalues
+from sebody.small_motion.shapes import Shapes
+from sebody.tabular import brief
+
+
+def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray, NDArray]:
+    """Mass, damping and stiffness of all unknowns, multipliers included, in their own axes.
+
+    Raises
+    ------
+    InputError
+        A state that cannot be evaluated.
+    """
+    if run.system is None:
+        raise InputError("the result was read from a file, which holds no compiled functions: give "
+                         "that of a run or of an equilibrium")
+    watch = run.watch if isinstance(run, Simulation) else Watch()
+    watch.look(run.model, run.numbering, run.state.now[None].copy())
+    user_faults.forget(run.model)
+    matrices = (turning(run, spin) if spin.rotates else
+                tuple(derivative(run, *weights) for weights in np.eye(3)))
+    M, C, K = (A.toarray() for A in matrices)
+    if not all(np.isfinite(A).all() for A in (K, C, M)):
+        did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
+        raise InputError(f"the state cannot be evaluated: {did}")
+    return M, C, K
+
+
+class Linearization(NamedTuple):
+    """``mass xi'' + damping xi' + stiffness xi = 0`` for motion ``free @ xi`` of the unknowns.
+
+    The columns of `free` are an orthonormal basis of what the constraints allow.
+    """
+
+    mass: NDArray
+    damping: NDArray
+    stiffness: NDArray
+    free: NDArray
+
+    __repr__ = brief
+
+
+def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linearization:
+    """Matrices of small motion about the state a run, or an equilibrium, has reached.
+
+    Parameters
+    ----------
+    spin : (3,) array_like or float, optional
+        Angular velocity of the axes the motion is described in: that of a steady rotation.
+        Without one, the matrices of a moving state are those of the instant.
+
+    Raises
+    ------
+    InputError
+        A state that cannot be evaluated, or a wrong spin.
+    """
+    inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
+                    "of an equilibrium")
+    M, C, K = small_motion(run, Spin.of(run, spin))
+    n = len(K)
+    multipliers = np.flatnonzero(run.system.is_multiplier[:n])
+    moving = np.setdiff1d(np.arange(n), multipliers)
+    basis = null_space(K[np.ix_(multipliers, moving)]) if multipliers.size else np.eye(len(moving))
+    free = np.zeros((n, basis.shape[1]))
+    free[moving] = basis
+    return Linearization(*(free.T @ A @ free for A in (M, C, K)), free)
+
+
+class Vibrations(NamedTuple):
+    """Small undamped vibrations."""
+
+    omega: NDArray      # (m,) angular frequencies, ascending [1/time]
+    shapes: NDArray     # (unknowns, m) mass-normalised, in the axes of the unknowns
+    of_names: Shapes
+
+    def __repr__(self) -> str:
+        return mode_tables.text(f"{len(self.omega)} undamped vibrations", 1j * self.omega)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return mode_tables.html(f"{len(self.omega)} undamped vibrations", 1j * self.omega)
+
+    @property
+    def frequency(self) -> NDArray:
+        """Frequencies, (m,), in cycles per unit of time: Hz where it is the second."""
+        return self.omega / (2 * np.pi)
+
+    def shape(self, name: str) -> NDArray:
+        """Part of all shapes, (size, m): ``shape("tip.position")`` in global axes.
+
+        Of ``<node>.position`` the displacement, of ``<node>.rotation`` the small rotation about
+        global axes, of ``<superelement>.modes`` the amplitudes.
+
+        Raises
+        ------
+        InputError
+            A name that nothing has.
+        """
+        return self.of_names.of(name, self.shapes)
+
+
+def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations:
+    """Undamped vibrations about the state of a simulation at rest, constraints included.
+
+    Raises
+    ------
+    InputError
+        The state moves, or is not stable: a square of a frequency is negative.
+    """
+    if count is not None:
+        count = inputs.integer(count, "count", least=1)
+    inputs.instance(run, "run", Simulation | Result, "give a Simulation or a Result")
+    if np.abs(run.state.v).max() > 0:
+        raise InputError("the state is not at rest: vibrations() needs a state at rest, use modes()"
+                         " for moving states")
+    M, _, K, free = linearize(run)
+    try:
+        squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
+    except LinAlgError as error:
+        raise InputError("the model has motions without mass, which have no frequency: give every "
+                         "rotation inertia, or use modes") from error
+    if squares[0] < -100 * np.finfo(float).eps * squares[-1]:
+        raise InputError("the state is not stable: the lowest squared frequency is negative, "
+                         f"{squares[0]:.4g}")
+    return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count], free @ shapes[:, :count],
+                      Shapes(run))
+
+
+class Modes(NamedTuple):
+    """Small damped or gyroscopic motion ``shape exp(value t)``, one of each conjugate pair."""
+
+    values: NDArray     # (m,) complex, by ascending frequency [1/time]
+    shapes: NDArray     # (unknowns, m) complex, of unit length
+    of_names: Shapes
+    rounding: NDArray   # (m,) how far rounding may move the values [1/time]
+
+    def __repr__(self) -> str:
+        return mode_tables.text(f"{len(self.values)} modes of small motion", self.values)
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        return mode_tables.html(f"{len(self.values)} modes of small motion", self.values)
+
+    @property
+    def frequency(self) -> NDArray:
+        """Frequencies, (m,), in cycles per unit of time: Hz where it is the second."""
+        return mode_tables.frequencies(self.values)
+
+    @property
+    def damping(self) -> NDArray:
+        """Damping over critical damping, (m,); NaN of rigid motions."""
+        return mode_tables.damping_ratios(self.values)
+
+    def shape(self, name: str) -> NDArray:
+        """Part of all shapes, (size, m): see `Vibrations.shape`."""
+        return self.of_names.of(name, self.shapes)
+
+    @property
+    def omega(self) -> NDArray:
+        """Angular frequencies [1/time]."""
+        return self.values.imag
+
+    @property
+    def growth(self) -> NDArray:
+        """Real parts of the eigenvalues, negative where the motion decays [1/time]."""
+        return self.values.real
+
+
+def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
+    """Eigenvalues and shapes about a state, from the exact tangents; see `linearize`.
+
+    Where nothing takes or gives energy, as in undamped gyroscopic motion, and the stiffness is
+    positive, growth is zero by construction. Otherwise a growth below `Modes.rounding` is none.
+    """
+    M, C, K, free = linearize(run, spin)
+    found = eigenvalues(M, C, K)
+    shapes = free @ found.shapes
+    return Modes(found.values, shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
+                 Shapes(run), found.rounding)

@@ -1,1 +1,0 @@
-"""Studies over scenes and kernels: bench, chart, atlas, check."""

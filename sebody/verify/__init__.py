@@ -1,0 +1,1 @@
+"""What confirms this package: kernels against differences, known limits, measurements."""

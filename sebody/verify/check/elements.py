@@ -1,0 +1,172 @@
+"""Criteria of joints, rigid bodies, loads, springs and drives."""
+
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from sebody.contract.layout import (
+    ACCELERATION,
+    ENERGY,
+    KINETIC,
+    MOMENTUM,
+    POTENTIAL,
+    POWERS,
+    RESIDUAL,
+    STRAIN,
+    TANGENT,
+    VELOCITY,
+    Row,
+)
+from sebody.verify.check.states import (
+    LIMIT,
+    STATES,
+    Case,
+    CheckRow,
+    along_path,
+    derivative,
+    difference,
+    evaluate,
+    gradient,
+    index_row,
+    momenta,
+    tangent_mass,
+    tangent_rate,
+)
+
+TURNED = 2.0 * np.pi    # angle that an element keeps: it has turned once
+AMPLITUDES = np.array([0.7, 0.3, -0.4])     # of a load or drive, with its rates
+
+
+def element_case(module: ModuleType, seed: int) -> Case:
+    """A generic state: rotations of a radian, less than half a turn against each other."""
+    random = np.random.default_rng(seed)
+    n, nrot = module.WIDTH, module.N_ROTATIONS
+    base = Rotation.from_rotvec(random.normal(size=3))
+    R = np.array([(base * Rotation.from_rotvec(0.5 * r)).as_matrix()
+                  for r in random.normal(size=(nrot, 3))])
+    q = random.normal(size=n)
+    size = Row(module.__name__, module.CONSTANTS).size({})
+    return Case(module, n, index_row(n, module.N_POSITIONS, nrot),
+                1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
+                random.normal(size=n), random.normal(size=n), np.full(9, TURNED), np.zeros(9),
+                random.normal(size=3), AMPLITUDES)
+
+
+def joint_force(case: Case) -> float:
+    """Force against the gradient of ``lambda . phi``."""
+    m = case.module.MULTIPLIERS
+    lam = case.q[case.n - m:]
+    exact = gradient(case, lambda c: lam @ evaluate(c, RESIDUAL)[0][case.n - m:], 0.02)
+    return difference(evaluate(case, RESIDUAL)[0][:case.n - m], exact[:case.n - m])
+
+
+def _phi_later(case: Case, t: float) -> NDArray:
+    """``phi`` at a later time, on a path of the coordinates and of the amplitude."""
+    m = case.module.MULTIPLIERS
+    still = case._replace(v=np.r_[case.v[:-m], np.zeros(m)], a=np.r_[case.a[:-m], np.zeros(m)])
+    value, rate, second = case.loads
+    moved = along_path(still, t)._replace(
+        loads=np.array([value + rate * t + second * t * t / 2, 0.0, 0.0]))
+    return evaluate(moved, RESIDUAL)[0][-m:]
+
+
+def joint_velocity(case: Case) -> float:
+    """``phi`` differentiated in time against differences along a path."""
+    rate = derivative(lambda t: _phi_later(case, t), 0.005)
+    return difference(evaluate(case, VELOCITY)[0][-len(rate):], rate)
+
+
+def joint_acceleration(case: Case) -> float:
+    """``phi`` differentiated twice in time against differences along a path."""
+    h, weights = 0.02, (1.5, -0.15, 1.0 / 90.0)
+    second = (-49.0 / 18.0 * _phi_later(case, 0.0) + sum(
+        w * (_phi_later(case, k * h) + _phi_later(case, -k * h))
+        for k, w in enumerate(weights, 1))) / h**2
+    return difference(evaluate(case, ACCELERATION)[0][-len(second):], second)
+
+
+def drive_power(case: Case) -> float:
+    """Power of a drive against its constraint force times the velocities."""
+    m = case.module.MULTIPLIERS
+    power = -evaluate(case, RESIDUAL)[0][:-m] @ case.v[:-m]
+    return abs(evaluate(case, ENERGY)[2][POWERS] / power - 1)
+
+
+def element_tangent(case: Case) -> float:
+    """Matrix against differences of the residual, with the coefficient of constraints."""
+    place, constraint, m = 2.0, 3.0, case.n - case.module.MULTIPLIERS
+    exact = constraint * gradient(case, lambda c: evaluate(c, RESIDUAL)[0], 0.005)
+    exact[:m, :m] *= place / constraint
+    matrix = evaluate(case, TANGENT, (0, 0, place, 1, constraint))[1]
+    if not np.abs(exact).max() > 1e-12:
+        return float(np.abs(matrix).max())
+    return difference(matrix, exact)
+
+
+def _potential_force(case: Case) -> NDArray:
+    return gradient(case, lambda c: evaluate(c, ENERGY)[2][[STRAIN, POTENTIAL]].sum(), 0.005)
+
+
+def power(case: Case) -> float:
+    """Power of loads and dampers against the power of their force less that of the potential."""
+    exact = -(evaluate(case, RESIDUAL)[0] - _potential_force(case)) @ case.v
+    return abs(evaluate(case, ENERGY)[2][POWERS] / exact - 1)
+
+
+def force_at_rest(case: Case) -> float:
+    """Force of springs at rest against the gradient of their energy."""
+    case = case._replace(v=0 * case.v)
+    exact = _potential_force(case)
+    if not np.abs(exact).max() > 1e-12:     # a load: none
+        return 0.0
+    return difference(evaluate(case, RESIDUAL)[0], exact)
+
+
+def hamilton(case: Case) -> float:
+    """Force against Hamilton's principle: rate of dT/dv, d(T - V)/dq, Hamel's term."""
+    force = derivative(lambda t: momenta(along_path(case, t)), 0.003)
+    force -= gradient(case, lambda c: evaluate(c, ENERGY)[2][KINETIC], 0.01)
+    force += _potential_force(case)
+    p = momenta(case)
+    for at in case.rotations:
+        force[at:at + 3] += np.cross(case.v[at:at + 3], p[at:at + 3])
+    return difference(evaluate(case, RESIDUAL)[0], force)
+
+
+def body_momentum(case: Case) -> float:
+    """Momentum and its moment against ``dT/dv`` along rigid velocities (Noether)."""
+    p, d = momenta(case), case.dimension
+    x = np.r_[case.q[:d], np.zeros(3 - d)]
+    linear, moment = np.r_[p[:d], np.zeros(3 - d)], np.cross(x, np.r_[p[:d], np.zeros(3 - d)])
+    if case.planar:
+        moment[2] += p[d:].sum()
+    for j, at in enumerate(case.rotations):
+        moment += case.R[9 * j:9 * j + 9].reshape(3, 3) @ p[at:at + 3]
+    return difference(evaluate(case, ENERGY)[2][MOMENTUM:POTENTIAL], np.r_[linear, moment])
+
+
+def criteria(module: ModuleType) -> dict:
+    """The criteria for a kernel of this kind."""
+    chosen = {"tangent": element_tangent}
+    if module.MULTIPLIERS:
+        chosen |= {"force = gradient of lambda.phi": joint_force, "velocity": joint_velocity,
+                   "acceleration": joint_acceleration}
+        return chosen | ({"power": drive_power} if module.POWER else {})
+    if module.INERTIAL:
+        chosen |= {"Hamilton's force": hamilton, "momentum = rigid dT/dv": body_momentum,
+                   "tangent, mass": tangent_mass}
+    else:
+        chosen |= {"power": power, "force = dV/dq": force_at_rest}
+    return chosen | {"tangent, velocity": tangent_rate}
+
+
+def check_element(name: str, module: ModuleType) -> list[CheckRow]:
+    """All criteria of a joint, body or force kernel."""
+    rows = []
+    for seed in range(STATES):
+        for criterion, measure in criteria(module).items():
+            error = measure(element_case(module, seed))
+            rows.append(CheckRow(name, criterion, seed, error, None, LIMIT))
+    return rows

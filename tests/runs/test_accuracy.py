@@ -1,0 +1,50 @@
+"""The estimated error of a run against the true one, and the difference of two runs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from sebody import Model, simulate
+from sebody.runs.accuracy import difference, simulate_within
+from sebody.runs.tolerance import Tolerance
+
+
+@pytest.mark.parametrize("allowed", [1e-3, 1e-4])
+def test_the_estimated_error_is_the_true_one(allowed):
+    """A mass on a spring, ``x = 1 + u sin(w t)``; errors fall with the square of the steps.
+
+    So the error of the finer of two runs is their difference over ``n^2 - 1``, but for terms of
+    third order. Their share is about ``w h``, 0.05 in the coarser of the two runs of 1e-3.
+    """
+    omega, amplitude = 5.0, 0.5
+    model = Model(planar=True)
+    model.node("wall", (0.0, 0.0), keeps="translation")
+    model.fix("wall", "position")
+    model.point_mass("ball", model.node("ball", (1.0, 0.0), keeps="translation"), 1.0)
+    model.spring("ball", "wall", omega**2)
+    model.initial_velocity("ball", (amplitude * omega, 0.0))
+    result = simulate_within(model, 0.05, 10.0, Tolerance(allowed))
+    exact = 1.0 + amplitude * np.sin(omega * result.t)
+    true = np.sqrt(np.mean((result["ball.position"][:, 0] - exact)**2)) / allowed
+    assert result.error == pytest.approx(true, rel=0.05)
+
+
+def test_difference_of_rotations_is_their_angle():
+    """Two runs alike, but for matrices turned by a small angle against each other."""
+    model = Model()
+    model.rigid_body("body", model.node("centre", (0, 0, 0)), 1.0, (1.0, 2.0, 2.5))
+    model.initial_velocity("centre", angular=(0.3, -0.2, 0.5))
+    one = simulate(model, 0.01, 0.5)
+    other = replace(one, rows=one.rows.copy())
+    angle = 3e-4 * np.sin(7.0 * one.t)
+    axis = np.array([2.0, -1.0, 2.0]) / 3
+    turned = (Rotation.from_matrix(one["centre.rotation"])
+              * Rotation.from_rotvec(np.outer(angle, axis))).as_matrix()
+    other.recorded("R")[:] = turned.reshape(-1, 9)
+    assert np.shares_memory(other.recorded("R"), other.rows)
+    expected = np.sqrt(np.mean(angle**2)) / (1e-3 + 2e-3)
+    allowed = Tolerance(1e-3, 1.0, 2e-3)
+    assert difference(one, other, allowed) == pytest.approx(expected, rel=1e-6)
+    assert difference(one, one, allowed) == 0.0

@@ -1,0 +1,124 @@
+"""`sebody bench`: what it prints and refuses. The peer itself is run only where it is installed."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from sebody import InputError, Model, simulate
+from sebody.cli.entry import main
+from sebody.kernels.loader import element_kernel
+from sebody.scenes import hinged_beam
+from sebody.verify import bench
+from sebody.verify.bench import own, peer
+from sebody.verify.bench.measurement import Measurement
+
+MINE = Measurement("hinged-beam", "superelement", 15, 0.01, 2.0, 2.4, 9e-4, 6e-3, 7000.0)
+THEIRS = Measurement("hinged-beam", "Exudyn beams", 24, 0.01, 80.0, 2.0, 5e-4, 0.24)
+
+
+@pytest.fixture
+def alone(monkeypatch):
+    monkeypatch.setattr(peer, "available", lambda: False)
+
+
+def test_json_has_cost_and_error_of_the_same_run(alone, capsys):
+    assert main(["bench", "planar-hinged-beam", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    row, of_b = answer["measurements"]
+    assert (row["variant"], of_b["variant"]) == ("superelement", "superelement, inertia b")
+    assert row["scene"] == "planar-hinged-beam" and row["unknowns"] == 6 and row["h"] == 0.01
+    assert {"variant", "us_per_step", "iterations_per_step", "tip_error"} <= row.keys()
+    assert row["tip_error"] < 3e-4 and 8e-4 < of_b["tip_error"] < 9.5e-4
+    assert row["iterations_per_step"] > 1.0
+    assert row["us_per_step"] * 3000 == pytest.approx(1e6 * row["wall_seconds"])
+    fraction = row["flops_per_step"] / answer["flops_per_second"] / (1e-6 * row["us_per_step"])
+    assert 0.0 < fraction < 1.0
+
+
+def test_operations_grow_with_bodies_and_iterations():
+    """At least two flops for each entry of S and M, each of which a product meets once."""
+    result = simulate(hinged_beam.build().model, 0.01, 1.0)
+    n = result.model.bodies["beam"].body.stiffness.shape[0]
+    assert own.flops_per_step(result) > result.iterations_per_step * 2 * 2 * n * n
+
+
+def test_modes_are_the_hinged_beam_by_their_number(monkeypatch, alone, capsys):
+    monkeypatch.setattr(own, "MODES", (4, 16))
+    assert main(["bench", "modes", "--json"]) == 0
+    few, of_b, many, _ = json.loads(capsys.readouterr().out)["measurements"]
+    assert of_b["variant"] == "12 + 4 coordinates, inertia b" and of_b["tip_error"] > 8e-4
+    assert (few["variant"], many["variant"]) == ("12 + 4 coordinates", "12 + 16 coordinates")
+    assert many["unknowns"] - few["unknowns"] == 12
+    assert max(few["tip_error"], many["tip_error"]) < 4e-4
+    assert many["flops_per_step"] > few["flops_per_step"]
+
+
+def test_modes_are_compared_with_the_peers_body_of_the_same_size():
+    mine = replace(MINE, scene="modes", variant="12 + 4 coordinates")
+    theirs = [replace(THEIRS, scene="modes", variant=f"Exudyn reduced, 12 + {n} coordinates",
+                      us_per_step=10.0 * n) for n in (4, 16)]
+    of_b = replace(mine, variant=mine.variant + own.OPTION_B, us_per_step=1.0)
+    found, faster = bench.ratios([mine, of_b, *theirs])
+    assert found.endswith("12 + 4 coordinates takes 20.0 times as long a step")
+    assert faster.endswith("12 + 4 coordinates takes 40.0 times as long a step")
+
+
+def test_report_names_ratios_and_fractions():
+    text = bench.report([MINE, THEIRS], 1e10)
+    assert "Exudyn beams takes 40.0 times as long a step" in text
+    assert "to a tip error of 1e-3: 6.00 ms, Exudyn beams (h 0.01) 240.0 ms: 40.0 times" in text
+    assert "35%" in text and "10.00 Gflop/s" in text
+    poor = replace(THEIRS, tip_error=2e-3)
+    assert "no model of the peer gets there" in bench.report([MINE, poor], 1e10)
+
+
+def test_a_run_without_the_peer_compares_nothing():
+    assert bench.ratios([MINE]) == []
+
+
+def test_unknown_scene_is_named(capsys):
+    assert main(["bench", "shaft"]) == 2
+    assert "no benchmark of scene 'shaft': use hinged-beam" in capsys.readouterr().err
+
+
+def test_missing_peer_is_named(alone):
+    with pytest.raises(InputError, match=r'Exudyn is not installed: pip install "sebody\[bench\]"'):
+        peer.measure("chain")
+
+
+@pytest.mark.skipif(not peer.available(), reason="Exudyn is not installed")
+def test_the_peer_computes_the_same_beam():
+    found = [m for m in peer.measure("planar-hinged-beam") if m.h == 0.01]
+    assert min(m.tip_error for m in found) < 1e-3
+
+
+def test_operations_are_those_of_all_elements():
+    """Of a body and a spring in a plane: counts of their kernels, and the product with an inverse.
+
+    Two unknowns take four multiplications and four additions.
+    """
+    model = Model(planar=True)
+    model.fix(model.node("wall", (0.0, 0.0), keeps="translation"), "position")
+    model.point_mass("ball", model.node("ball", (1.0, 0.0), keeps="translation"), 1.0)
+    model.spring("ball", "wall", 4.0, length=0.9)
+    result = simulate(model, 0.01, 0.1)
+    counts = [element_kernel(name).OPERATIONS["residual"][0]
+              for name in ("planar_point_mass", "planar_spring")]
+    assert min(counts) > 0
+    assert own.flops_per_step(result) == pytest.approx(
+        result.iterations_per_step * (sum(counts) + 8))
+
+
+def test_many_short_runs_are_measured_by_all_threads_and_alone(monkeypatch):
+    from sebody.verify.bench import ensemble, peer
+
+    monkeypatch.setattr(peer, "available", lambda: False)
+    monkeypatch.setattr(ensemble, "ALONE", 2)
+    together, paper, alone = ensemble.measure(10)
+    assert {m.scene for m in (together, paper, alone)} == {"ensemble"}
+    assert paper.variant == f"{together.variant}, inertia b"
+    assert together.thread_efficiency > 0 and alone.thread_efficiency is None
+    assert "thread_efficiency" in together.as_dict()
+    # runs of 300 steps: the time a step belongs to the time of all runs
+    assert together.wall_seconds == pytest.approx(together.us_per_step * 1e-6 * 300 * 10)
