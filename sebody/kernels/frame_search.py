@@ -293,7 +293,7 @@ def planar_mean_axes(positions, rotations, n, alpha, X, Gam, q, frame, psi):
     for k in range(first + rotations, n):
         by_modes += Gam[k] * q[k]
     angle = math.atan2(frame[3], frame[0])
-    for _ in range(60):
+    for attempt in range(60):
         cosine, sine = math.cos(angle), math.sin(angle)
         mean, slope = by_modes, 0.0
         for j in range(positions):
@@ -310,7 +310,7 @@ def planar_mean_axes(positions, rotations, n, alpha, X, Gam, q, frame, psi):
         step = mean / slope if slope > 0.1 else mean
         if not abs(step) < 4.0:
             return NO_FRAME
-        if slope > 0.1 and abs(step) < ROUNDING:    # the frame of this state was found before
+        if slope > 0.1 and abs(step) < ROUNDING and attempt == 0:   # as it was found before
             return 0
         angle += step
         if slope > 0.1 and abs(step) < 1e-8:

@@ -53,7 +53,7 @@ def test_a_signal_ends_the_run_and_keeps_its_results(tmp_path, capsys, monkeypat
 
 def test_a_process_ends_soon_after_a_signal(tmp_path, capsys):
     code = ("import signal, sys\n"
-            "from sebody.analysis import progress\nfrom sebody.cli import entry\n"
+            "from sebody.runs import progress\nfrom sebody.cli import entry\n"
             "progress.Progress.__call__ = lambda bar, fraction: print(flush=True)\n"
             "sys.exit(entry.main(sys.argv[1:]))")
     process = subprocess.Popen([sys.executable, "-c", code, *LONG, *files(tmp_path)],

@@ -101,7 +101,7 @@ def test_forces_of_a_user_jump_at_their_corners():
 
 
 def test_a_jump_nobody_told_of_is_pointed_out():
-    message = (r"function of motor jumps from 0 to 1 at t = 0.5, and steps are not told: give it "
+    message = (r"function of motor jumps from 0 to 1 at t = 0.5, which is not declared: give it "
                r"as with_corners\(function, times\)")
     with pytest.warns(LimitWarning, match=message):
         simulate(rotor(stepped), 0.01, 1.0)

@@ -90,7 +90,7 @@ def test_the_offset_of_auxiliary_accelerations_must_be_carried_over(build):
 
 def test_index_3_does_not_allow_changing_steps(monkeypatch):
     """Constrained directions have other rates for every step: errors are 100 times larger."""
-    with pytest.raises(InputError, match="with constraints of index 3 errors grow where steps"):
+    with pytest.raises(InputError, match="with constraints of index 3 errors grow where the step"):
         Simulation(explicit().model, 0.01, generalized_alpha(), tolerance=Tolerance(1e-3))
     scheme = generalized_alpha(tolerance=1e-12, index=2)
     monkeypatch.setitem(globals(), "STRICT", scheme)
@@ -219,7 +219,7 @@ def test_a_chaotic_motion_is_said_to_be_one():
         return run["tip.position"]
     apart = np.linalg.norm(tip(2e-7) - tip(0.0), axis=1) / 141.42
     assert apart[:150].max() < 1e-7 and apart[200:].max() > 1e-3
-    with pytest.raises(SimulationError, match="does not fall with the step.*may be chaotic"):
+    with pytest.raises(SimulationError, match="does not decrease with the step.*may be chaotic"):
         simulate_within(spherical_beam_strong.build(inertia="b").model, 0.1, 30.0,
                         Tolerance(1e-3))
 
@@ -229,7 +229,7 @@ def test_tolerances_of_positions_and_rotations():
     allowed = tolerance.allowed(np.array([100.0, 1.0, 0.0]), np.array([False, True, False]))
     assert allowed == pytest.approx([0.6, 0.011, 0.5])
     for wrong, message in ((Tolerance(-1.0), "tolerance relative is -1.0: give a number >= 0"),
-                           (Tolerance(0.0, 1.0), "allows no error: give a relative one"),
+                           (Tolerance(0.0, 1.0), "allows no error: give a relative error"),
                            (Tolerance(1e-3, np.nan), "tolerance position is nan")):
         with pytest.raises(InputError, match=message):
             Simulation(hinged_beam.build().model, 0.1, tolerance=wrong)

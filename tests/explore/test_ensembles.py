@@ -215,7 +215,7 @@ REFUSED = {
     "outputs": ({"beam.mass": [1.0]}, {"outputs": []}, "give a dict of names and quantities"),
     "late": ({"beam.mass": [1.0]}, {"outputs": {"x": at_time("tip.position", 9.0)}},
              "asked for at t = 9"),
-    "grid": ({"beam.mass": [1.0]}, {"t_end": 0.0015}, "no multiple of the step"),
+    "grid": ({"beam.mass": [1.0]}, {"t_end": 0.0015}, "not a multiple of the step"),
     "threads": ({"beam.mass": [1.0]}, {"threads": 0}, "threads"),
     "no damping": ({"weight.damping": [1.0]}, {}, "did you mean"),
     "a bar's drive": ({"hinge.position": [[0, 0]]}, {}, r"give an array \(runs, 3\)"),

@@ -8,7 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from sebody.explore.advice.indicators.activity import QUIET, activity
-from sebody.explore.advice.quantities import Values, changes_of, difference, lengths
+from sebody.explore.advice.measures import Measure, lengths
+from sebody.explore.advice.quantities import Values, difference, sizes_of
 from sebody.explore.ensembles.outputs import Fold, Output
 
 T = np.cumsum(np.random.default_rng(2).uniform(0.1, 0.3, 40))
@@ -44,16 +45,17 @@ def test_the_length_of_a_matrix_is_of_all_entries():
     fold.add(T, V)
     assert_allclose(fold.value(), np.linalg.norm(V.reshape(40, 6), axis=1).max(), rtol=1e-13)
     assert_allclose(lengths(V), np.linalg.norm(V.reshape(40, 6), axis=1), rtol=1e-13)
-    assert changes_of([V]) == [pytest.approx(np.linalg.norm((V - V[0]).reshape(40, 6),
-                                                            axis=1).max())]
+    assert sizes_of(Values([V], [], (Measure("a.b"),))) == [pytest.approx(
+        np.linalg.norm((V - V[0]).reshape(40, 6), axis=1).max())]
 
 
 def test_runs_with_other_steps_are_compared_at_the_same_times():
     fine, coarse = V, V[::3] + 0.0
     coarse[5] += 0.5 * np.array([[1.0, 0, 0], [0, 0, 0]])
     size = 2.0
-    one, other = Values([fine], [3.0]), Values([coarse], [3.3])
-    assert difference(one, Values([V[::3]], [3.0]), [size], (3, 1)) == 0.0
+    whole = (Measure("a.b"),)
+    one, other = Values([fine], [3.0], whole), Values([coarse], [3.3], whole)
+    assert difference(one, Values([V[::3]], [3.0], whole), [size], (3, 1)) == 0.0
     assert difference(one, other, [size], (3, 1)) == pytest.approx(0.5 / size)
     assert difference(Values([], [3.0]), Values([], [3.3]), [], (1, 1)) == pytest.approx(
         1 - 3.0 / 3.3)

@@ -19,6 +19,7 @@ from sebody.cli.entry import main
 from sebody.fem import Section, planar_beam
 from sebody.limits import quality
 from sebody.reduction import craig_bampton
+from sebody.results import energy_balance as balances
 from sebody.results.audit import audit
 from sebody.results.energy_balance import LIMIT, energy_balance
 from sebody.scenes import four_bar, hinged_beam
@@ -144,21 +145,23 @@ def balance_of(result):
         m for m in result.warnings if m.startswith("energy balance")]
 
 
-def test_there_is_one_judgement_of_the_energy_from_all_states(tmp_path):
-    """A few states of two thousand are bad; the ball has its energy again after them."""
+def test_there_is_one_judgement_of_the_energy_from_all_states(tmp_path, monkeypatch):
+    """A few states of two thousand are worst; the ball has its energy again after them."""
+    limit = 5e-4
+    monkeypatch.setattr(balances, "LIMIT", limit)
     found = []
     messages = said(lambda: found.append(stopped(1e-3, 2.0)))
     result, = found
     lost = np.abs(sum(result[f"energy.{name}"] for name in ("kinetic", "strain", "potential"))
                   - result["energy.external_work"] - 0.5) / 0.5
-    few = lost > LIMIT
-    assert 0 < few.sum() < 10 and lost[-1] < LIMIT      # LOOKED_AT states may miss them all
+    few = lost > limit
+    assert 0 < few.sum() < 10 and lost[-1] < limit      # LOOKED_AT states may miss them all
     value, verdict, warned = balance_of(result)
     assert value == pytest.approx(lost.max(), rel=0.1)      # of a ball that is a bit faster then
     assert verdict == "bad" and len(warned) == 1 and warned == messages
     assert balance_of(Result.load(result.save(tmp_path / "ball.npz"))) == (value, verdict, warned)
     value, verdict, warned = balance_of(stopped(1e-5, 2.0, output_every=10))
-    assert value < LIMIT and verdict != "bad" and not warned
+    assert value < limit and verdict != "bad" and not warned
 
 
 def test_runs_within_a_tolerance_are_judged_too():
@@ -170,14 +173,20 @@ def test_runs_within_a_tolerance_are_judged_too():
 
 
 def test_a_balance_that_is_bad_at_first_may_be_good_at_the_end():
-    """Two steps of a load that has only begun; the next results do not repeat it."""
+    """A stiff spring loses its energy in two steps; then a load does much more work."""
     model = Model(planar=True)
-    model.point_mass("ball", model.node("ball", (0.0, 0.0), keeps="translation"), 2.0)
-    model.force("ball", (1.0, 0.0), lambda t: 2.0 * t)
-    run = Simulation(model, 0.1)
+    for name, x in (("wall", 0.0), ("weight", 1.0), ("ball", 2.0)):
+        model.node(name, (x, 0.0), keeps="translation")
+    model.fix("wall", "position")
+    model.spring("weight", "wall", stiffness=1e6, length=1.0 - 1e-5)
+    for name in ("weight", "ball"):
+        model.point_mass(name, name, 2.0)
+    model.force("ball", (1.0, 0.0), lambda t: 2.0 * max(t - 0.3, 0.0))
+    run = Simulation(model, 0.1, generalized_alpha(0.0))
     messages = said(lambda: (run.run_to(0.2).result(), run.result()))
-    assert len(messages) == 1 and messages[0].startswith("energy balance 0.2 of")
-    assert balance_of(run.result())[1:] == ("bad", messages)
+    balance = [one for one in messages if one.startswith("energy balance 1 of")]
+    assert len(balance) == 1 and len(messages) == 2         # the other one is of the fast vibration
+    assert balance_of(run.result())[1:] == ("bad", balance)
     found = []
     assert said(lambda: found.append(run.run_to(4.0).result())) == []
     assert balance_of(found[0])[1:] == ("good", [])

@@ -151,7 +151,7 @@ BODIES = {
         "modes": [*are("modes", *NO_COUNT), *have("modes is", -1, 1000)],
         "up": [pair for pair in vectors("up", 3) if pair[0] is not None] + [
             (Y, "lies along a beam")],
-        "damping": not_negative("beam 'new': damping"),
+        "damping": are("beam 'new': damping", *NO_NUMBER, -1.0, also=": give a ratio of critical"),
         "frame": have("frame", "middle", 3), "inertia": have("inertia", "z")}),
     "element": Right(Model.element, {"name": "ball"}, {
         "name": have("is unknown", "bal", "", None, 3, [])}),

@@ -177,7 +177,7 @@ REFUSED = [
       for kind in ("calculix", "sid", "matrix-market", "abaqus-matrices", "abaqus-substructure")),
     (("advise", "hinged-beam", "--t-end", "0.1", "--quantity", "t"), "quantity 't' is the time"),
     (("advise", "hinged-beam", "--t-end", "1e300", "--quantity", "tip.position"),
-     "steps of 0.0025, give an earlier time or a longer step"),
+     "steps of 0.01, give an earlier time or a longer step"),
     (("check", "nothing"), "kernel 'nothing' is unknown: there are"),
     (("check", ""), "kernel '' is unknown"), (("check", "--all"), "unrecognized arguments"),
     (("bench", "beam"), "there is no benchmark of scene 'beam': use"),

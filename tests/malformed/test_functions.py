@@ -199,6 +199,7 @@ def test_a_pulse_between_steps_is_said():
             simulate(ball(force), 0.005, 0.5)               # steps that resolve it
             simulate(ball(force), 0.1, 0.2)                 # it comes later
             warnings.filterwarnings("ignore", "energy balance", LimitWarning)
+            warnings.filterwarnings("ignore", ".* characteristic length", LimitWarning)
             simulate(ball(force), 0.1, 0.5, tolerance=Tolerance(1e-3))
 
 

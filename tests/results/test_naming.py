@@ -116,9 +116,10 @@ def test_every_name_is_in_and_can_be_asked_for(result, tmp_path):
     ("rod.modes.3", "rod.modes has the components 0, 1, 2, norm"),
     ("t.x", "t.x is unknown: t is one number, it has no components"),
     ("energy.kinetc", "did you mean 'energy.kinetic'"),
-    ("rod.von_mises", r"'rod.von_mises' is unknown: the FE nodes of a body have it, as in "
-                      r"'rod.node0.von_mises'; in a state all of them, result.field\('rod'\)."
-                      r"von_mises\(t=...\); the largest over the run result.field\('rod'\)."
+    ("rod.von_mises", r"'rod.von_mises' is unknown: it is a quantity of FE nodes, such as "
+                      r"'rod.node0.von_mises'; for all FE nodes at one time use "
+                      r"result.field\('rod'\).von_mises\(t=...\); "
+                      r"the largest over the run result.field\('rod'\)."
                       r"envelope\('von_mises'\)"),
     ("rod.strain", r"as in 'rod.node0.stress'|result.field\('rod'\).strain"),
     ("weight.von_mises", "a body has modes, forces")])

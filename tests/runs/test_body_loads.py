@@ -187,7 +187,7 @@ def test_two_bodies_and_a_free_start():
     (lambda m: m.body_load("plate", "wind"), "no load 'wind': it has pressure"),
     (lambda m: m.body_load("plat", "pressure"), "'plat' is unknown: did you mean 'plate'"),
     (lambda m: m.body_load("wing", "pressure"), "'wing' is unknown: the model has plate"),
-    (lambda m: m.body_load("plate", "pressure", "much"), "history")])
+    (lambda m: m.body_load("plate", "pressure", "much"), "time function")])
 def test_names_that_are_not_there(change, message):
     model, _ = clamped()
     with pytest.raises(InputError, match=message):

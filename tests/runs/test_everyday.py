@@ -204,7 +204,7 @@ def test_no_inertia_about_a_free_axis_is_refused():
         rod(model, PLACES["turned"], "rod", "a", np.zeros(3), (1.0, 0.0, 0.0), axial)
         model.fix("a", "position")
         return model
-    with pytest.raises(InputError, match=r"mass is singular at a.rotation.*give it a mass"):
+    with pytest.raises(InputError, match=r"mass matrix is singular: a.rotation\[.\] moves no mass"):
         simulate(hanging(0.0), H, T_END)
     simulate(hanging(1e-10), H, 0.1)
 

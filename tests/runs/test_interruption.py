@@ -119,4 +119,4 @@ def test_an_end_off_the_grid_is_said():
                                           "ends at t = 0.13"):
         result = small().run_to(0.126).result()
     assert result.t[-1] == pytest.approx(0.13, rel=1e-14)
-    assert any("no multiple of the step" in line for line in result.summary().splitlines())
+    assert any("not a multiple of the step" in line for line in result.summary().splitlines())

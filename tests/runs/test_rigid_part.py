@@ -210,7 +210,7 @@ def test_restart(tmp_path):
 @pytest.mark.parametrize("frame", ["mean", "mean_small"])
 def test_frames_that_depend_on_the_last_step_are_refused(frame):
     with pytest.raises(InputError, match=f"inertia 'd' needs the exact rates of a frame .* which "
-                                         f"'{frame}' does not: use one of converged_mean, node"):
+                                         f"'{frame}' does not: use one of converged_mean, mean"):
         hinged_beam.build(inertia="d", frame=frame)
 
 

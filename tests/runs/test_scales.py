@@ -59,7 +59,8 @@ def test_nothing_has_a_length(place):
     """A point without anything: one unit of length, which is said; an absolute error is better."""
     model = pushed(place, inertia=False)
     with pytest.warns(LimitWarning, match="the model has no characteristic length: errors of "
-                      r"are relative to one unit of length; .* Tolerance\(1e-3, position=1e-6\)"):
+                      r"positions are relative to one unit of length; .* "
+                      r"Tolerance\(1e-3, position=1e-6\)"):
         result = simulate(model, 0.5, 10.0, tolerance=Tolerance(1e-5))
     t = result.t
     moved = (result["weight.position"] - np.asarray(place)) @ [0.6, 0.0, 0.8]

@@ -54,5 +54,5 @@ def test_redundant_drives_that_demand_different_accelerations():
     assert set(Simulation(driven(0.2), 0.01).start.redundant)
     for other in (0.3, -0.2, 0.2 * (1 + 1e-4)):
         with pytest.raises(InputError, match="the constraints contradict each other at .*: they "
-                                             "demand different accelerations of the same thing"):
+                                             "demand different values of the same acceleration"):
             Simulation(driven(other), 0.01)

@@ -101,7 +101,7 @@ def test_responses_that_are_refused(tmp_path):
     with pytest.raises(InputError, match="no force or torque whose amplitude could vary: add one"):
         frequency_response(state, "push", "n.position", omega)
     free.force("n", (1.0, 0, 0), NONE, name="push")
-    with pytest.raises(InputError, match="answer at omega = 0 is infinite: there is a frequency"):
+    with pytest.raises(InputError, match="response at omega = 0 is infinite: the undamped model"):
         frequency_response(Simulation(free, 0.1), "push", "n.position", [0.0])
 
 
@@ -182,7 +182,7 @@ def test_a_response_names_its_curves(monkeypatch):
     assert [text.get_text() for text in one.get_legend().get_texts()] == ["tip.position.x",
                                                                           "tip.position.z"]
     assert one.get_title(loc="left") == "tip.position under 'push' of amplitude 1"
-    assert other.texts[0].get_text() == "does not respond" and other.get_legend() is None
+    assert other.texts[0].get_text() == "no response" and other.get_legend() is None
     assert [line.get_ydata()[0] for line in phase.lines] == [0.0, 90.0]
 
 

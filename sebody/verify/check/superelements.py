@@ -112,7 +112,7 @@ def placed_case(module: ModuleType, seed: int, psi: float = 0.3, beta: float = 0
     case = Case(module, n, index_row(n, npos, nrot), np.zeros(0), q, R, v, a, frame, frame.copy())
     values = {"alphas": alpha, "fits": np.full(npos, 1 / npos), "alpha_rs": alpha_r, "X": X,
               "S": S, "M": M}
-    if frame_traits(module).modes:
+    if any(part.name == "Gam" for part in module.CONSTANTS):
         values["Gam"] = _mean_rotation(random, case, X)
     return case, values, random
 
