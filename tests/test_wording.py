@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 SOURCES = ("sebody", "derive", "generated", "examples")
 # texts of advice are judged with that room's own tests
-APART = ("sebody/explore/advice/", "sebody/cli/advise.py")
+APART = ()
 
 RETIRED = {     # a regular expression: what is written instead
     r"histor(y|ies) of (a |the )?(load|drive)s?": "time function",

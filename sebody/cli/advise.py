@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from sebody.explore.advice.outcome import Trial
     from sebody.scenes.scene import Scene
 
-KINDS = {"reference": "richest model", "alone": "one part alone", "together": "together",
+KINDS = {"reference": "reference model", "alone": "one part alone", "together": "together",
          "confirmation": "half the step", "given": "as given"}
 
 
@@ -35,7 +35,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--step", type=float, metavar="H",
                         help="usual time step, the scene's by default; the reference has a quarter")
     parser.add_argument("--budget", type=float, default=20.0, metavar="N",
-                        help="work of the search, in runs of the richest model (default 20)")
+                        help="work of the search, in runs of the reference model (default 20)")
     parser.add_argument("--start", choices=["equilibrium"],
                         help="start runs from the equilibrium under the loads of t = 0")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",

@@ -55,7 +55,7 @@ def _against(scene: AdviceScene, full: BruteForce, tolerance: float) -> dict:
         return {"refused": str(reason), "least": _told(sure[0]) if sure else None}
     step = _step(advice)
     seconds = _seconds(full, advice, step, passing)
-    richest = seconds["richest"]
+    detailed = seconds["detailed"]
     best = min(sure[:QUICKEST], key=lambda one: seconds[id(one)], default=None)
     least = min(seconds["chosen"], seconds[id(best)] if best else np.inf)
     luck = min([least, *(seconds[id(one)] for one in passing)])
@@ -65,9 +65,9 @@ def _against(scene: AdviceScene, full: BruteForce, tolerance: float) -> dict:
         "measured": full.error_of(advice.model, step),
         "seconds": seconds["chosen"], "least seconds": least, "by luck": luck,
         "least": _told(best) if best else None, "choices run": count,
-        "richest": richest, "given": seconds["given"],
+        "detailed": detailed, "given": seconds["given"],
         "search": sum(one.seconds for one in advice.table) / advice.table[0].seconds,
-        "runs": len(advice.table), "search with set-up": worked / richest,
+        "runs": len(advice.table), "search with set-up": worked / detailed,
         "trials": [one.predicted / one.error for one in advice.table
                    if one.kind not in ("reference", "given") and 0 < one.error < np.inf]}
 
@@ -81,7 +81,7 @@ def _step(advice: Advice) -> Step:
 
 def _seconds(full: BruteForce, advice: Advice, step: Step, passing: list[Found]) -> dict:
     """Times of runs that take turns, by what they are of."""
-    models = {"chosen": (advice.model, step), "richest": (full.builder.make(full.richest).model,
+    models = {"chosen": (advice.model, step), "detailed": (full.builder.make(full.detailed).model,
                                                           full.fine),
               "given": (full.model, Step(full.h))}
     models |= {id(one): (full.builder.make(one.choice).model, one.choice.step)
@@ -153,7 +153,7 @@ def table(found: dict) -> str:
                 f"{1e3 * row['seconds']:.2f}, x {row['seconds'] / row['least seconds']:.1f} | "
                 f"{_joined(row['least'])} | {row['search']:.1f} / "
                 f"{row['search with set-up']:.0f} | "
-                f"{1e3 * row['richest']:.0f}, {1e3 * row['given']:.1f} |")
+                f"{1e3 * row['detailed']:.0f}, {1e3 * row['given']:.1f} |")
     return "\n".join([*lines, "", *(f"* {what}: {_number(value)}"
                                     for what, value in ratios(found).items())])
 

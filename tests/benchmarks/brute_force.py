@@ -96,9 +96,9 @@ class BruteForce:
         self.sizes = sizes_of(self.reference)
 
     @property
-    def richest(self) -> Choice:
+    def detailed(self) -> Choice:
         """The reference model with the shortest step."""
-        return Choice(tuple(part.richest for part in self.parts), self.fine)
+        return Choice(tuple(part.detailed for part in self.parts), self.fine)
 
     def _steps(self) -> list[Step]:
         """All that advise may try."""
@@ -109,7 +109,7 @@ class BruteForce:
 
     def _reference(self) -> tuple[Values, float]:
         """The reference model, extrapolated in the step, and the estimate of its error."""
-        coarse, fine = (self._values(self.richest._replace(step=Step(self.h / k)))[0]
+        coarse, fine = (self._values(self.detailed._replace(step=Step(self.h / k)))[0]
                         for k in (FINEST, 2 * FINEST))
         best = Values([b + (b - a) / 3.0 for a, b in zip(coarse.histories, fine.histories,
                                                         strict=True)],
@@ -154,7 +154,7 @@ class BruteForce:
     def explore(self, tolerance: float) -> None:
         """What the rules need up to a tolerance: errors of forms alone, and their times."""
         given = Step(self.h)
-        whole = self._values(self.richest._replace(step=given))[0]
+        whole = self._values(self.detailed._replace(step=given))[0]
         self.alone = [{form: self._alone(k, form, given, whole) for form in part.forms}
                       for k, part in enumerate(self.parts)]
         base = self._poorest(given)
@@ -168,7 +168,7 @@ class BruteForce:
         self._of_steps = {step: seconds for step, seconds in self._of_steps.items()
                           if np.isfinite(seconds)}
         self._least = least
-        self._of_richest = {step: self.run(self.richest._replace(step=step)).error
+        self._of_detailed = {step: self.run(self.detailed._replace(step=step)).error
                             for step in self.steps}
 
     def _with(self, choice: Choice, k: int, form: Form) -> Choice:
@@ -178,7 +178,7 @@ class BruteForce:
     def _alone(self, k: int, form: Form, step: Step, whole: Values) -> float:
         """Error of a form of one part, against the reference with the same step."""
         try:
-            values, _, _ = self._values(self._with(self.richest._replace(step=step), k, form))
+            values, _, _ = self._values(self._with(self.detailed._replace(step=step), k, form))
             return difference(values, whole, self.sizes, (1, 1))
         except (InputError, SimulationError):
             return np.inf
@@ -197,11 +197,11 @@ class BruteForce:
         """What should change nothing, where it can be made, agrees and pays."""
         for name in self.exact:
             changed = {**self.exact, name: True}
-            richest = self.richest._replace(step=base.step, **changed)
+            detailed = self.detailed._replace(step=base.step, **changed)
             try:
-                if self.builder.make(richest).changes == self.builder.make(self.richest).changes:
+                if self.builder.make(detailed).changes == self.builder.make(self.detailed).changes:
                     continue
-                found = difference(self._values(richest)[0], whole, self.sizes, (1, 1))
+                found = difference(self._values(detailed)[0], whole, self.sizes, (1, 1))
             except (InputError, SimulationError):
                 continue
             if found <= EXACT and self._quickest(base._replace(**changed)) < self._quickest(
@@ -251,7 +251,7 @@ class BruteForce:
                 continue
             one = self.run(choice)
             count += 1
-            if one.error > tolerance and self._of_richest[choice.step] <= FINE * tolerance:
+            if one.error > tolerance and self._of_detailed[choice.step] <= FINE * tolerance:
                 missed.add(choice.forms)
             if one.error <= tolerance:
                 found.append(one)

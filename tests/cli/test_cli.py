@@ -44,7 +44,7 @@ def test_advise_prints_what_is_enough(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split() == ["predicted", "error", "step", "seconds", "change"]
     assert lines[1].split()[1:3] == ["0", "0.0025"]
-    assert " ".join(lines[1].split()[4:8]) == "beam: 8 bodies with"     # the richest
+    assert " ".join(lines[1].split()[4:8]) == "beam: 8 bodies with"     # the detailed
     error = float(lines[-1].removeprefix("confirmed error ").removesuffix(" <= 0.02"))
     assert 0 < error <= 0.02
 

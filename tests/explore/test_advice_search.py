@@ -60,8 +60,8 @@ def test_the_reference_is_a_beam_of_eight_bodies_at_a_quarter_of_the_step(advice
 
 def test_a_beam_whose_inside_is_asked_for_is_not_divided():
     model = arm()
-    assert parts_of(model)[0].richest.bodies == 8
-    assert parts_of(model, {"arm"})[0].richest.bodies == 1
+    assert parts_of(model)[0].detailed.bodies == 8
+    assert parts_of(model, {"arm"})[0].detailed.bodies == 1
     model = Model(planar=True)
     model.node("a", (0, 0)), model.node("b", (8, 1))
     model.beam("rod", ("a", "b"), SOFT, elements=4, bodies=2)
@@ -128,7 +128,7 @@ def test_reasons_name_every_part_and_the_step(advice):
     lines = advice.summary().splitlines()
     assert lines[0].startswith("Keeps tip.position within ")
     assert lines[1].startswith("arm: ")
-    assert any(line.startswith("a run takes ") and "the richest model" in line for line in lines)
+    assert any(line.startswith("a run takes ") and "the reference model" in line for line in lines)
     assert [line.partition(":")[0] for line in lines if " predicted: " in line] == [
         "at a tolerance of 0.001 predicted", "at a tolerance of 0.1 predicted"]
 
@@ -175,7 +175,7 @@ def test_linear_theory_that_limits_is_said_with_the_best_so_far():
     with pytest.raises(Unreached, match="limited by linear theory: arm turns by 0.* divide"
                        ) as caught:
         advise(model, H, T_END, "tip.position", 1e-3)
-    assert caught.value.advice.error <= 1e-3       # against the richest model, which is not good
+    assert caught.value.advice.error <= 1e-3       # against the reference model, which is not good
     assert caught.value.advice.model.bodies
 
 

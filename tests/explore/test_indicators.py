@@ -59,7 +59,7 @@ def test_a_frequency_without_internal_modes():
     part, = parts_of(model)
     true = abs(first_of(keep_modes(model, "arm", 0).model) / first_of(model) - 1)
     found = omission(recorded_of(model, 0.01, 0.02, frequencies=[first_of(model)]), part,
-                     part.richest._replace(modes=0))
+                     part.detailed._replace(modes=0))
     assert 4e-3 < true < 6e-3 and 0.5 < found / true < 2.0
 
 
@@ -73,7 +73,7 @@ def test_a_frequency_of_a_rigid_arm(stiffness):
     part, = parts_of(model)
     flexible = first_of(model)
     true = abs(first_of(rigid(model, "arm").model) / flexible - 1)
-    found = rigidity(recorded_of(model, 0.01, 0.02, frequencies=[flexible]), part, part.richest)
+    found = rigidity(recorded_of(model, 0.01, 0.02, frequencies=[flexible]), part, part.detailed)
     assert true < 0.01 and 0.5 < found / true < 4.0
 
 
@@ -100,9 +100,9 @@ def test_what_bends_shortens():
     plain = simulate(with_options(model, "arm", stiffening=False).model, 0.02, 2.0)
     off = plain["tip.position"] - reference.result["tip.position"]
     true = np.linalg.norm(off, axis=1).max() / reference.sizes[0]
-    found = stiffening(reference, part, part.richest._replace(stiffening=False))
+    found = stiffening(reference, part, part.detailed._replace(stiffening=False))
     assert 0.015 < true < 0.2 and 0.7 < found / true < 2.0
-    assert stiffening(reference, part, part.richest) == 0.0
+    assert stiffening(reference, part, part.detailed) == 0.0
 
 
 @pytest.mark.parametrize("quantity, power", [("position", 0), ("velocity", 1), ("acceleration", 2)])

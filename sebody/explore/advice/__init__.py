@@ -32,7 +32,7 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
     Parameters
     ----------
     model : Model
-        Any that has the parts; beams of `Model.beam` are divided anew for the richest model.
+        Any that has the parts; beams of `Model.beam` are divided anew for the reference model.
     h : float or None
         A usual time step [time]; the reference has a quarter of it, or less where loads or the
         tolerance need it. None for a first guess of a 128th of the time.
@@ -62,10 +62,10 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
     Raises
     ------
     InputError
-        Quantities that do not exist or do not change, or a tolerance that the richest model does
+        Quantities that do not exist or do not change, or a tolerance that the reference model does
         not reach: then `advice` of the exception is the best that was found.
     SimulationError
-        The richest model does not run, or its error does not fall with the step.
+        The reference model does not run, or its error does not fall with the step.
     """
     inputs.instance(model, "model", Model, "give a sebody.Model")
     wanted = Quantities(quantities)

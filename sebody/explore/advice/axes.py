@@ -20,7 +20,7 @@ class Axis(NamedTuple):
     of : str
         What has it: part, model or run.
     values : str
-        From the poorest to the richest.
+        From the least to the most detailed.
     variants : tuple of str
         Functions of `sebody.model.variants` that make them, and lines of the code.
     indicator : callable, optional

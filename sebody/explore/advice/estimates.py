@@ -46,7 +46,7 @@ class Estimates:
         The reference run.
     parts : list of Part
     step_errors : dict of Step to float
-        Measured errors of the richest model by its steps.
+        Measured errors of the reference model by its steps.
     """
 
     def __init__(self, recorded: Recorded, parts: list[Part], step_errors: dict[Step, float]):
@@ -63,7 +63,7 @@ class Estimates:
         """What the indicators say of a form of the k-th part."""
         if (k, form) not in self._raw:
             part = self._parts[k]
-            self._raw[k, form] = {} if form == part.richest else contributions(
+            self._raw[k, form] = {} if form == part.detailed else contributions(
                 self.recorded, part, form)
         return self._raw[k, form]
 
@@ -100,7 +100,7 @@ class Estimates:
             step.local / one.local)**(ORDER / (ORDER + 1)))]
 
     def learn_step(self, step: Step, error: float) -> None:
-        """Take the measured error of the richest model with a step."""
+        """Take the measured error of the reference model with a step."""
         self._steps[step] = error
 
     def _corrected(self, kind: Hashable, error: float) -> Contribution:
@@ -124,7 +124,7 @@ class Estimates:
     def learn(self, choice: Choice, error: float) -> None:
         """Take the measured error of a choice.
 
-        What a fixed step that the richest model ran with does not explain is that of its forms
+        What a fixed step that the reference model ran with does not explain is that of its forms
         together.
         """
         found = self.contributions(choice)

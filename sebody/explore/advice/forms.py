@@ -32,7 +32,7 @@ class Form(NamedTuple):
     @classmethod
     def first(cls, part: "Part") -> "Form":
         """One body without modes: what a rigid part is compared with."""
-        return part.richest._replace(bodies=1, modes=0)
+        return part.detailed._replace(bodies=1, modes=0)
 
     def poorer(self, other: "Form") -> bool:
         """Whether it has no more of anything than another, other things being alike."""
@@ -56,9 +56,9 @@ class Part:
         How it was built; None of a superelement.
     body : ReducedBody
         That of the first superelement, as given.
-    given, richest : Form
+    given, detailed : Form
     forms : tuple of Form
-        All, in no order; the richest and the given one are among them.
+        All, in no order; that of the reference model and the given one are among them.
     elements : int
         Finite elements of a beam in all forms.
     """
@@ -67,7 +67,7 @@ class Part:
     beam: Beam | None
     body: ReducedBody
     given: Form
-    richest: Form
+    detailed: Form
     forms: tuple[Form, ...]
     elements: int = 0
 
@@ -118,7 +118,7 @@ def alike(parts: list[Part]) -> list[list[int]]:
     found: dict[tuple, list[int]] = {}
     for k, part in enumerate(parts):
         body = part.body
-        key = (part.given, part.richest, frozenset(part.forms), part.elements,
+        key = (part.given, part.detailed, frozenset(part.forms), part.elements,
                f"{body.total_mass:.6e}", f"{np.trace(body.stiffness):.6e}")
         found.setdefault(key, []).append(k)
     return list(found.values())
@@ -144,16 +144,16 @@ def _of_beam(beam: Beam, asked: bool) -> Part:
     options = _options(first)
     forms, many = set() if asked else {_rigid(given)}, given.bodies > max(DIVISIONS)
     for bodies in DIVISIONS:
-        if many and given.bodies % bodies:      # bodies of the richest model are merged
+        if many and given.bodies % bodies:      # bodies of the reference model are merged
             continue
         least = -(-most // bodies)
         forms |= {Form(False, bodies, modes, *option)
                   for modes in _counts(least + (least % 2 and not planar)) for option in options}
     forms.add(given)
-    richest = given if many else max(
+    detailed = given if many else max(
         (f for f in forms if not f.rigid and f.bodies == max(DIVISIONS)),
         key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
-    return Part(beam.name, beam, first.body, given, richest, tuple(forms), _elements(beam))
+    return Part(beam.name, beam, first.body, given, detailed, tuple(forms), _elements(beam))
 
 
 def _elements(beam: Beam) -> int:
@@ -168,9 +168,9 @@ def _of_body(name: str, body: Superelement, asked: bool) -> Part:
     given, most = _given(body, 1), body.body.modes
     forms = {Form(False, 1, modes, *option) for modes in _counts(most)
              for option in _options(body)} | {given} | (set() if asked else {_rigid(given)})
-    richest = max((f for f in forms if not f.rigid),
+    detailed = max((f for f in forms if not f.rigid),
                   key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
-    return Part(name, None, body.body, given, richest, tuple(forms))
+    return Part(name, None, body.body, given, detailed, tuple(forms))
 
 
 def _given(body: Superelement, bodies: int) -> Form:

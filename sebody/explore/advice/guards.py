@@ -1,4 +1,4 @@
-"""Two further runs of the richest model, which the reference could not agree with by chance.
+"""Two further runs of the reference model, which the reference could not agree with by chance.
 
 One has steps that share no grid with those of all others: what falls between these, such as a pulse
 or a contact, falls on its steps. The other one is slightly disturbed, in all coordinates: where the

@@ -30,7 +30,7 @@ def limiting(parts: list[Part], kind: Hashable) -> str:
 def in_brief(parts: list[Part], choice: Choice) -> str:
     """Forms of all parts, neighbours of one form together, and changes of the whole model.
 
-    Inertia and stiffening are told where they are not those of the richest form.
+    Inertia and stiffening are told where they are not those of the form in the reference model.
     """
     pairs = [(part.name, _brief(part, form))
              for part, form in zip(parts, choice.forms, strict=True)]
@@ -44,7 +44,7 @@ def in_brief(parts: list[Part], choice: Choice) -> str:
 def _brief(part: Part, form: Form) -> str:
     if form.rigid:
         return "rigid"
-    rich, told = part.richest, [_size(part, form)]
+    rich, told = part.detailed, [_size(part, form)]
     if form.inertia != rich.inertia:
         told.append(f"inertia {form.inertia}")
     elif form.stiffening != rich.stiffening:

@@ -1,4 +1,4 @@
-"""What the richest model itself may be off by: linear theory in each body, and its last modes."""
+"""What the reference model itself may be off by: linear theory in each body, and its last modes."""
 
 from functools import lru_cache
 
@@ -36,12 +36,12 @@ def limits(lab: Laboratory) -> list[Doubt]:
 
 def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
     """What twice as many bodies in some beams change, with the same step: by runs."""
-    whole, names = lab.builder.build(lab.richest), ", ".join(part.name for part in parts)
+    whole, names = lab.builder.build(lab.detailed), ", ".join(part.name for part in parts)
     for part in parts:
-        form = part.richest
+        form = part.detailed
         whole = divide(whole, part.name, 2 * form.bodies, 2 * part.elements).model
     step = Step(max(lab.bases))
-    sentence = f"{names} divided into twice as many bodies than the richest model has, gave it"
+    sentence = f"{names} divided into twice as many bodies than the reference model has, gave it"
     try:
         run = lab.runs.run(whole, step)
     except (InputError, SimulationError) as reason:
@@ -50,23 +50,23 @@ def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
 
 
 def _linear(recorded: Recorded, part: Part) -> Doubt:
-    turn = max(local_rotations(recorded, part, part.richest.bodies))
-    return Doubt(bent(recorded, part, part.richest.bodies),
+    turn = max(local_rotations(recorded, part, part.detailed.bodies))
+    return Doubt(bent(recorded, part, part.detailed.bodies),
                  f"linear theory: {part.name} turns by {turn:.2g} rad within a body",
                  "divide it")
 
 
 def _modal(recorded: Recorded, part: Part) -> Doubt:
     """By how errors fall when half of the modes are left out, and all but a quarter."""
-    most = part.richest.modes
-    half, quarter = (omission(recorded, part, part.richest._replace(modes=most // k))
+    most = part.detailed.modes
+    half, quarter = (omission(recorded, part, part.detailed._replace(modes=most // k))
                      for k in (2, 4))
     fall = max(half / quarter, FALL) if most >= 4 and quarter > half > 0.0 else FALL
     return Doubt(fall * half, f"modes: {part.name} has {most}", "reduce it with more modes")
 
 
 def doubts(lab: Laboratory) -> list[Doubt]:
-    """What the richest model may be off by, by theory and by its guards, the largest first."""
+    """What the reference model may be off by, by theory and by its guards, the largest first."""
     found = [*limits(lab), *lab.doubts]
     return sorted((one for one in found if one.error > 0.0), key=lambda one: -one.error)
 
@@ -76,7 +76,7 @@ def refusal(search: Search, found: Tried) -> str:
     lab = search.lab
     largest = next(iter(limits(lab)), None)
     if largest and largest.error > UNSURE * search.tolerance:
-        return (f"the tolerance {search.tolerance:g} is not reached by the richest model, whose "
+        return (f"the tolerance {search.tolerance:g} is not reached by the reference model, whose "
                 f"error is limited by {largest.sentence}, which makes an error of about "
                 f"{largest.error:.1g}: {largest.remedy}, or give a larger tolerance")
     if found.error <= search.tolerance:

@@ -79,7 +79,7 @@ class Reason(NamedTuple):
 
 
 class Doubt(NamedTuple):
-    """An error that the richest model itself may have: how large, why, and what helps."""
+    """An error that the reference model itself may have: how large, why, and what helps."""
 
     error: float
     sentence: str
@@ -196,7 +196,7 @@ class Advice:
             *self.remarks,
             *(["interrupted: this is the best until then"] if self.interrupted else []),
             *(f"warning: {one}" for one in self.warnings),
-            *(f"the richest model may itself be off by {one.error:.1g}: {one.sentence}; "
+            *(f"the reference model may itself be off by {one.error:.1g}: {one.sentence}; "
               f"{one.remedy}" for one in self.doubts if one.error > TRUSTED * self.tolerance),
             f"predicted error {self.predicted:.2g}", self._verdict()])
 

@@ -15,7 +15,7 @@ TURN = 2.0 * np.pi
 # what is chosen of the whole model, and why
 WHOLE = {"planar": ("planar", "it is symmetric about the plane"),
          "shared": ("joints of shared positions and rotations", "they replace equations"),
-         "dropped": ("positions and rotations left out", "only one body has them")}
+         "dropped": ("omitted positions and rotations", "only one body has them")}
 
 
 def reasons(search: Search, choice: Choice) -> list[Reason]:
@@ -31,7 +31,7 @@ def reasons(search: Search, choice: Choice) -> list[Reason]:
 
 def _of_part(lab: Laboratory, k: int, part: Part, form: Form, untried: list[str]) -> list[Reason]:
     """A line of the form, and one of each of its axes that were made poorer."""
-    if form == part.richest:
+    if form == part.detailed:
         why = ("nothing less was enough" if lab.estimates.measured(k) else
                "nothing less was tried" if part.name in untried else
                "nothing less is predicted to be enough")
@@ -68,14 +68,14 @@ def _slowness(lab: Laboratory, part: Part, form: Form) -> str:
     left = slice(len(body.stiffness) - body.modes + form.modes, None)
     squares = np.diag(body.stiffness)[left] / np.diag(body.mass)[left]
     if form == Form.first(part):
-        omitted, what = first_frequency(body), "its first frequency"
+        omitted, what = first_frequency(body), "first mode"
     elif len(squares):
-        omitted, what = float(np.sqrt(squares.min())), "the first one left out"
+        omitted, what = float(np.sqrt(squares.min())), "first omitted mode"
     else:
         return "all there are"
     moving = recorded.motion_frequency
-    return f"{what} is {_short(omitted / moving)} times the motion's" if moving > 0 else (
-        f"{what} is {omitted / TURN:.2g}")
+    return (f"{what}: {_short(omitted / moving)} times the motion's frequency" if moving > 0 else
+            f"{what}: frequency {omitted / TURN:.2g}")
 
 
 def _of_step(search: Search, choice: Choice) -> Reason:

@@ -1,10 +1,10 @@
-"""The reference: runs of the richest model, and how good the finest of them is.
+"""Runs of the reference model, and how good the finest of them is.
 
-The richest model runs with the given step, a half and a quarter of it, and with shorter ones where
-the tolerance needs them. Errors of second order fall by four each time; where they do, a third of
-the last difference is taken off the finest run, and a sixteenth of the difference that this makes
-one run earlier is the reference's own error. Where large ones do not fall, the motion may be
-chaotic.
+The reference model runs with the given step, a half and a quarter of it, and with shorter ones
+where the tolerance needs them. Errors of second order fall by four each time; where they do, a
+third of the last difference is taken off the finest run, and a sixteenth of the difference that
+this makes one run earlier is the reference's own error. Where large ones do not fall, the motion
+may be chaotic.
 """
 
 from typing import NamedTuple
@@ -32,7 +32,7 @@ class Reference(NamedTuple):
     error : float
         Estimated relative error of the values.
     step_error : float
-        Of the richest model with the shortest step.
+        Of the reference model with the shortest step.
     falls : bool
         Whether the error falls with the step.
     worst : Worst

@@ -67,20 +67,20 @@ def _warnings(search: Search, found: Tried) -> tuple[str, ...]:
 
 
 def _saved(search: Search, seconds: float, given: Tried) -> list[str]:
-    """What a run saves against the richest model and the given one."""
+    """What a run saves against the reference model and the given one."""
     lab = search.lab
-    richest: Choice = lab.richest
-    whole = next(one for one in lab.tried if one.choice == richest).seconds
+    detailed: Choice = lab.detailed
+    whole = next(one for one in lab.tried if one.choice == detailed).seconds
     least = given.seconds
     if given.error < float("inf"):
         least = _quickest(search, given)
-    told = (f"a run takes {_time(seconds)}, the richest model {_time(whole)}, "
+    told = (f"a run takes {_time(seconds)}, the reference model {_time(whole)}, "
             f"{whole / seconds:.3g} times as long")
     if given.error < float("inf"):
         told += (f", the given one with its step {_time(least)}, {least / seconds:.3g} times, with "
                  f"an error of {given.error:.2g}")
     return [told, f"the search took {len(lab.table)} runs, as much as {lab.spent():.2g} of the "
-                  "richest model"]
+                  "reference model"]
 
 
 def _time(seconds: float) -> str:

@@ -1,4 +1,4 @@
-"""Runs of choices: the richest model with several steps first, then what is compared with it."""
+"""Runs of choices: the reference model with several steps first, then what is compared with it."""
 
 from dataclasses import dataclass
 from math import inf
@@ -27,7 +27,7 @@ from sebody.explore.advice.reference import ORDER_FACTOR, Reference, reference, 
 from sebody.explore.advice.runs import Run, Runs
 from sebody.model.model import Model
 
-FINER = (4, 2, 1)       # parts of the given step, of the first runs of the richest model
+FINER = (4, 2, 1)       # parts of the given step, of the first runs of the reference model
 SHORTER = (8, 16, 32, 64)     # further ones, where the tolerance needs them
 GOOD = 0.2              # of the tolerance, that the reference may be off by without them
 LARGEST = 0.9           # relative tolerance, that an absolute one is at most
@@ -73,7 +73,7 @@ class Laboratory:
         self.cost = Cost(model, self.parts, runs.t_end)
         self.table: list[Trial] = []
         self.tried: list[Tried] = []
-        self.bases: dict[float, Run] = {}       # runs of the richest model by their steps
+        self.bases: dict[float, Run] = {}       # runs of the reference model by their steps
         self.doubts: list[Doubt] = []           # of the guards
         self.warnings: tuple[str, ...] = ()     # of the reference
         self.remarks: list[str] = []
@@ -82,10 +82,10 @@ class Laboratory:
         self._work = self._unit = 0.0
 
     @property
-    def richest(self) -> Choice:
-        """The richest choice, with the shortest step that it ran with."""
+    def detailed(self) -> Choice:
+        """The choice of the reference model, with the shortest step that it ran with."""
         step = Step(min(self.bases, default=self.runs.h / FINER[0]))
-        return Choice(tuple(part.richest for part in self.parts), step)
+        return Choice(tuple(part.detailed for part in self.parts), step)
 
     def spent(self) -> float:
         """Work of all runs, relative to that of the first."""
@@ -97,13 +97,13 @@ class Laboratory:
         Raises
         ------
         InputError
-            Quantities that do not exist or do not change, or a tolerance that the richest model
+            Quantities that do not exist or do not change, or a tolerance that the reference model
             does not reach.
         SimulationError
             It does not run, or its error does not fall with the step.
         """
         self._shorten()
-        choice = self.richest
+        choice = self.detailed
         first = self._base(choice.step.h)
         for k in still(first.values):
             what = f"quantity {self.quantities.histories[k]!r} does not change"
@@ -176,19 +176,19 @@ class Laboratory:
         return missed(*self._ports, h, self.runs.t_end)
 
     def _guard(self) -> None:
-        """Run the richest model off the grid, and disturbed: what that casts doubt on."""
+        """Run the reference model off the grid, and disturbed: what that casts doubt on."""
         fine = min(self.bases)
         self.warnings = self.bases[fine].result.warnings
         if not self.quantities.histories:
             return
         step = Step(OFF_GRID * fine)
-        run = self.runs.run(self.builder.build(self.richest), step, every=1)
+        run = self.runs.run(self.builder.build(self.detailed), step, every=1)
         self.doubts.append(off_the_grid(run.result, run.values, step.h, self.reference,
                                         self.runs.h))
         coarse = max(self.bases)
         still = self.bases[coarse].result
         scales = Scales.of(still)
-        other = self.runs.run(disturbed(self.builder.build(self.richest), scales), Step(coarse))
+        other = self.runs.run(disturbed(self.builder.build(self.detailed), scales), Step(coarse))
         self.doubts.append(amplified(other.result, still, scales))
 
     @property
@@ -197,8 +197,8 @@ class Laboratory:
         return any(one.error > 0.0 for one in self.doubts[1:])
 
     def _base(self, h: float) -> Run:
-        """Run the richest model with a step."""
-        choice = self.richest._replace(step=Step(h))
+        """Run the reference model with a step."""
+        choice = self.detailed._replace(step=Step(h))
         self.bases[h] = self.run(choice, watched=True)
         return self.bases[h]
 
@@ -262,7 +262,7 @@ class Laboratory:
         return compared(run.values, self.reference.values, self.reference.sizes, (1, stride))
 
     def apart(self, run: Run, h: float) -> float:
-        """Difference of a run from the richest model with the same step."""
+        """Difference of a run from the reference model with the same step."""
         return difference(run.values, self.bases[h].values, self.reference.sizes, (1, 1))
 
     def attempt(self, choice: Choice, kind: str) -> tuple[Tried, Run | None]:

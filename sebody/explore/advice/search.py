@@ -32,7 +32,7 @@ class Search:
     lab : Laboratory
         With its reference.
     budget : float
-        Runs of the richest model that the work may be worth.
+        Runs of the reference model that the work may be worth.
     """
 
     def __init__(self, lab: Laboratory, budget: float):
@@ -53,7 +53,7 @@ class Search:
     def _parts(self) -> None:
         """Try forms of parts: of those that are alike together, of costly ones first."""
         groups = sorted(alike(self.lab.parts), key=lambda group: -sum(
-            of_form(self.lab.parts[k], self.lab.parts[k].richest, self.planar) for k in group))
+            of_form(self.lab.parts[k], self.lab.parts[k].detailed, self.planar) for k in group))
         self.groups = []
         for place, group in enumerate(groups):
             rest = len(groups) - place
@@ -77,8 +77,8 @@ class Search:
 
     @property
     def base(self) -> Choice:
-        """The richest choice, with the longest step it ran with and all exact changes."""
-        return self.lab.richest._replace(step=Step(max(self.lab.bases)), planar=self.planar,
+        """The reference model, with the longest step it ran with and all exact changes."""
+        return self.lab.detailed._replace(step=Step(max(self.lab.bases)), planar=self.planar,
                                          shared=self.shared, dropped=self.dropped)
 
     def _exact(self) -> None:
@@ -137,7 +137,7 @@ class Search:
 
         def cost(form: Form) -> float:
             return of_form(part, form, self.planar)
-        forms = sorted((form for form in part.forms if form != part.richest), key=cost)
+        forms = sorted((form for form in part.forms if form != part.detailed), key=cost)
         left = max(APART * self.budget - self.lab.spent(), 0.0) / rest
         most = self.lab.spent() + left
         for _ in range(MOST_ALONE):
@@ -209,7 +209,7 @@ class Search:
     def next(self, tolerance: float, sure: bool = False) -> Choice | None:
         """The cheapest choice that may be within a tolerance, or that should be."""
         judged = expected if sure else least
-        forms = [[part.richest] if part.name in self.untried else list(part.forms)
+        forms = [[part.detailed] if part.name in self.untried else list(part.forms)
                  for part in self.lab.parts]
         found = [self.base._replace(forms=one, step=step)
                  for one in combinations(self.lab.parts, forms, self.lab.estimates, self.planar,
@@ -224,9 +224,9 @@ class Search:
     def _excludes(self, failed: Choice, one: Choice) -> bool:
         """Whether a choice that was not enough says that another one is not, either.
 
-        The vibrations of the richest model ask for shorter steps than poorer ones may need.
+        The vibrations of the reference model ask for shorter steps than poorer ones may need.
         """
-        whole = failed.forms == self.lab.richest.forms
+        whole = failed.forms == self.lab.detailed.forms
         return one == failed if whole else one.poorer(failed)
 
     def halved(self, choice: Choice) -> float | None:

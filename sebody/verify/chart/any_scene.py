@@ -100,7 +100,7 @@ class _Chart:
         self.parts: list[Part] = parts_of(self.model, self.quantities.owners)
         self.builder = Builder(self.model, self.parts, self.quantities.owners)
         self.given = tuple(part.given for part in self.parts)
-        self.richest = tuple(part.richest for part in self.parts)
+        self.detailed = tuple(part.detailed for part in self.parts)
 
     def _moving(self, tip: str) -> str:
         """The quantity that is compared if none is named."""
@@ -152,10 +152,10 @@ class _Chart:
 
     def _divisions(self) -> Iterator[tuple[int, tuple[Form, ...]]]:
         """Forms of the reference model, and with half as many bodies where it divides any."""
-        most = max((form.bodies for form in self.richest), default=1)
-        yield most, self.richest
+        most = max((form.bodies for form in self.detailed), default=1)
+        yield most, self.detailed
         if most > 1:
-            yield most // 2, tuple(_form(part, most // 2, part.richest.modes * 2)
+            yield most // 2, tuple(_form(part, most // 2, part.detailed.modes * 2)
                                    for part in self.parts)
 
     def plans(self) -> list[Plan]:
@@ -200,7 +200,7 @@ class _Chart:
     def _steps(self) -> Iterator[Plan]:
         bases = {"as given": self.given, "all rigid": tuple(map(_rigid, self.parts)),
                  "1 body, 0 modes": tuple(_form(part, 1, 0) for part in self.parts),
-                 "reference": self.richest}
+                 "reference": self.detailed}
         for name, forms in bases.items() if self.parts else [("", ())]:
             for finer, told in STEPS.items():
                 if self.grid * finer >= 1.0:
@@ -224,7 +224,7 @@ def _rigid(part: Part) -> Form:
 def _form(part: Part, bodies: int, modes: int) -> Form:
     """The form of a part with the best options that comes nearest to some bodies and modes."""
     flexible = [form for form in part.forms if not form.rigid
-                and form[3:] == part.richest[3:]]
+                and form[3:] == part.detailed[3:]]
     return min(flexible, key=lambda form: (abs(form.bodies - bodies), abs(form.modes - modes)))
 
 

@@ -21,7 +21,7 @@ def linearity(recorded: Recorded, part: Part, form: Form) -> float:
 
     Of the bodies of a beam each is off by its own square, weighted by its part of the rotation.
     """
-    if form.bodies == part.richest.bodies:
+    if form.bodies == part.detailed.bodies:
         return 0.0
     return bent(recorded, part, form.bodies)
 

@@ -25,7 +25,7 @@ class Deformation(NamedTuple):
 
 
 class Recorded:
-    """A run of the richest model, with the quantities that are to be kept.
+    """A run of the reference model, with the quantities that are to be kept.
 
     Parameters
     ----------
@@ -51,9 +51,9 @@ class Recorded:
         self._bodies: dict[tuple[str, int], list[tuple[list[Node], ReducedBody]]] = {}
 
     def nodes(self, part: Part) -> list[Node]:
-        """Nodes of a part in the richest model; of a beam from end to end."""
+        """Nodes of a part in the reference model; of a beam from end to end."""
         bodies = self.result.model.bodies
-        found = [node for name in part.superelements(part.richest) for node in bodies[name].nodes]
+        found = [node for name in part.superelements(part.detailed) for node in bodies[name].nodes]
         return list({id(node): node for node in found}.values())
 
     def bodies(self, part: Part, count: int) -> list[tuple[list[Node], ReducedBody]]:

@@ -91,7 +91,7 @@ def test_links_that_are_alike_are_tried_together():
 def test_a_beam_of_as_many_bodies_as_elements_is_merged(bodies):
     model = strip(2.0, bodies, bodies, 0)
     part = parts_of(model)[0]
-    assert part.richest == part.given
+    assert part.detailed == part.given
     advice = advise(model, H, T_END, "tip.position", 2e-2)
     assert advice.confirmed
     assert len(advice.model.bodies) == 1
