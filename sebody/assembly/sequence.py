@@ -66,7 +66,9 @@ def _couplings(model: Mechanism, owners: Owners, awaited: dict[int, set[int]]) -
     for element in (*model.constraints, *model.loads):
         keys = {id(p): None for p in parents(element.triplets) if p.solved and id(p) in owners}
         if len({k for key in keys for k in owners[key]}) > 1:
-            found.append(Coupling(keys, element.multipliers, awaited.get(id(element), ())))
+            # a triplet without a body is refused by the numbering, which names it
+            known = [key for key in awaited.get(id(element), ()) if key in owners]
+            found.append(Coupling(keys, element.multipliers, known))
     return found
 
 

@@ -7,7 +7,11 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ellipj, ellipk, ellipkinc
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
+from sebody.fem import Section
 from sebody.scenes import heavy_top, torque_free_body
+
+SECTION = Section(area=1e-4, inertia_y=1e-9, inertia_z=2e-9, torsion=2e-9, youngs_modulus=2e11,
+                  poisson_ratio=0.3, density=7800.0)
 
 
 def free_rotation(t, inertia, spin):
@@ -229,6 +233,25 @@ def test_wrong_bodies_and_links(action, message):
     model.node("half", (0, 1, 0), keeps="translation")
     with pytest.raises(InputError, match=message):
         action(model)
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.7])
+def test_a_point_mass_as_a_piston_has_a_loose_rotation(turned):
+    """In a loop of three bodies, whose order is found before loose rotations are."""
+    model, axis = Model(), (0.0, 0.0, 1.0)
+    turn = Rotation.from_rotvec((0.0, 0.0, turned))
+    for name, place in (("o", (0, 0, 0)), ("c", (1, 0.5, 0)), ("r", (1, 0.5, 0)), ("e", (3, 0, 0)),
+                        ("p", (3, 0, 0))):
+        model.node(name, turn.apply(place))
+    model.beam("crank", ["o", "c"], SECTION, 2, 1, 1)
+    model.beam("rod", ["r", "e"], SECTION, 2, 1, 1)
+    model.point_mass("piston", "p", 1.0)
+    model.revolute("o", axis)
+    model.revolute("r", axis, to="c")
+    model.prismatic("p", turn.apply((1, 0, 0)))
+    model.revolute("p", axis, to="e")
+    with pytest.raises(InputError, match="the rotation of node 'p' is not connected to anything"):
+        Simulation(model, 0.01)
 
 
 def test_a_point_mass_leaves_a_rotation_without_mass():
