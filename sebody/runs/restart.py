@@ -47,7 +47,8 @@ from sebody.files.checksums import changed, checksums
 from sebody.files.members import Header, Member, Table
 from sebody.model.model import Model
 from sebody.runs.fingerprint import fingerprint
-from sebody.runs.simulation import MOST_STEPS, Simulation
+from sebody.runs.simulation import Simulation
+from sebody.runs.steps import MOST_STEPS
 from sebody.runs.tolerance import Tolerance
 
 VERSION = 3

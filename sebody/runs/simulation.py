@@ -50,6 +50,7 @@ from sebody.runs.pulses import unseen, untold
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.schemes import checked, generalized_alpha
 from sebody.runs.start_remarks import start_remarks
+from sebody.runs.steps import MOST_STEPS, check_steps
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
 
 FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerated at the start
@@ -57,7 +58,6 @@ LOOK = 0.2              # seconds in the loop until it returns to Python, which 
 FIRST_CHUNK = 1         # steps before the first return
 GROWTH = 8.0            # largest factor from one chunk of steps to the next
 OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's
-MOST_STEPS = 1e12       # of a run: weeks, at a microsecond each
 
 
 class Simulation:
@@ -206,10 +206,8 @@ class Simulation:
         """
         past = f"cannot run to t = {inputs.shown(t_end)} from t = {self.time}: give a later time"
         t_end = inputs.number(t_end, "t_end", remedy=past)
+        check_steps(t_end, self.h)
         steps = t_end / self.h
-        if steps > MOST_STEPS:
-            raise InputError(f"t_end is {t_end:g}: that is {steps:.3g} steps of {self.h:g}, give "
-                             "an earlier time or a longer step")
         if round(steps) < self.state.control[GRID]:
             raise InputError(past)
         there = abs(t_end - self.time) <= OFF_GRID * min(self.h, max(t_end, self.time))

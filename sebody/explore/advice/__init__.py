@@ -16,7 +16,7 @@ from sebody.explore.advice.runs import Runs
 from sebody.explore.advice.search import Search
 from sebody.model.model import Model
 from sebody.runs.progress import showing
-from sebody.runs.simulation import MOST_STEPS
+from sebody.runs.steps import check_steps
 
 STEPS = 128         # of a run whose step is not given
 
@@ -71,9 +71,7 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
     wanted = Quantities(quantities)
     t_end = inputs.number(t_end, "t_end", above=0)
     h = t_end / STEPS if h is None else inputs.number(h, "h", above=0)
-    if t_end / h > MOST_STEPS:
-        raise InputError(f"t_end is {t_end:g}: that is {t_end / h:.3g} steps of {h:g}, give an "
-                         "earlier time or a longer step")
+    check_steps(t_end, h)
     if not np.isclose(t_end / h, round(t_end / h), rtol=1e-9, atol=0):
         raise InputError(f"t_end is {t_end:g}, {t_end / h:.6g} steps of {h:g}: give a whole number "
                          "of steps")

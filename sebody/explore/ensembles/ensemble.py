@@ -24,7 +24,8 @@ from sebody.model.tables import summary
 from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 from sebody.runs.progress import showing
-from sebody.runs.simulation import MOST_STEPS, Simulation
+from sebody.runs.simulation import Simulation
+from sebody.runs.steps import check_steps
 from sebody.runs.user_faults import refuse_changed
 
 PLACING = ".position", ".rotation"      # parameters that move where runs begin
@@ -148,9 +149,7 @@ class Ensemble:
 
     def _last_step(self, t_end: float) -> int:
         t_end = inputs.number(t_end, "t_end", above=0)
-        if t_end / self.h > MOST_STEPS:
-            raise InputError(f"t_end is {t_end:g}: that is {t_end / self.h:.3g} steps of "
-                             f"{self.h:g}, give an earlier time or a longer step")
+        check_steps(t_end, self.h)
         last = round(t_end / self.h)
         if last < 1 or abs(t_end / self.h - last) > 1e-6:
             raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {self.h:g}: "

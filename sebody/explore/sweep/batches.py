@@ -14,7 +14,7 @@ from sebody import inputs
 from sebody.errors import InputError, SebodyError
 from sebody.explore.ensembles import Ensemble, Output
 from sebody.runs.schemes import generalized_alpha
-from sebody.runs.simulation import MOST_STEPS
+from sebody.runs.steps import check_steps
 
 KEPT = 32               # ensembles that a process keeps
 TRIED = 64              # structures that are built before the first run, to see that they can be
@@ -86,9 +86,7 @@ def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble
     scheme = generalized_alpha(of_run["rho"]) if "rho" in of_run else None
     h = inputs.number(of_run.get("step", scene.h), "the time step", above=0)
     t_end = inputs.number(of_run.get("t_end", scene.t_end), "t_end", least=0)
-    if not t_end / h <= MOST_STEPS:
-        raise InputError(f"t_end is {t_end:g}: that is {t_end / h:.3g} steps of {h:g}, give an "
-                         "earlier time or a longer step")
+    check_steps(t_end, h)
     steps = round(t_end / h)
     return Ensemble(scene.model, h, scheme), steps * h
 
