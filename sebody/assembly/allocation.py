@@ -7,15 +7,11 @@ from sebody.assembly.build import work_size
 from sebody.assembly.numbering import Numbering, record_counts, stretch
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
 from sebody.engine.newton import SLOWEST
+from sebody.engine.scalars import record
 from sebody.engine.state import (
-    AUX_STEP,
-    CLOCKS,
-    CONTRACTION,
-    CONTROLS,
-    CURRENT_STEP,
+    CLOCK,
+    CONTROL,
     EVALUATED,
-    STEP,
-    WANTED,
     State,
 )
 from sebody.engine.system import System
@@ -40,10 +36,10 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     R = _rotations(model, numbering)
     zeros = np.zeros
     acting = int(system.at_g[-1] - system.at_g[system.first_power[0]]) + len(system.prescribed)
-    clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
-    clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
-    clock[CONTRACTION] = SLOWEST
-    control[WANTED] = EVALUATED
+    clock, control = record(CLOCK), record(CONTROL)
+    clock.step = clock.current_step = clock.aux_step = h
+    clock.contraction = SLOWEST
+    control.wanted = EVALUATED
     coefficients = zeros(COEFFICIENTS.size(counts))
     coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
     state = State.of(

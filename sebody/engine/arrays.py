@@ -23,7 +23,7 @@ _WORD = ir.IntType(64)
 
 
 class Arrays:
-    """Base of frozen dataclasses of C-contiguous arrays, or of such groups again.
+    """Base of frozen dataclasses of C-contiguous arrays, records of scalars, or such groups again.
 
     Arrays may be written to, never replaced. Whoever calls compiled code keeps the group alive.
     """
@@ -34,6 +34,10 @@ class Arrays:
             if isinstance(value, Arrays):
                 words += value._words.tolist()
                 facts.append((type(value), value._facts))
+                continue
+            if isinstance(value, np.record):
+                words.append(value.__array_interface__["data"][0])
+                facts.append((value.dtype, None))
                 continue
             assert value.flags.c_contiguous
             # a third of the time of the array's own `ctypes`: a run has a hundred arrays
@@ -50,7 +54,8 @@ class Arrays:
 def _view(group: type[Arrays], facts: tuple, sources: str) -> "View":
     """The type of a group, looked up: typing a hundred arrays takes a millisecond."""
     members = [_view(kind, own, sources) if isinstance(own, tuple) else
-               types.Array(from_dtype(kind), own, "C") for kind, own in facts]
+               from_dtype(kind) if own is None else types.Array(from_dtype(kind), own, "C")
+               for kind, own in facts]
     names = [field.name for field in fields(group)]
     way().show_members(View, names, _kind_of_member, _member)
     return View(group.__name__, tuple(zip(names, members, strict=True)), sources)
@@ -80,10 +85,10 @@ class View(types.Type):
 
 
 def _size(kind: types.Type) -> int:
-    """Words of a group or of an array."""
+    """Words of a group, of a record of scalars or of an array."""
     if isinstance(kind, View):
         return sum(_size(member) for _, member in kind.members)
-    return 1 + kind.ndim
+    return 1 if isinstance(kind, types.Record) else 1 + kind.ndim
 
 
 @register_model(View)
@@ -116,6 +121,8 @@ def _member(context, builder, view, pointer, name):
         # groups never change: without this every store would make LLVM read the places again
         loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
         return loaded
+    if isinstance(kind, types.Record):
+        return builder.inttoptr(word(0), context.get_value_type(kind))
     array = context.make_array(kind)(context, builder)
     item = context.get_abi_sizeof(context.get_data_type(kind.dtype))
     shape = [word(1 + k) for k in range(kind.ndim)]

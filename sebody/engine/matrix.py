@@ -15,7 +15,7 @@ from sebody.engine.relaxation import (
     relax,
     spread,
 )
-from sebody.engine.state import EVALUATED, FLOOR, PIVOTED, RELAXED
+from sebody.engine.state import EVALUATED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
 
@@ -122,7 +122,7 @@ def equilibrate(system, state):
         state.weight[i] = 1.0 / state.scale[i]
         size = max(system.magnitude[i], abs(state.q[i])) * state.weight[i]
         floor += size * size * (1.0 if system.magnitude[i] > 0.0 else 0.0)
-    state.clock[FLOOR] = ROUNDING * np.sqrt(floor)      # left by rounding of positions
+    state.clock.floor = ROUNDING * np.sqrt(floor)      # left by rounding of positions
 
 
 @compiled
@@ -170,7 +170,7 @@ def refactorize(system, state, wanted, dense):
     sum_matrices(system, state, state.forces)
     if wanted == EVALUATED:
         equilibrate(system, state)
-    state.control[RELAXED] = 0
+    state.control.relaxed = 0
     if dense:
         n = system.diagonal.size
         if not relaxed and invert_dense(system, state, n, False, wanted):
@@ -183,7 +183,7 @@ def refactorize(system, state, wanted, dense):
         system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
         pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
         pointer_to(state.matrix), pointer_to(state.column), pointer_to(state.scale))
-    state.control[PIVOTED] = 0 if done else 1
+    state.control.pivoted = 0 if done else 1
     if not done:
         sum_matrices(system, state, state.forces)
         if relaxed:
@@ -202,5 +202,5 @@ def solve(system, state, dense):
                       pointer_to(state.correction), n, n)
     else:
         elimination.solve(system, state, state.residual, state.correction)
-        if state.control[RELAXED] == 1:
+        if state.control.relaxed == 1:
             project(system, state)

@@ -42,7 +42,7 @@ class Places:
     def packed(self, group: Group, buffer: NDArray) -> Group:
         """The same group with its floats in `buffer`, which gets their contents.
 
-        Integers are copied where a run writes to them; the pattern of a model is shared.
+        Integers and records of scalars are shared.
         """
         made = {}
         for one in fields(group):
@@ -83,5 +83,5 @@ def patterns(group: Arrays) -> Iterator[NDArray]:
         value = getattr(group, one.name)
         if isinstance(value, Arrays):
             yield from patterns(value)
-        elif value.dtype != np.float64:
+        elif value.dtype != np.float64 and value.dtype.names is None:
             yield value

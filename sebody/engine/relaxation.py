@@ -24,7 +24,6 @@ import numpy as np
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_MASS
 from sebody.engine import elimination
-from sebody.engine.state import RELAXED
 
 RELAXATION = 1e-8       # of R at multipliers, for elimination without row exchanges
 EXCHANGED = 1e-10       # the same for inverses, which rounding spoils less
@@ -41,7 +40,7 @@ def relax(system, state, relaxation):
     _set_relaxation(system, state, relaxation)
     for i in range(system.diagonal.size):
         state.matrix[system.diagonal[i]] += state.relaxation[i]
-    state.control[RELAXED] = 1
+    state.control.relaxed = 1
 
 
 @compiled

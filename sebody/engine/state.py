@@ -1,4 +1,4 @@
-"""Data of the compiled loop: state, records, scheme, and the indices of counters."""
+"""Data of the compiled loop: state, records and scheme."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -118,8 +118,8 @@ class State(Arrays):
     --------------------  --------------------------------------------------------------------------
     counters
     ------------------------------------------------------------------------------------------------
-    clock                 floats, see the CLOCK indices
-    control               integers, see the CONTROL indices
+    clock                 times, lengths of steps and norms, see the fields `CLOCK`
+    control               phases, counters and flags, see the fields `CONTROL`
     ====================  ==========================================================================
     """
 
@@ -175,8 +175,8 @@ class State(Arrays):
     work: NDArray
     energy: NDArray
     error_weights: NDArray
-    clock: NDArray
-    control: NDArray
+    clock: np.record
+    control: np.record
 
     @classmethod
     def of(cls, counts: Mapping[str, int], **others: NDArray) -> "State":
@@ -207,57 +207,57 @@ class State(Arrays):
             self.coefficients[places[name]] = value
 
 
-# State.clock: indices of floats
-(TIME,                  # reached
- STEP,                  # of the output grid
- CURRENT_STEP,          # length of the step under way
- LAST_NORM,             # of the last correction, after mixing
- CONTRACTION,           # rate of the last two corrections, carried over to the next step
- FACTOR_STEP,           # step length of the last matrix with new element matrices
- FLOOR,                 # norm that rounding of positions leaves
- SPAN,                  # logarithm of the first correction's norm over its target
- BASELINE_CONTRACTION,  # best rate of the first steps with new element matrices
- EXCESS,                # iterations since then that the baseline rate would have saved
- ACCELERATION_NORM,     # largest norm of beta h^2 a so far, slowly forgotten
- AUX_STEP,              # step length that the auxiliary accelerations belong to
- CHOSEN,                # step length that the error allows (variable steps)
- LARGEST_ERROR,         # of a step with that length, slowly forgotten; 1 is allowed
- TARGET,                # norm below which a correction counts as converged
- END,                   # time at the end of the step under way
- BESIDE,                # time from there at which its loads are read: before a jump, or 0
- ) = range(17)
-CLOCKS = BESIDE + 1
-# State.control: indices of integers
-(PHASE,                 # where the loop continues: BEGIN to SOLVED
- GRID,                  # output steps completed
- UNIT,                  # parts of the next output step completed, of FINEST
- LEVEL,                 # how often the output step is halved
- ITERATION,             # corrections in this step
- FRESH,                 # factorizations in this step
- WANTED,                # what the next iteration needs: KEPT, ROTATED or EVALUATED
- REASON,                # why the last step failed
- ITERATIONS,            # corrections since the start
- MATRICES,              # factorizations since the start
- STEPS,                 # accepted
- CUTS,                  # steps repeated with a shorter one since the start
- RECORDED,              # rows written to the record
- AGE,                   # steps since all element matrices were evaluated
- PIVOTED,               # 1 where the matrix needs row exchanges: SuperLU factorizes it
- BACK_OFF,              # steps that begin with a refreshed matrix after reuse failed
- BACK_OFF_LEFT,         # of these, still to come
- ADAPTIVE,              # 1 for variable steps
- CORNER,                # next entry of System.corners
- HELD,                  # steps since the step length changed
- REJECTED,              # steps repeated because of their error
- SECANT,                # 1 where the last correction belongs to this step and its matrix
- RELAXED,               # 1 where the matrix is regularized
- MEETS,                 # what the step under way ends at: NOTHING, BEND or JUMP
- SPLIT,                 # 1 where it ends at a jump within a part of an output step
- INSIDE,                # 1 where it began at such a jump
- RESTART,               # ASKED or AHEAD where accelerations are to be solved for, else 0
- DUE,                   # 1 where the state is recorded after that
- ) = range(28)
-CONTROLS = DUE + 1
+# fields of State.clock
+CLOCK = np.dtype([(name, np.float64) for name in (
+    "time",                  # reached
+    "step",                  # of the output grid
+    "current_step",          # length of the step under way
+    "last_norm",             # of the last correction, after mixing
+    "contraction",           # rate of the last two corrections, carried over to the next step
+    "factor_step",           # step length of the last matrix with new element matrices
+    "floor",                 # norm that rounding of positions leaves
+    "span",                  # logarithm of the first correction's norm over its target
+    "baseline_contraction",  # best rate of the first steps with new element matrices
+    "excess",                # iterations since then that the baseline rate would have saved
+    "acceleration_norm",     # largest norm of beta h^2 a so far, slowly forgotten
+    "aux_step",              # step length that the auxiliary accelerations belong to
+    "chosen",                # step length that the error allows (variable steps)
+    "largest_error",         # of a step with that length, slowly forgotten; 1 is allowed
+    "target",                # norm below which a correction counts as converged
+    "end",                   # time at the end of the step under way
+    "beside",                # time from there at which its loads are read: before a jump, or 0
+)])
+# fields of State.control
+CONTROL = np.dtype([(name, np.int64) for name in (
+    "phase",                 # where the loop continues: BEGIN to SOLVED
+    "grid",                  # output steps completed
+    "unit",                  # parts of the next output step completed, of FINEST
+    "level",                 # how often the output step is halved
+    "iteration",             # corrections in this step
+    "fresh",                 # factorizations in this step
+    "wanted",                # what the next iteration needs: KEPT, ROTATED or EVALUATED
+    "reason",                # why the last step failed
+    "iterations",            # corrections since the start
+    "matrices",              # factorizations since the start
+    "steps",                 # accepted
+    "cuts",                  # steps repeated with a shorter one since the start
+    "recorded",              # rows written to the record
+    "age",                   # steps since all element matrices were evaluated
+    "pivoted",               # 1 where the matrix needs row exchanges: SuperLU factorizes it
+    "back_off",              # steps that begin with a refreshed matrix after reuse failed
+    "back_off_left",         # of these, still to come
+    "adaptive",              # 1 for variable steps
+    "corner",                # next entry of System.corners
+    "held",                  # steps since the step length changed
+    "rejected",              # steps repeated because of their error
+    "secant",                # 1 where the last correction belongs to this step and its matrix
+    "relaxed",               # 1 where the matrix is regularized
+    "meets",                 # what the step under way ends at: NOTHING, BEND or JUMP
+    "split",                 # 1 where it ends at a jump within a part of an output step
+    "inside",                # 1 where it began at such a jump
+    "restart",               # ASKED or AHEAD where accelerations are to be solved for, else 0
+    "due",                   # 1 where the state is recorded after that
+)])
 
 
 @dataclass(frozen=True, eq=False)

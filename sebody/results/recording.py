@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, record_counts
 from sebody.contract.layout import ENERGIES, RECORD
+from sebody.engine.scalars import numbers_of
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
@@ -73,8 +74,8 @@ class Recording:
 
     @cached_property
     def counters(self) -> NDArray:
-        """Steps, iterations and others, by the CONTROL indices of `engine.state`."""
-        return self.state.control.copy()
+        """Steps, iterations and others, in the order of `engine.state.CONTROL`."""
+        return numbers_of(self.state.control).copy()
 
     @cached_property
     def energies(self) -> NDArray:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.engine.state import CUTS, ITERATIONS, MATRICES, STEPS
+from sebody.engine.scalars import record
+from sebody.engine.state import CONTROL
 from sebody.files import check_target, replacing
 from sebody.model.tables import table
 from sebody.results import hdf5, naming, quantities, tables
@@ -84,22 +85,22 @@ class Result(Recording):
     @property
     def steps(self) -> int:
         """Accepted steps, those of reduced size included."""
-        return int(self.counters[STEPS])
+        return int(record(CONTROL, self.counters).steps)
 
     @property
     def cuts(self) -> int:
         """Rejected steps: Newton's iteration did not converge, and the step was made smaller."""
-        return int(self.counters[CUTS])
+        return int(record(CONTROL, self.counters).cuts)
 
     @property
     def matrices(self) -> int:
         """Number of factorizations of the iteration matrix."""
-        return int(self.counters[MATRICES])
+        return int(record(CONTROL, self.counters).matrices)
 
     @property
     def iterations_per_step(self) -> float:
         """Newton iterations a step."""
-        return float(self.counters[ITERATIONS]) / max(self.steps, 1)
+        return float(record(CONTROL, self.counters).iterations) / max(self.steps, 1)
 
     @property
     def microseconds_per_step(self) -> float:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering
 from sebody.contract.layout import RECORD_T
-from sebody.engine.state import CONTROLS
+from sebody.engine.state import CONTROL
 from sebody.errors import InputError
 from sebody.files.arrays import json_of, opened
 from sebody.files.checksums import changed, checksums
@@ -35,7 +35,7 @@ NUMBERS = Member((None,), finite=False)     # of the model's arrays
 # lengths by the names of `member_lengths`
 MEMBERS = {"rows": Member(("states", "width")), "elements": Member(("states", "forces")),
            "supports": Member(("states", "supports")),
-           "counters": Member((CONTROLS,), "i", least=0),
+           "counters": Member((len(CONTROL.names),), "i", least=0),
            "energies": Member(("states", "energies")), "powers": Member(("states", "ports")),
            "constraint_residuals": Member(("states", 2))}
 

@@ -11,7 +11,7 @@ from sebody.assembly.numbering import Numbering, coordinates
 from sebody.contract.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
 from sebody.engine.links import place_dependent
-from sebody.engine.state import ASKED, RESTART, State
+from sebody.engine.state import ASKED, State
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
@@ -56,7 +56,7 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
         _check_accelerations(system, numbering, state, solver)
     state.frames_old[:] = state.frames
     system.relaxed[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
-    state.control[RESTART] = ASKED
+    state.control.restart = ASKED
     return Start(changed, solver.redundant, solver.shared)
 
 

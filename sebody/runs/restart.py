@@ -11,32 +11,16 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.contract.layout import RECORD_T
+from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
-    ADAPTIVE,
     AHEAD,
-    CORNER,
-    CURRENT_STEP,
-    DUE,
+    CLOCK,
+    CONTROL,
     EVALUATED,
     FINEST,
-    GRID,
-    INSIDE,
     JUMP,
-    LEVEL,
-    MEETS,
-    PHASE,
-    PIVOTED,
-    REASON,
     REASONS,
-    RELAXED,
-    RESTART,
-    SECANT,
     SOLVED,
-    SPLIT,
-    STEP,
-    TIME,
-    UNIT,
-    WANTED,
     Scheme,
     State,
 )
@@ -58,9 +42,9 @@ OF_START = "relaxed", "massless", "inertias", "thin"    # of the system, found a
 REMEDY, REPEAT = "give one that was saved by sebody.analysis.save_state", "run the model again"
 OFF = 1e-6          # of a step, by which rounding may put a time off
 # largest values of counters; others count steps, of which no run has more than MOST_STEPS
-MOST = {PHASE: SOLVED, UNIT: FINEST, LEVEL: FINEST.bit_length(), WANTED: EVALUATED,
-        REASON: max(REASONS), PIVOTED: 1, ADAPTIVE: 1, SECANT: 1, RELAXED: 1,
-        MEETS: JUMP, SPLIT: 1, INSIDE: 1, RESTART: AHEAD, DUE: 1}
+MOST = {"phase": SOLVED, "unit": FINEST, "level": FINEST.bit_length(), "wanted": EVALUATED,
+        "reason": max(REASONS), "pivoted": 1, "adaptive": 1, "secant": 1, "relaxed": 1,
+        "meets": JUMP, "split": 1, "inside": 1, "restart": AHEAD, "due": 1}
 FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old")
 
 
@@ -76,7 +60,7 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     """
     path = check_target(path, *TARGET)
     inputs.instance(run, "run", Simulation, "give a Simulation")
-    arrays = {field.name: getattr(run.state, field.name) for field in fields(State)}
+    arrays = _arrays(run.state)
     arrays |= {name: getattr(run.system, name) for name in OF_START}
     arrays["rows"] = np.concatenate(run.rows)
     settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
@@ -110,13 +94,13 @@ def resume(model: Model, path: str | Path) -> Simulation:
     _check_numbers(table, run, arrays)
     if odd := changed(arrays, settings.get("checksums")):
         raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
-    for field in fields(State):
-        getattr(run.state, field.name)[...] = arrays[field.name]
+    for name, array in _arrays(run.state).items():
+        array[...] = arrays[name]
     for name in OF_START:
         getattr(run.system, name)[:] = arrays[name]
     run.rows = [arrays["rows"]]
     run.seconds = settings["seconds"]
-    if run.state.control[PIVOTED]:
+    if run.state.control.pivoted:
         run.exchanges.factorize()
     return run
 
@@ -164,29 +148,36 @@ def _members(run: Simulation) -> dict[str, Member]:
              "massless": Member((1,), "i", least=0)}
     for name in ("inertias", "thin"):
         found[name] = Member(getattr(run.system, name).shape, least=0)
-    for field in fields(State):
-        array = getattr(run.state, field.name)
-        found[field.name] = Member(array.shape, array.dtype.kind, finite=field.name in FINITE)
+    for name, array in _arrays(run.state).items():
+        found[name] = Member(array.shape, array.dtype.kind, finite=name in FINITE)
     return found
+
+
+def _arrays(state: State) -> dict[str, NDArray]:
+    """The members of a state by name; scalars as arrays that share their memory."""
+    found = {field.name: getattr(state, field.name) for field in fields(State)}
+    return {name: numbers_of(value) if isinstance(value, np.record) else value
+            for name, value in found.items()}
 
 
 def _check_numbers(table: Table, run: Simulation, arrays: Mapping[str, NDArray]) -> None:
     """Refuse counters and times that no run can have reached."""
-    control, clock, rows = arrays["control"], arrays["clock"], arrays["rows"]
-    for k, value in enumerate(control):
-        most = MOST.get(k, MOST_STEPS if k != CORNER else run.system.corners.size)
-        if not 0 <= value <= most:
-            raise table.fault(f"holds {value} in control at {k}, outside 0 to {most:g}")
-    for k in (TIME, STEP, CURRENT_STEP):
-        if not np.isfinite(clock[k]):
-            raise table.fault("holds numbers in clock that are not finite")
-    t, grid, h = rows[:, RECORD_T], control[GRID], run.h
-    reached = (grid + control[UNIT] / FINEST) * h
+    control, clock = record(CONTROL, arrays["control"]), record(CLOCK, arrays["clock"])
+    rows = arrays["rows"]
+    for name in CONTROL.names:
+        most = MOST.get(name, MOST_STEPS if name != "corner" else run.system.corners.size)
+        if not 0 <= control[name] <= most:
+            raise table.fault(f"holds {control[name]} in control for {name}, outside 0 to {most:g}")
+    for name in ("time", "step", "current_step"):
+        if not np.isfinite(clock[name]):
+            raise table.fault(f"holds {clock[name]} in clock for {name}")
+    t, grid, h = rows[:, RECORD_T], control.grid, run.h
+    reached = (grid + control.unit / FINEST) * h
     past = OFF * h if run.tolerance is None else np.inf     # variable steps go past the grid
-    if clock[STEP] != h or not reached - OFF * h <= clock[TIME] <= reached + past:
-        raise table.fault(f"holds the time {clock[TIME]:g} after {grid} steps of {clock[STEP]:g}")
-    if not 0.0 < clock[CURRENT_STEP] <= h + past:
-        raise table.fault(f"holds a step of {clock[CURRENT_STEP]:g} with an output grid of {h:g}")
-    if not len(t) or not (np.diff(t) > 0).all() or t[-1] > clock[TIME] + OFF * h:
+    if clock.step != h or not reached - OFF * h <= clock.time <= reached + past:
+        raise table.fault(f"holds the time {clock.time:g} after {grid} steps of {clock.step:g}")
+    if not 0.0 < clock.current_step <= h + past:
+        raise table.fault(f"holds a step of {clock.current_step:g} with an output grid of {h:g}")
+    if not len(t) or not (np.diff(t) > 0).all() or t[-1] > clock.time + OFF * h:
         raise table.fault("holds states that are not in the order of their times up to "
-                          f"{clock[TIME]:g}")
+                          f"{clock.time:g}")

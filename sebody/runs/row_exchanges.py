@@ -9,7 +9,7 @@ from scipy.sparse import csc_matrix, diags
 from sebody.assembly.evaluation import assembled
 from sebody.engine.matrix import sum_matrices
 from sebody.engine.relaxation import PROJECTIONS, RELAXATION, relax
-from sebody.engine.state import FACTORED, PHASE, PROJECTED, RELAXED, RESTART, SOLVED, State
+from sebody.engine.state import FACTORED, PROJECTED, SOLVED, State
 from sebody.engine.system import System
 from sebody.runs.kkt_solver import SINGULAR, Scaled, factors
 from sebody.runs.redundancy import least
@@ -27,7 +27,7 @@ class RowExchanges:
 
     def serve(self) -> None:
         """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
-        phase = self.state.control[PHASE]
+        phase = self.state.control.phase
         if phase == FACTORED:
             self.factorize()
         elif phase in (PROJECTED, SOLVED):
@@ -36,7 +36,7 @@ class RowExchanges:
     def factorize(self) -> None:
         """Factorize the sum in `State.matrix`."""
         self._solver = None
-        if self.state.control[RESTART]:
+        if self.state.control.restart:
             self._solver = self._of_masses()
         elif not self._factorized():
             relax(self.system, self.state, RELAXATION)
@@ -49,7 +49,7 @@ class RowExchanges:
             state.correction[:n] = self._solver(state.residual[:n].copy())
             return
         correction = self._solved(state.residual[:n])
-        if state.control[RELAXED]:
+        if state.control.relaxed:
             for _ in range(PROJECTIONS):
                 correction -= self._solved(state.relaxation[:n] * self.system.is_multiplier[:n]
                                            * correction)

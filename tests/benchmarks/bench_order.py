@@ -21,7 +21,7 @@ from sebody.assembly.batches import make_batches
 from sebody.assembly.links import link_ends, link_tables
 from sebody.assembly.numbering import number
 from sebody.assembly.places import element_places
-from sebody.engine.state import EVALUATED, WANTED
+from sebody.engine.state import EVALUATED
 from sebody.fem import Section, planar_beam
 from sebody.reduction import craig_bampton
 
@@ -140,7 +140,7 @@ def microseconds(run: Simulation) -> float:
     """Time of a step, the quickest of some stretches; each begins with a new matrix."""
     quickest = float("inf")
     for _ in range(REPEATS):
-        run.state.control[WANTED] = EVALUATED
+        run.state.control.wanted = EVALUATED
         began = run.seconds
         run.run_to(run.time + STEPS * STEP)
         quickest = min(quickest, (run.seconds - began) / STEPS)

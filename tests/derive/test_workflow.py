@@ -80,7 +80,8 @@ import numpy as np
 from numba import njit
 from sebody.engine.arrays import Arrays
 from sebody.engine.elimination import eliminate
-from sebody.engine.state import CONTROLS, CLOCKS
+from sebody.engine.scalars import record
+from sebody.engine.state import CLOCK, CONTROL
 from sebody.engine.step import cut_step
 from sebody.kernels.abi import padded, pointer_to
 from sebody.kernels.frame_search import converged_mean, planar_relative_angles
@@ -113,12 +114,12 @@ def elimination():
 
 @dataclass(frozen=True, eq=False)
 class Clock(Arrays):
-    clock: np.ndarray
-    control: np.ndarray
+    clock: np.record
+    control: np.record
 
 def cut():
     """Whether a step may be cut twice."""
-    state = Clock(np.ones(CLOCKS), np.zeros(CONTROLS, dtype=np.int64))
+    state = Clock(record(CLOCK, np.ones(len(CLOCK.names))), record(CONTROL))
     return cut_step(state), cut_step(state)
 
 print(*globals()[sys.argv[1]]() if sys.argv[1] != "column" else [padded(3)])

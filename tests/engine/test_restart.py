@@ -23,7 +23,6 @@ from sebody.analysis import Ensemble, linearize, resume, save_state
 from sebody.assembly import batches
 from sebody.assembly import build as assembly
 from sebody.compiler.sources import TEXT, room_hash
-from sebody.engine.state import MATRICES, PIVOTED
 from sebody.fem import Section, straight_beam
 from sebody.fem.loads import line_load
 from sebody.kernels import loader
@@ -244,7 +243,7 @@ def test_flexible_bodies_in_space(bodies, index, distributed, exchanged, monkeyp
         run = Simulation(model, h, FINE[index])
         found = run.run_to(0.2).result()[f"{tip}.position"][-1] - model.nodes[tip].point
         errors.append(np.abs(found - exact).max() / np.abs(exact).max())
-    assert bool(run.state.control[PIVOTED]) == exchanged
+    assert bool(run.state.control.pivoted) == exchanged
     assert 1.8 < order(steps, errors) < 2.2 and errors[-1] < 2e-3
 
 
@@ -356,7 +355,7 @@ def test_corners_that_do_not_jump_cost_nothing():
     times = np.sort(np.random.default_rng(1).uniform(0.0, 1.0, 50))
     table = np.column_stack([times, np.sin(20.0 * times)])
     result = simulate(rotor(table), 0.01, 1.0)
-    assert result.steps == 100 and result.state.control[MATRICES] == 1
+    assert result.steps == 100 and result.state.control.matrices == 1
 
 
 # forces that depend on multipliers

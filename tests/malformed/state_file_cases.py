@@ -4,16 +4,18 @@ import numpy as np
 from malformed.read_files import KINDS
 from malformed.tampering import Packed, bomb, entry, member, raw, text, without
 
+from sebody.engine.state import CONTROL
+
 RESTART = {
-    "negative control": Packed("holds -1 in control at 1", entry("control", 1, -1)),
+    "negative control": Packed("holds -1 in control for grid", entry("control", 1, -1)),
     "text control": Packed("in control, in place of whole numbers", member(
         "control", lambda old: old.astype(str))),
     "control of fractions": Packed("holds float64 in control", member(
         "control", lambda old: old + 0.25)),
-    **{f"control {k} too large": Packed(f"in control at {k}, outside 0 to", entry(
+    **{f"control {k} too large": Packed(f"in control for {CONTROL.names[k]}, outside 0 to", entry(
         "control", k, 10**15)) for k in (0, 1, 2, 3, 6, 7, 14, 17, 18, 21, 22)},
     "another time": Packed("holds the time 77 after 4 steps of 0.05", entry("clock", 0, 77.0)),
-    "NaN time": Packed("holds numbers in clock that are not finite", entry("clock", 0, np.nan)),
+    "NaN time": Packed("holds nan in clock for time", entry("clock", 0, np.nan)),
     "another step": Packed("steps of 1", entry("clock", 1, 1.0)),
     "no step": Packed("holds a step of 0 with", entry("clock", 2, 0.0)),
     "a negative step": Packed("holds a step of -1 with", entry("clock", 2, -1.0)),

@@ -10,15 +10,12 @@ from numpy.typing import NDArray
 from sebody.engine.evaluate import move_prescribed, set_loads
 from sebody.engine.links import place_dependent
 from sebody.engine.loop import advance
+from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
     ASKED,
     DONE,
     FAILED,
-    REASON,
     REASONS,
-    RECORDED,
-    RESTART,
-    TIME,
     Record,
     State,
 )
@@ -46,8 +43,8 @@ class Copies:
         self.floats = image.floats.copy()
         self.system: System = image.places.packed(one.system, self.floats)
         state = image.places.packed(one.state, self.floats)
-        self.control, self.moved = one.state.control.copy(), one.state.moved.copy()
         self.state: State = _with_own_integers(state)
+        self.unstarted = [x.copy() for x in self._not_in_floats()]
         self.exchanges = RowExchanges(self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
         self._record: Record | None = None
@@ -75,26 +72,33 @@ class Copies:
         """
         lines, system, state = self.image.lines, self.system, self.state
         self.floats[:] = self.image.floats
-        state.control[:], state.moved[:] = self.control, self.moved
+        for own, begun in zip(self._not_in_floats(), self.unstarted, strict=True):
+            own[:] = begun
         self.floats[lines.slots] += lines.slopes @ change
         set_loads(system, state.loads, 0.0)
         state.loads_old[:] = state.loads
         move_prescribed(system, state)
         place_dependent(system.links, state.q, state.v, state.a, state.R)
-        state.control[RESTART] = ASKED
+        state.control.restart = ASKED
         code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
-                             f"{REASONS[int(state.control[REASON])]}")
-        state.control[:] = self.control
+                             f"{REASONS[int(state.control.reason)]}")
+        numbers_of(state.control)[:] = self.unstarted[0]
         state.frames_old[:] = state.frames
         state.aux_old[:] = state.aux
         return code == DONE
 
+    def _not_in_floats(self) -> tuple[NDArray, ...]:
+        """What a run writes to and `floats` does not hold."""
+        return numbers_of(self.state.control), numbers_of(self.state.clock), self.state.moved
+
 
 def _with_own_integers(state: State) -> State:
-    """The same state with integers and flags of its own: threads write to them."""
-    own = {name: value.copy() if value.dtype != np.float64 else value
+    """The same state with scalars and flags of its own: threads write to them."""
+    own = {name: value if value.dtype == np.float64 else
+           record(value.dtype, numbers_of(value).copy()) if isinstance(value, np.record) else
+           value.copy()
            for name, value in ((f, getattr(state, f)) for f in State.__annotations__)}
     return State(**own)
 
@@ -129,18 +133,18 @@ class Course:
         rows = max(2, min(last // self.every + 1, MOST_NUMBERS // state.now.size))
         record = run.record(rows, self.every) if isinstance(run, Copies) else Record.of(
             state, rows, self.every)
-        state.control[RECORDED] = 0
+        state.control.recorded = 0
         write_record(state, record)
         reached, code = 0, DONE
         while reached < last and code == DONE:
-            room = rows - int(state.control[RECORDED])
+            room = rows - int(state.control.recorded)
             reached = min(last, (reached // self.every + room) * self.every)
             code = self._advance(record, reached, stop)
-            self._take(record.rows[:state.control[RECORDED]])
-            state.control[RECORDED] = 0
+            self._take(record.rows[:state.control.recorded])
+            state.control.recorded = 0
         if code == FAILED:
-            reason = REASONS[int(state.control[REASON])]
-            self.reason = f"stopped at t = {state.clock[TIME]:.6g}: {reason}"
+            reason = REASONS[int(state.control.reason)]
+            self.reason = f"stopped at t = {state.clock.time:.6g}: {reason}"
         return code in (DONE, FAILED) or run is None
 
     def _advance(self, record: Record, last: int, stop: Stop) -> int:
