@@ -75,10 +75,10 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
     q, v = np.zeros((2, numbering.total))
     for node in (*model.nodes.values(), *model.grounds):
         for triplet in (node.position, node.rotation):
-            if triplet is not None and id(triplet) in numbering.triplets:
+            if triplet is not None and triplet in numbering.triplets:
                 at = stretch(numbering, triplet)
                 # of a rotation in space R has it, and q the increment in a step
-                q[at] = 0.0 if id(triplet) in numbering.rotations else triplet.start
+                q[at] = 0.0 if triplet in numbering.rotations else triplet.start
                 v[at] = triplet.rate if triplet.solved else 0.0
     for body in model.bodies.values():
         first = numbering.modes[body.name]
@@ -90,8 +90,8 @@ def _rotations(model: Mechanism, numbering: Numbering) -> NDArray:
     """Initial rotation matrices, row by row."""
     found = _identities(9 * len(numbering.rotations))
     for triplet in model.triplets():
-        if id(triplet) in numbering.rotations and triplet.start.any():
-            at = 9 * numbering.rotations[id(triplet)]
+        if triplet in numbering.rotations and triplet.start.any():
+            at = 9 * numbering.rotations[triplet]
             rotate(found, at, *triplet.start, found, at)
     return found
 

@@ -21,9 +21,9 @@ def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
     for k, body in enumerate(model.bodies.values()):
         for triplet in body.positions:
             if triplet.solved:
-                frame_of.setdefault(numbering.triplets[id(triplet)], k)
+                frame_of.setdefault(numbering.triplets[triplet], k)
     for triplet in numbering.dependent:
-        frame_of[numbering.triplets[id(triplet)]] = -1
+        frame_of[numbering.triplets[triplet]] = -1
     return frame_of
 
 

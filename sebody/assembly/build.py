@@ -60,7 +60,7 @@ def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: E
     return Structure(
         numbering.free, numbering.total, numbering.free <= DENSE_LIMIT,
         tuple(numbering.groups.tolist()),
-        tuple([(numbering.multipliers[id(c)], c.multipliers) for c in model.constraints]),
+        tuple([(numbering.multipliers[c], c.multipliers) for c in model.constraints]),
         any(len(c.triplets) > 1 for c in model.constraints),
         tuple(frames(model, numbering).items()), ends,
         tuple([batch.shape for batch in batches.all]), batches.first_joint, batches.first_power)
@@ -84,11 +84,11 @@ def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
     found = np.arange(numbering.total)
     for node in model.nodes.values():
         for triplet in (node.position, node.rotation):
-            if triplet is not None and id(triplet) in numbering.triplets:
+            if triplet is not None and triplet in numbering.triplets:
                 own = stretch(numbering, triplet)
                 found[own] = own.start
     for equation in model.constraints:
-        first = numbering.multipliers[id(equation)]
+        first = numbering.multipliers[equation]
         found[first:first + equation.multipliers] = first
     return found
 
@@ -107,6 +107,6 @@ def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
     size = np.zeros(numbering.total)
     for node in model.nodes.values():
         for triplet, magnitude in ((node.position, length), (node.rotation, 1.0)):
-            if triplet is not None and id(triplet) in numbering.triplets:
+            if triplet is not None and triplet in numbering.triplets:
                 size[stretch(numbering, triplet)] = magnitude
     return size

@@ -39,7 +39,7 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
     InputError
         What it has is not what its kernel reads; the message names both.
     """
-    matrices = sum(id(t) in numbering.rotations for t in element.triplets)
+    matrices = sum(t in numbering.rotations for t in element.triplets)
     wrong = _different((("unknowns", unknowns, kernel.WIDTH),
                         ("multipliers", element.multipliers, kernel.MULTIPLIERS),
                         ("numbers kept", int(element.keeps_angle), kernel.MEMORY),
@@ -49,7 +49,7 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
         wrong.append("it has no time function, but the kernel reads one")
     if element.history is not None and not kernel.POWER:
         wrong.append("it has a time function, but the kernel reads none")
-    if kernel.POWER != (id(element) in numbering.ports):
+    if kernel.POWER != (element in numbering.ports):
         wrong.append("it has no power port and the kernel writes power" if kernel.POWER else
                      "it has a power port and the kernel writes no power")
     if wrong:

@@ -7,7 +7,7 @@ always an item with the fewest unknowns around it (Tinney and Walker, Proc. IEEE
 its bodies.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
@@ -18,12 +18,12 @@ REMEMBERED = 32         # orders
 class Coupling(NamedTuple):
     """What couples triplets: the equations of a joint, a spring."""
 
-    keys: Iterable[int]             # of the triplets
+    keys: Iterable[Hashable]        # of the triplets
     multipliers: int = 0
-    awaited: Iterable[int] = ()     # triplets that are eliminated before the multipliers
+    awaited: Iterable[Hashable] = ()    # triplets that are eliminated before the multipliers
 
 
-def elimination_order(bodies: Sequence[Mapping[int, int]],
+def elimination_order(bodies: Sequence[Mapping[Hashable, int]],
                       couplings: Iterable[Coupling]) -> list[int]:
     """Bodies in an order of little fill; of equally good ones the first comes first.
 
@@ -39,7 +39,7 @@ def elimination_order(bodies: Sequence[Mapping[int, int]],
     list of int
         A postorder of the elimination tree: bodies that are coupled are close to each other.
     """
-    number: dict[int, int] = {}         # keys differ from model to model, their numbers do not
+    number: dict[Hashable, int] = {}    # keys differ from model to model, their numbers do not
     for body in bodies:
         for key in body:
             number.setdefault(key, len(number))

@@ -26,10 +26,10 @@ def link_ends(model: Mechanism, numbering: Numbering) -> tuple[Ends, NDArray]:
     for triplet in numbering.dependent:
         first = len(arms)
         for rotation, arm in triplet.arms:
-            arms.append((numbering.rotations.get(id(rotation), 0),
-                         numbering.triplets[id(rotation)]))
+            arms.append((numbering.rotations.get(rotation, 0),
+                         numbering.triplets[rotation]))
             vectors.append(arm)
-        dependent.append((numbering.triplets[id(triplet)], numbering.triplets[id(triplet.root)],
+        dependent.append((numbering.triplets[triplet], numbering.triplets[triplet.root],
                           first, len(arms)))
     return (Ends(tuple(dependent), tuple(arms), model.dimension, model.rotation_size),
             np.array(vectors, dtype=float).reshape(-1, model.dimension))

@@ -1,5 +1,6 @@
 """Power ports of a model: where loads, drives and dampers supply or take energy."""
 
+from collections.abc import Mapping
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -10,20 +11,20 @@ from sebody.engine.tables import AMPLITUDE, PIECE, POLYNOMIAL
 from sebody.kernels.loader import element_kernel
 from sebody.model.histories import History, same_waves
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element
+from sebody.model.parts import Element, Superelement, Triplet
 
 
 class Ports(NamedTuple):
     """Power ports: of loads, springs and drives, of damped bodies, of prescribed motions."""
 
-    of: dict[int, int]              # id(constraint, load, spring or body) -> port
+    of: dict[Element | Superelement, int]   # constraint, load, spring or body -> port
     names: list[str]
     histories: list[History]
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     jumps: list[list[float]]        # times at which accelerations jump with the port's history
 
 
-def number_ports(model: Mechanism, at: dict[int, int]) -> Ports:
+def number_ports(model: Mechanism, at: Mapping[Triplet, int]) -> Ports:
     """Power ports of a model; `at` is the first coordinate of each triplet, by id."""
     found = Ports({}, [], [], [], [])
 
@@ -35,15 +36,15 @@ def number_ports(model: Mechanism, at: dict[int, int]) -> Ports:
 
     for element in (*model.constraints, *model.loads):
         if element_kernel(element.kind).POWER:
-            found.of[id(element)] = add(element.name, element.history, _jumps(element))
+            found.of[element] = add(element.name, element.history, _jumps(element))
     for body in model.bodies.values():
         if body.body.damping is not None:
-            found.of[id(body)] = add(f"damping of {body.name}", None, [])
+            found.of[body] = add(f"damping of {body.name}", None, [])
     for triplet in model.triplets():
         rotational = int(triplet.rotational and not model.planar)
         for motion in triplet.motions:
             port = add(motion.name, motion.history, motion.history.abrupt(2))
-            found.prescribed.extend((at[id(triplet)] + k, port, rotational, d)
+            found.prescribed.extend((at[triplet] + k, port, rotational, d)
                                     for k, d in enumerate(motion.direction) if d != 0.0)
     return found
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from sebody.assembly.fill_order import Coupling, elimination_order
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Joint, Triplet
+from sebody.model.parts import Element, Joint, Triplet
 
 
 class Part(NamedTuple):
@@ -24,7 +24,7 @@ class Part(NamedTuple):
     modes: int
 
 
-Owners = Mapping[int, list[int]]        # id(triplet) -> parts it belongs to
+Owners = Mapping[Triplet, list[int]]     # triplet -> parts it belongs to
 
 
 def parents(triplets: Iterable[Triplet]) -> list[Triplet]:
@@ -32,7 +32,7 @@ def parents(triplets: Iterable[Triplet]) -> list[Triplet]:
     return [p for t in triplets for p in t.parents()]
 
 
-def sequence(model: Mechanism) -> tuple[list[Part], dict[int, set[int]]]:
+def sequence(model: Mechanism) -> tuple[list[Part], dict[Element, set[Triplet]]]:
     """Bodies in the order of the elimination, and the triplets that multipliers follow.
 
     Returns
@@ -44,39 +44,40 @@ def sequence(model: Mechanism) -> tuple[list[Part], dict[int, set[int]]]:
     parts = [_part(b.name, [*b.rotations, *b.positions], b.body.modes)
              for b in model.bodies.values()]
     parts += [_part(e.name, e.triplets[::-1], 0) for e in model.rigid_bodies.values()]
-    owners: dict[int, list[int]] = {}
+    owners: dict[Triplet, list[int]] = {}
     for k, part in enumerate(parts):
         for triplet in part.parents:
-            owners.setdefault(id(triplet), []).append(k)
+            owners.setdefault(triplet, []).append(k)
     awaited = _awaited(model, parts, owners)
     if len(parts) < 3:
         return parts, awaited
-    bodies = [{id(p): p.start.size for p in part.parents if p.solved} for part in parts]
+    bodies = [{p: p.start.size for p in part.parents if p.solved} for part in parts]
     order = elimination_order(bodies, _couplings(model, owners, awaited))
     return [parts[k] for k in order], awaited
 
 
 def _part(name: str, triplets: Iterable[Triplet], modes: int) -> Part:
-    return Part(name, list({id(p): p for p in parents(triplets)}.values()), modes)
+    return Part(name, list(dict.fromkeys(parents(triplets))), modes)
 
 
-def _couplings(model: Mechanism, owners: Owners, awaited: dict[int, set[int]]) -> list[Coupling]:
+def _couplings(model: Mechanism, owners: Owners,
+               awaited: Mapping[Element, set[Triplet]]) -> list[Coupling]:
     """What couples several bodies beside the triplets they share."""
     found = []
     for element in (*model.constraints, *model.loads):
-        keys = {id(p): None for p in parents(element.triplets) if p.solved and id(p) in owners}
+        keys = {p: None for p in parents(element.triplets) if p.solved and p in owners}
         if len({k for key in keys for k in owners[key]}) > 1:
             # a triplet without a body is refused by the numbering, which names it
-            known = [key for key in awaited.get(id(element), ()) if key in owners]
+            known = [key for key in awaited.get(element, ()) if key in owners]
             found.append(Coupling(keys, element.multipliers, known))
     return found
 
 
-def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[int, set[int]]:
+def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Element, set[Triplet]]:
     """Of every constraint the triplets that its multipliers follow."""
-    awaited = {id(c): {id(p) for p in parents(c.triplets) if p.solved} for c in model.constraints}
+    awaited = {c: {p for p in parents(c.triplets) if p.solved} for c in model.constraints}
     joints = [joint for joint in model.joints if joint.constraints]
-    of_joint = [{k for c in joint.constraints for key in awaited[id(c)]
+    of_joint = [{k for c in joint.constraints for key in awaited[c]
                  for k in owners.get(key, ())} for joint in joints]
     of_part: list[set[int]] = [set() for _ in parts]
     for number, bodies in enumerate(of_joint):
@@ -98,12 +99,12 @@ def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[int, s
     return awaited
 
 
-def _side(joint: Joint, part: int, owners: Owners) -> dict[int, set[int]] | None:
+def _side(joint: Joint, part: int, owners: Owners) -> dict[Element, set[Triplet]] | None:
     """The triplets of every equation on one body; None unless all are free and of this one."""
     found = {}
     for constraint in joint.constraints:
-        own = [p for p in parents(constraint.triplets) if part in owners.get(id(p), ())]
-        if not own or not all(p.solved and len(owners[id(p)]) == 1 for p in own):
+        own = [p for p in parents(constraint.triplets) if part in owners.get(p, ())]
+        if not own or not all(p.solved and len(owners[p]) == 1 for p in own):
             return None
-        found[id(constraint)] = {id(p) for p in own}
+        found[constraint] = {p for p in own}
     return found

@@ -36,7 +36,7 @@ def limits_of(bodies: Iterable[Superelement]) -> dict[str, Limits]:
     known: dict[tuple, Limits] = {}
     found = {}
     for body in bodies:
-        key = id(body.body), body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
+        key = body.body, body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in known:
             known[key] = Limits(np.inf if body.stiffening else FAST * cautious_limit(body),
                                 _off_line(body), Axial.of(body))

@@ -80,8 +80,8 @@ class Mechanism:
 
     def triplets(self) -> list[Triplet]:
         """All triplets, each once."""
-        return list({id(t): t for n in (*self.nodes.values(), *self.grounds)
-                     for t in (n.position, n.rotation) if t is not None}.values())
+        return list(dict.fromkeys(t for n in (*self.nodes.values(), *self.grounds)
+                                  for t in (n.position, n.rotation) if t is not None))
 
     def size(self) -> float:
         """Characteristic length of the model, at least one unit of length."""

@@ -160,7 +160,7 @@ def _moved(model: Mechanism, body: str | None,
               for one in model.rigid_bodies.values()}
     if not isinstance(body, str) or body not in named:
         raise unknown("body", body, named, "the model has", "the model has none")
-    return list({id(node): node for node in named[body]}.values())
+    return list(dict.fromkeys(named[body]))
 
 
 def _check_new(model: Mechanism, name: str) -> None:

@@ -75,7 +75,7 @@ def _bodies(model: Mechanism) -> list[tuple]:
 
 
 def _nodes(model: Mechanism) -> list[tuple]:
-    first: dict[int, str] = {}      # triplet -> the node it is told of
+    first: dict[Triplet, str] = {}      # triplet -> the node it is told of
     return [(node.name, vector(node.point),
              *(_state(first, node, triplet) for triplet in (node.position, node.rotation)),
              _rates(node)) for node in model.nodes.values()]
@@ -88,11 +88,11 @@ def _rates(node: Node) -> str:
                      if one is not None and one.solved and (one.given or one.rate.any()))
 
 
-def _state(first: dict[int, str], node: Node, triplet: Triplet | None) -> str:
+def _state(first: dict[Triplet, str], node: Node, triplet: Triplet | None) -> str:
     """Whether the coordinates of a node are unknowns, and why not."""
     if triplet is None:
         return "none"
-    owner = first.setdefault(id(triplet), node.name)
+    owner = first.setdefault(triplet, node.name)
     if owner != node.name:
         return f"that of {owner}"
     return triplet.state

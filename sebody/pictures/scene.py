@@ -171,9 +171,9 @@ def _node(result: Result, node: Node, states: NDArray) -> DrawnNode | None:
     if node.name not in result.model.nodes:         # of the ground
         return DrawnNode(node.name, np.tile(spatial(node.point), (len(states), 1)), None)
     known = result.numbering.triplets
-    if id(node.position) not in known:
+    if node.position not in known:
         return None
-    rotated = node.rotation is not None and id(node.rotation) in known
+    rotated = node.rotation is not None and node.rotation in known
     return DrawnNode(node.name, spatial(result[f"{node.name}.position"][states]),
                      quaternions(result[f"{node.name}.rotation"][states]) if rotated else None)
 

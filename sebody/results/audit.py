@@ -112,7 +112,7 @@ def _fastest(result: Recording, size: float) -> float:
     moving = np.abs(result.recorded("v")).max(axis=0)
     turning = rotational(result.model, result.numbering)
     multipliers = [first + k for constraint in result.model.constraints
-                   for first in (result.numbering.multipliers[id(constraint)],)
+                   for first in (result.numbering.multipliers[constraint],)
                    for k in range(constraint.multipliers)]
     moving[multipliers] = 0.0
     return float((np.where(turning, size, 1.0) * moving).max(initial=0.0))

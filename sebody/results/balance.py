@@ -41,7 +41,7 @@ class Balance:
         self._passed: dict[str, tuple[list[Connection], NDArray]] = {}
         for kind in ("position", "rotation"):
             own = [c for c in kept if c.kind == kind]
-            given = {id(node): sums for node, k, sums in at if k == kind}
+            given = {node: sums for node, k, sums in at if k == kind}
             if kind == "rotation":
                 self._add_levers(given)
             self._passed[kind] = own, self._solve(own, given)
@@ -49,13 +49,13 @@ class Balance:
     def rotation(self, triplet: Triplet | None) -> NDArray:
         """Rotation matrices of a triplet, (n, 3, 3), in a plane (n, 2, 2); of none, no rotation."""
         d, n = self._model.dimension, len(self._q)
-        if triplet is None or id(triplet) not in self._numbering.triplets:
+        if triplet is None or triplet not in self._numbering.triplets:
             return np.broadcast_to(np.eye(d), (n, d, d))
         if d == 2:
-            angle = self._q[:, self._numbering.triplets[id(triplet)]]
+            angle = self._q[:, self._numbering.triplets[triplet]]
             c, s = np.cos(angle), np.sin(angle)
             return np.stack([c, -s, s, c], axis=1).reshape(n, 2, 2)
-        k = self._numbering.rotations[id(triplet)]
+        k = self._numbering.rotations[triplet]
         return self._R[:, 9 * k:9 * k + 9].reshape(n, 3, 3)
 
     def position(self, node: Node) -> NDArray:
@@ -69,7 +69,7 @@ class Balance:
         everything else on the body.
         """
         found = np.zeros((len(self._q), self._size(kind)))
-        first = self._numbering.forces_at[id(part)]
+        first = self._numbering.forces_at[part]
         for place in part.places:
             own = getattr(place.node, place.kind)
             size = own.start.size
@@ -111,16 +111,16 @@ class Balance:
                          ) -> list[tuple[Node, str, NDArray]]:
         """Sums over all elements on the nodes that are joined without an equation."""
         model = self._model
-        wanted = {(id(node), c.kind): (node, c.kind, np.zeros((len(self._q), self._size(c.kind))))
+        wanted = {(node, c.kind): (node, c.kind, np.zeros((len(self._q), self._size(c.kind))))
                   for c in connections for node in (c.node, c.to) if node is not None}
         for part in (*model.bodies.values(), *model.rigid_bodies.values(), *model.constraints,
                      *model.loads):
             for node, kind in dict.fromkeys((p.node, p.kind) for p in part.places):
-                if (id(node), kind) in wanted:
-                    wanted[id(node), kind][2][:] += self.on(part, node, kind)
+                if (node, kind) in wanted:
+                    wanted[node, kind][2][:] += self.on(part, node, kind)
         return list(wanted.values())
 
-    def _solve(self, connections: list[Connection], given: dict[int, NDArray]) -> NDArray:
+    def _solve(self, connections: list[Connection], given: dict[Node, NDArray]) -> NDArray:
         """What connections pass to their nodes so that each of these is in balance, (n, c, size).
 
         Of all solutions of ``B f + given = 0``, B the incidence matrix, that of least norm:
@@ -130,16 +130,16 @@ class Balance:
             return np.zeros((len(self._q), 0, 1))
         without = _representatives(connections)
         rows = {key: k for k, key in enumerate(key for key in given if key not in without)}
-        entries = [(rows[id(node)], k, sign) for k, c in enumerate(connections)
+        entries = [(rows[node], k, sign) for k, c in enumerate(connections)
                    for node, sign in ((c.node, 1.0), (c.to, -1.0))
-                   if node is not None and id(node) in rows]
+                   if node is not None and node in rows]
         row, column, sign = zip(*entries, strict=True)
         B = csc_matrix((sign, (row, column)), shape=(len(rows), len(connections)))
         demand = np.stack([-given[key] for key in rows])
         y = splu(csc_matrix(B @ B.T)).solve(demand.reshape(len(rows), -1))
         return (B.T @ y).reshape(len(connections), *demand.shape[1:]).transpose(1, 0, 2)
 
-    def _add_levers(self, moments: dict[int, NDArray]) -> None:
+    def _add_levers(self, moments: dict[Node, NDArray]) -> None:
         """Add the moments of the forces that rigid links pass, about the nodes they start from.
 
         A link passes the force f to its end and ``-f`` at this end to where it starts, a place
@@ -147,9 +147,9 @@ class Balance:
         """
         connections, forces = self._passed["position"]
         for k, c in enumerate(connections):
-            if c.to is not None and id(c.to) in moments and id(c.node) in moments:
+            if c.to is not None and c.to in moments and c.node in moments:
                 r = self.position(c.node) - self.position(c.to)
-                moments[id(c.to)] -= moment_of(r, forces[:, k])
+                moments[c.to] -= moment_of(r, forces[:, k])
 
 
 def moment_of(r: NDArray, force: NDArray) -> NDArray:
@@ -167,7 +167,7 @@ class _Groups:
 
     def of(self, node: Node | None) -> int | None:
         """What stands for the group of a node; the ground for its own group."""
-        key = None if node is None else id(node)
+        key = None if node is None else node
         while (above := self._above.get(key, key)) != key:
             key = above
         return key
@@ -192,7 +192,7 @@ def _kept(connections: Iterable[Connection]) -> list[Connection]:
     return found
 
 
-def _representatives(connections: Iterable[Connection]) -> set[int]:
+def _representatives(connections: Iterable[Connection]) -> set[Node]:
     """One node of every group that is not joined to the ground: its balance is that of the rest."""
     groups, connections = _Groups(), list(connections)
     for c in connections:

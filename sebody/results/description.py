@@ -78,8 +78,8 @@ class _Writer:
             return (["tuple of names", kind, [self.of(v) for v in value]]
                     if isinstance(value, tuple) else ["part", self._part(value, kind)])
         if isinstance(value, dict):
-            if value and set(value) <= set(self._places):       # of ids, see Numbering
-                return ["by part", [[self._places[k], self.of(v)] for k, v in value.items()]]
+            if value and {id(k) for k in value} <= self._places.keys():     # see Numbering
+                return ["by part", [[self._places[id(k)], self.of(v)] for k, v in value.items()]]
             return ["dict", [[self.of(k), self.of(v)] for k, v in value.items()]]
         if isinstance(value, list | tuple):
             return [type(value).__name__, [self.of(v) for v in value]]
@@ -137,7 +137,7 @@ class _Reader:
             check_tuple(KINDS[rest[0]], values)
             return KINDS[rest[0]](*values)
         if kind == "by part":
-            return {id(self._parts[place]): self.made(v) for place, v in rest[0]}
+            return {self._parts[place]: self.made(v) for place, v in rest[0]}
         if kind == "dict":
             return {self.made(k): self.made(v) for k, v in rest[0]}
         return {"list": list, "tuple": tuple, "set": set}[kind](map(self.made, rest[0]))

@@ -42,7 +42,7 @@ def loads(recording: Recording) -> dict[str, Element]:
 def of_body(recording: Recording, name: str) -> NDArray:
     """Forces of everything else on a body: of its places, then on its modes, (n, coordinates)."""
     body = bodies(recording)[name]
-    first = recording.numbering.forces_at[id(body)]
+    first = recording.numbering.forces_at[body]
     modes = body.body.modes if isinstance(body, Superelement) else 0
     size = sum(t.start.size for t in (getattr(*place) for place in body.places))
     return np.hstack([
@@ -89,7 +89,7 @@ def effort(what: str, recording: Recording, name: str) -> NDArray:
         return values[:, 0] if recording.model.planar else np.einsum(
             "ni,ni->n", values, recording.balance.axes(drive)[:, :, 0])
     triplet = getattr(*drive.place)
-    first = recording.numbering.triplets[id(triplet)]
+    first = recording.numbering.triplets[triplet]
     return recording.forces.sums[:, first:first + triplet.start.size] @ drive.direction
 
 
@@ -100,7 +100,7 @@ def multipliers(recording: Recording, name: str) -> NDArray:
         raise InputError(f"joint {name!r} has no equations and so no multipliers, since its nodes "
                          "share coordinates or are fixed; the force on a fixed node is its "
                          f"reaction, the force of the joint is {name}.force")
-    firsts = [(recording.numbering.multipliers[id(c)], c.multipliers) for c in equations]
+    firsts = [(recording.numbering.multipliers[c], c.multipliers) for c in equations]
     q = recording.unique_rows[:, RECORD.slices(record_counts(recording.numbering))["q"]]
     return q[:, [first + k for first, count in firsts for k in range(count)]]
 

@@ -128,7 +128,7 @@ def saved(recording: Recording) -> list[str]:
     for name, node in recording.model.nodes.items():
         for quantity, (rotational, _, kept) in OF_NODE.items():
             triplet = node.rotation if rotational else node.position
-            if kept and triplet is not None and id(triplet) in recording.numbering.triplets:
+            if kept and triplet is not None and triplet in recording.numbering.triplets:
                 names.append(f"{name}.{quantity}")
     return [*names, "energy.kinetic", "energy.strain", "energy.potential", "energy.external_work",
             "momentum", "angular_momentum"]
@@ -167,7 +167,7 @@ def _rotation(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
     """Rotation matrices, (n, 3, 3); in a plane angles."""
     if recording.model.planar:
         return recording.recorded("q")[:, at.start]
-    k = recording.numbering.rotations[id(triplet)]
+    k = recording.numbering.rotations[triplet]
     return recording.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
 
 
@@ -185,7 +185,7 @@ def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
         raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
                          "reaction; the force of a joint is <joint>.force")
     values = recording.forces.sums[:, at]
-    if id(triplet) not in recording.numbering.rotations:
+    if triplet not in recording.numbering.rotations:
         return values[:, 0] if triplet.rotational else values       # in a plane
     return np.einsum("nij,nj->ni", _rotation(recording, triplet, at), values)
 
@@ -194,9 +194,9 @@ def _of_node(quantity: str, recording: Recording, name: str) -> NDArray:
     node, numbering = recording.model.nodes[name], recording.numbering
     rotational, read, _ = OF_NODE[quantity]
     triplet = node.rotation if rotational else node.position
-    if triplet is None or id(triplet) not in numbering.triplets:
+    if triplet is None or triplet not in numbering.triplets:
         raise InputError(f"node {name!r} has no {quantity}: the triplet is not in the model")
-    first = numbering.triplets[id(triplet)]
+    first = numbering.triplets[triplet]
     return read(recording, triplet, slice(first, first + triplet.start.size))
 
 
@@ -258,7 +258,7 @@ def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
     if kind == "node":
         triplet = getattr(model.nodes[owner], "rotation" if OF_NODE[quantity].rotational else
                           "position")
-        return (triplet is not None and id(triplet) in recording.numbering.triplets
+        return (triplet is not None and triplet in recording.numbering.triplets
                 and (triplet.fixed or not quantity.startswith("reaction")))
     if quantity == "modes":
         return owner in model.bodies and model.bodies[owner].body.modes > 0

@@ -33,9 +33,9 @@ def take(model: Mechanism, numbering: Numbering, state: State, given: Result) ->
     row, parts = given.rows[-1], RECORD.slices(record_counts(numbering))
     q, R, v = (row[parts[name]].copy() for name in ("q", "R", "v"))
     for triplet in model.triplets():
-        if id(triplet) not in numbering.triplets:
+        if triplet not in numbering.triplets:
             continue
-        own, k = stretch(numbering, triplet), numbering.rotations.get(id(triplet))
+        own, k = stretch(numbering, triplet), numbering.rotations.get(triplet)
         is_given = triplet.given or bool(triplet.rate.any())
         if is_given or not triplet.solved:
             v[own] = state.v[own]
@@ -58,9 +58,9 @@ def _check_held(model: Mechanism, numbering: Numbering, state: State, q: NDArray
     """Refuse a state whose fixed and driven positions and rotations are not those of t = 0."""
     length = extent(model)
     for triplet in model.triplets():
-        if not triplet.fixed or id(triplet) not in numbering.triplets:
+        if not triplet.fixed or triplet not in numbering.triplets:
             continue
-        own, k = coordinates(numbering, triplet), numbering.rotations.get(id(triplet))
+        own, k = coordinates(numbering, triplet), numbering.rotations.get(triplet)
         apart = np.abs(q[own] - state.q[own]).max() / (1.0 if triplet.rotational else
                                                        max(length, 1e-300))
         if k is not None:

@@ -82,7 +82,7 @@ def _lengths(model: Mechanism, system: System, numbering: Numbering, state: Stat
     found = np.full(numbering.total, max(np.abs(state.q).max(), system.magnitude.max()))
     for equation in model.constraints:
         if all(triplet.rotational for triplet in equation.triplets):
-            first = numbering.multipliers[id(equation)]
+            first = numbering.multipliers[equation]
             found[first:first + equation.multipliers] = 1.0
     return found
 
@@ -111,7 +111,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     rates = _rates(system, state, multipliers)
     if np.abs(rates).max() <= SMALL * size:
         return {}
-    triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
+    triplets = [t for t in model.triplets() if t.solved and t in numbering.triplets]
     given = [t for t in triplets if t.given]
     held = np.array([i for triplet in given for i in coordinates(numbering, triplet)], dtype=int)
     demand = np.zeros(numbering.free)

@@ -59,7 +59,7 @@ def strained(model: Mechanism, numbering: Numbering, state: State) -> str:
     if not found:
         return ""
     first, others = found[0], [repr(body.name) for body in found[1:]]
-    own = {id(t): t for t in (*first.positions, *first.rotations)}.values()
+    own = dict.fromkeys((*first.positions, *first.rotations))
     values = [(t, _round(state, state.v[coordinates(numbering, t)])) for t in own]
     given = [f"{t.name} {_shown(v)}" for t, v in values if _is_given(t)]
     rest = [f"{t.name} {_shown(v) if v.any() else 'at rest'}" for t, v in values
@@ -75,7 +75,7 @@ def _triplets(model: Mechanism, numbering: Numbering,
               state: State) -> Iterator[tuple[Triplet, NDArray]]:
     """Triplets of a model with the velocities a run starts with."""
     for triplet in model.triplets():
-        if id(triplet) in numbering.triplets:
+        if triplet in numbering.triplets:
             yield triplet, state.v[coordinates(numbering, triplet)]
 
 

@@ -61,7 +61,7 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
     multipliers, n = np.flatnonzero(system.is_multiplier), numbering.free
     bodies = [_Deformation.of(model, body, numbering, state) for body in model.bodies.values()]
     held = np.zeros(n)
-    triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
+    triplets = [t for t in model.triplets() if t.solved and t in numbering.triplets]
     if given := [c for t in triplets if t.given for c in coordinates(numbering, t)]:
         held[given] = HEAVY * np.abs(masses.diagonal()).max()
     sizes = _sizes(masses, placed(model, numbering) + rotational(model, numbering).astype(int),
@@ -85,7 +85,7 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
 
 def _starting_from_speed(model: Mechanism, system: System, numbering: Numbering,
                          state: State) -> bool:
-    ports = [*system.prescribed[:, 1], *(numbering.ports[id(c)] for c in model.constraints
+    ports = [*system.prescribed[:, 1], *(numbering.ports[c] for c in model.constraints
                                          if c.history is not None)]
     return any(state.loads[3 * port + 1] != 0.0 for port in ports)
 
@@ -205,7 +205,7 @@ def _orientation(model: Mechanism, triplet: Triplet, numbering: Numbering,
     """Matrix from the axes of a rotation's angular velocity to global ones."""
     if model.planar:
         return np.eye(1)
-    k = numbering.rotations.get(id(triplet))
+    k = numbering.rotations.get(triplet)
     return np.eye(3) if k is None else state.R[9 * k:9 * k + 9].reshape(3, 3)
 
 
@@ -256,7 +256,7 @@ def _by_unknowns(model: Mechanism, body: Superelement, numbering: Numbering,
             for rotation, arm in triplet.arms:
                 R = _orientation(model, rotation, numbering, state)
                 if model.planar:
-                    c, s = np.cos(angle := state.q[numbering.triplets[id(rotation)]]), np.sin(angle)
+                    c, s = np.cos(angle := state.q[numbering.triplets[rotation]]), np.sin(angle)
                     add(row, rotation, _turned(np.array([[c, -s], [s, c]]) @ arm))
                 else:
                     add(row, rotation, _turned(R @ arm) @ R)

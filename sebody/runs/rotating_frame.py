@@ -194,17 +194,15 @@ class _Blocks:
 
 def _triplets(run: Simulation | Result) -> list[tuple[Triplet, list[int]]]:
     """Triplets of the model's nodes that are in it, with their coordinates."""
-    nodes = run.model.nodes.values()
-    triplets = {id(t): t for n in nodes for t in (n.position, n.rotation) if t is not None}
-    return [(t, coordinates(run.numbering, t)) for key, t in triplets.items()
-            if key in run.numbering.triplets]
+    triplets = dict.fromkeys(t for n in run.model.nodes.values() for t in (n.position, n.rotation))
+    return [(t, coordinates(run.numbering, t)) for t in triplets if t in run.numbering.triplets]
 
 
 def _rotation(run: Simulation | Result, triplet: Triplet) -> NDArray:
     if run.model.planar:
-        angle = run.state.q[run.numbering.triplets[id(triplet)]]
+        angle = run.state.q[run.numbering.triplets[triplet]]
         return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    k = run.numbering.rotations[id(triplet)]
+    k = run.numbering.rotations[triplet]
     return run.state.R[9 * k:9 * k + 9].reshape(3, 3)
 
 

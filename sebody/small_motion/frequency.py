@@ -157,7 +157,7 @@ def _by_amplitude(run: Simulation | Result, load: Element) -> Forces:
 
     Loads are linear in their amplitude, so the difference is exact.
     """
-    state, at = run.state, 3 * run.numbering.ports[id(load)]
+    state, at = run.state, 3 * run.numbering.ports[load]
     kept, found = state.loads.copy(), []
     set_loads(run.system, state.loads, state.now[RECORD_T])
     for step in (0.5, -1.0):
@@ -209,11 +209,11 @@ def _moved_states(run: Simulation | Result, spin: Spin, X: NDArray, omega: NDArr
     rotated = {}
     for node in (*run.model.nodes.values(), *run.model.grounds):
         for triplet in (node.position, node.rotation):
-            if triplet is not None and id(triplet) in numbering.triplets:
+            if triplet is not None and triplet in numbering.triplets:
                 own = coordinates(numbering, triplet)
                 extent[own] = 1.0 if triplet.rotational else run.model.size()
                 if triplet.rotational and not run.model.planar:
-                    rotated[numbering.rotations[id(triplet)]] = own
+                    rotated[numbering.rotations[triplet]] = own
     largest = (np.abs(moved) / extent).max(axis=1)
     scale = SMALL / np.where(largest > 0, largest, 1.0)
     parts, rows = state.recorded_parts, []

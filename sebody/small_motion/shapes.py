@@ -52,11 +52,11 @@ class Shapes:
             return shapes[first:first + model.bodies[owner].body.modes]
         triplet = (getattr(model.nodes.get(owner), quantity, None)
                    if quantity in ("position", "rotation") else None)
-        if triplet is None or id(triplet) not in numbering.triplets:
+        if triplet is None or triplet not in numbering.triplets:
             return None
-        first = numbering.triplets[id(triplet)]
+        first = numbering.triplets[triplet]
         found = self._motion[first:first + triplet.start.size] @ shapes
         if triplet.rotational and not model.planar:
-            k = numbering.rotations[id(triplet)]
+            k = numbering.rotations[triplet]
             found = self._R[9 * k:9 * k + 9].reshape(3, 3) @ found
         return np.asarray(found)

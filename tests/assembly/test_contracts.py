@@ -169,7 +169,7 @@ def test_rows_are_those_of_the_table():
     counts = {"N_ROTATIONS": 2, "n": 6}
     index = INDEX.unpack(counts, system.index[system.at_index[k]:][:INDEX.size(counts)])
     assert index["port"] == numbering.port_names.index("spring")
-    assert index["nodes"].tolist() == [numbering.rotations[id(t)] for t in spring.triplets]
+    assert index["nodes"].tolist() == [numbering.rotations[t] for t in spring.triplets]
     row = Row("constants", kernel.CONSTANTS)
     constants = row.unpack({}, system.constants[int(index["constants"]):][:row.size({})])
     assert constants["k"] == 3.0 and constants["m"].tolist() == spring.constants["m"].tolist()

@@ -74,9 +74,9 @@ def pinned(pairs, order=None, masses=None):
 
 def followed(model):
     """Of every joint the bodies whose triplets its multipliers wait for."""
-    names = {id(t): body.name for body in model.rigid_bodies.values() for t in body.triplets}
+    names = {t: body.name for body in model.rigid_bodies.values() for t in body.triplets}
     awaited = sequence(model)[1]
-    return {joint.name: {names[key] for c in joint.constraints for key in awaited[id(c)]}
+    return {joint.name: {names[key] for c in joint.constraints for key in awaited[c]}
             for joint in model.joints}
 
 

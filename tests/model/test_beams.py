@@ -51,9 +51,9 @@ def test_strain_energy_is_that_of_simo_and_reissner(section):
         0.4 * random.normal(size=(2, 3)))
     x = random.normal(size=3) + np.array([[0, 0, 0], turns[0].apply([length, 0.5, -0.3])])
     for node, place, turn in zip(ends, x, turns, strict=True):
-        first = run.numbering.triplets[id(node.position)]
+        first = run.numbering.triplets[node.position]
         run.state.q[first:first + 3] = place
-        k = run.numbering.rotations[id(node.rotation)]
+        k = run.numbering.rotations[node.rotation]
         run.state.R[9 * k:9 * k + 9] = turn.as_matrix().ravel()
     run.state.frames_old[:] = turns[0].as_matrix().ravel()
     run.state.energy[:] = 0.0

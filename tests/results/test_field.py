@@ -56,12 +56,12 @@ def states(model, seed=3):
     v, a = rng.normal(size=(2, numbering.total))
     q = 0.02 * rng.normal(size=numbering.total)
     for node in model.nodes.values():
-        first = numbering.triplets[id(node.position)]
+        first = numbering.triplets[node.position]
         place = np.r_[node.point, np.zeros(3 - len(node.point))]
         q[first:first + len(node.point)] += (whole.apply(place) if len(node.point) == 3 else
                                              turned(1.9, node.point))
         if model.planar:
-            q[numbering.triplets[id(node.rotation)]] = 1.9 + 0.2 * rng.normal()
+            q[numbering.triplets[node.rotation]] = 1.9 + 0.2 * rng.normal()
     start = {key: whole * Rotation.from_rotvec(0.15 * rng.normal(size=3))
              for key in numbering.rotations}
     for row, t in zip(rows, (-H, 0.0, H), strict=True):

@@ -102,7 +102,7 @@ def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
     del model.bodies[old.name]
     model.own_names.discard(old.name)
     made = superelement(model, old.name, body, nodes, frame=frame, inertia=inertia,
-                        frame_node=[id(n) for n in nodes].index(id(carrier)) if on_node else 0,
+                        frame_node=nodes.index(carrier) if on_node else 0,
                         stiffening=stiffening)
     made.mode_rates = old.mode_rates[:body.modes].copy()
     model.bodies = {name: model.bodies[name] for name in order}

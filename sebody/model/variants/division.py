@@ -95,31 +95,31 @@ def _described(model: Mechanism, name: str) -> Beam:
                              "nodes")
     used = _used(model, own)
     for node in own.nodes[1:-1]:
-        if used & {id(node), id(node.position), id(node.rotation)} or any(
+        if used & {node, node.position, node.rotation} or any(
                 t.fixed or t.given for t in (node.position, node.rotation)):
             raise InputError(f"{what}something else acts on or holds its node {node.name!r}; build "
                              "two beams that meet there")
     return own
 
 
-def _used(model: Mechanism, own: Beam) -> set[int]:
+def _used(model: Mechanism, own: Beam) -> set[Node | Triplet | None]:
     """Nodes and triplets, by id, that anything but a beam needs."""
-    found: set[int] = set()
+    found: set[Node | Triplet | None] = set()
     for element in (*model.constraints, *model.loads, *model.rigid_bodies.values()):
-        found |= {id(place.node) for place in element.places}
+        found |= {place.node for place in element.places}
     for joint in model.joints:
-        found |= {id(joint.node), id(joint.to)}
+        found |= {joint.node, joint.to}
     for body in model.bodies.values():
         if body not in own.parts:
-            found |= {id(node) for node in body.nodes}
+            found |= {node for node in body.nodes}
     for one in model.connections:
-        found |= {id(one.node), id(one.to)}
+        found |= {one.node, one.to}
     for triplet in model.triplets():
         if triplet.root is not None:
-            found |= {id(parent) for parent in triplet.parents()}
+            found |= {parent for parent in triplet.parents()}
     for node in (*model.nodes.values(), *model.grounds):
         if node not in own.nodes:
-            found |= {id(t) for t in (node.position, node.rotation) if t is not None}
+            found |= {t for t in (node.position, node.rotation) if t is not None}
     return found
 
 

@@ -23,8 +23,8 @@ class Flattening:
 
     def __init__(self, plane: Plane, size: float) -> None:
         self.plane, self._near = plane, NEAR * size
-        self._nodes: dict[int, Node] = {}
-        self._triplets: dict[int, Triplet] = {}
+        self._nodes: dict[Node, Node] = {}
+        self._triplets: dict[Triplet, Triplet] = {}
 
     def point(self, point: NDArray, what: str) -> NDArray:
         """Planar coordinates of a point, (2,).
@@ -77,12 +77,12 @@ class Flattening:
 
     def node(self, node: Node) -> Node:
         """The planar node, the same for the same node."""
-        if id(node) not in self._nodes:
-            self._nodes[id(node)] = Node(
+        if node not in self._nodes:
+            self._nodes[node] = Node(
                 node.name, self.point(node.point, f"node {node.name!r}"),
                 *(None if triplet is None else self.triplet(triplet)
                   for triplet in (node.position, node.rotation)))
-        return self._nodes[id(node)]
+        return self._nodes[node]
 
     def place(self, place: Place) -> Place:
         """The planar place."""
@@ -90,14 +90,14 @@ class Flattening:
 
     def triplet(self, triplet: Triplet) -> Triplet:
         """The planar triplet, without motions, the same for the same triplet."""
-        if id(triplet) not in self._triplets:
+        if triplet not in self._triplets:
             what = f"initial velocity of {triplet.name}"
             if triplet.rotational:
                 start, rate = np.zeros(1), np.array([self.axial(triplet.rate, what)])
             else:
                 start = self.point(triplet.start, triplet.name)
                 rate = self.vector(triplet.rate, what)
-            made = self._triplets[id(triplet)] = Triplet(
+            made = self._triplets[triplet] = Triplet(
                 triplet.name, start, rate, triplet.fixed, given=triplet.given,
                 rotational=triplet.rotational)
             if triplet.root is not None:
@@ -105,7 +105,7 @@ class Flattening:
                 made.arms = tuple(
                     (self.triplet(rotation), self.vector(arm, f"the rigid link to {triplet.name}"))
                     for rotation, arm in triplet.arms)
-        return self._triplets[id(triplet)]
+        return self._triplets[triplet]
 
     def motion(self, motion: Motion) -> Motion:
         """The planar prescribed motion."""

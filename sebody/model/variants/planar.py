@@ -120,7 +120,7 @@ class _Flat(NamedTuple):
     model: Mechanism                    # planar, without superelements and loads
     bodies: dict[str, PlanarBody]
     rates: dict[str, NDArray]           # of the modes
-    loads: dict[int, list[Element]]     # of each load but those on bodies, by its id
+    loads: dict[Element, list[Element]]    # of each load but those on bodies
 
     @classmethod
     def of(cls, model: Mechanism, flat: Flattening) -> _Flat:
@@ -141,19 +141,19 @@ class _Flat(NamedTuple):
         made.joints = [flat_joint(flat, joint) for joint in model.joints]
         made.rigid_bodies = {name: flat_element(flat, one)
                              for name, one in model.rigid_bodies.items()}
-        joints = dict(zip(map(id, model.joints), made.joints, strict=True))
+        joints = dict(zip(model.joints, made.joints, strict=True))
         made.connections = [
             Connection(one.kind, flat.node(one.node), one.to and flat.node(one.to),
-                       one.joint and joints[id(one.joint)], one.spare)
+                       one.joint and joints[one.joint], one.spare)
             for one in model.connections]
-        on_nodes = {id(load): [flat_element(flat, load)] for load in model.loads
+        on_nodes = {load: [flat_element(flat, load)] for load in model.loads
                     if load.mode is None and load.body is None}
         bodies = {name: planar_body(body.body, flat.plane.axes, f"superelement {name!r}")
                   for name, body in model.bodies.items()}
         rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}
         for load in model.loads:
             if load.mode is not None:
-                on_nodes[id(load)] = _mode_forces(load, bodies[load.mode[0]])
+                on_nodes[load] = _mode_forces(load, bodies[load.mode[0]])
             elif load.body is not None and load_name(load) in bodies[load.body.name].odd_loads:
                 raise InputError(f"{load.name!r} has a part out of the plane")
         return cls(flat, made, bodies, rates, on_nodes)
@@ -191,7 +191,7 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
         _add_body(made, old, flat_model)
     for load in model.loads:
         if load.body is None:
-            made.loads += flat_model.loads[id(load)]
+            made.loads += flat_model.loads[load]
         else:
             body = made.bodies[load.body.name]
             made.loads.append(Element(

@@ -79,7 +79,7 @@ def _carrier(body: Superelement) -> Node:
     """The node that the others are to hang on."""
     what = f"superelement {body.name!r} cannot be made rigid"
     own = list(zip(body.nodes, body.body.keeps, strict=True))
-    held = {id(node.position): node for node, keep in own
+    held = {node.position: node for node, keep in own
             if keep != "rotation" and is_held(node.position)}.values()
     still = [node for node in held if node.position.fixed]
     if len(still) > 1:

@@ -28,7 +28,7 @@ def _beam(model: Model, length: float = 10.0, first: int = 0, last: int = 4,
 def _rotated(model: Model, angle: float) -> tuple[Simulation, int]:
     """A run with the second node rotated [deg], and the status of the kernel."""
     run = Simulation(model, 0.01)
-    k = run.numbering.rotations[id(model.nodes["b"].rotation)]
+    k = run.numbering.rotations[model.nodes["b"].rotation]
     run.state.R[9 * k:9 * k + 9] = exp_map(0.0, 0.0, np.radians(angle))
     return run, assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
 
@@ -88,7 +88,7 @@ def collinear() -> Finding:
     for offset in offsets:
         model = triangle(offset)
         run = Simulation(model, 0.01)
-        at = run.numbering.triplets[id(model.nodes["c"].position)]
+        at = run.numbering.triplets[model.nodes["c"].position]
         run.state.q[at + 2] += 1e-6
         assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
         frame = run.state.frames[:9].reshape(3, 3)
