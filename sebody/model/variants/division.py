@@ -103,7 +103,7 @@ def _described(model: Mechanism, name: str) -> Beam:
 
 
 def _used(model: Mechanism, own: Beam) -> set[Node | Triplet | None]:
-    """Nodes and triplets, by id, that anything but a beam needs."""
+    """Nodes and triplets that anything but a beam needs."""
     found: set[Node | Triplet | None] = set()
     for element in (*model.constraints, *model.loads, *model.rigid_bodies.values()):
         found |= {place.node for place in element.places}
