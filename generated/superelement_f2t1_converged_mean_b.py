@@ -29,7 +29,7 @@ from sebody.contract.layout import (
     SUPERELEMENT_CONSTANTS,
     TANGENT,
 )
-from sebody.kernels.abi import at, hidden, padded
+from sebody.kernels.abi import at, opaque, padded
 from sebody.kernels.dense import arrow_times, columns_times, inverse_3
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.rotations import inverse_tangent_coefficients
@@ -58,7 +58,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
            coefficients, forces, matrices, work, energies):
     field = at(coefficients, FIELD)
     for element in range(count):
-        n = hidden(width)
+        n = opaque(width)
         row = padded(max(n, 9*N_ROTATIONS))
         qe = work
         ve = at(work, row)
@@ -392,7 +392,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
-            row = hidden(row)
+            row = opaque(row)
             dqe = at(work, 16*row)
             dve = at(work, 17*row)
             dae = at(work, 18*row)

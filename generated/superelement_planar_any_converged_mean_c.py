@@ -34,7 +34,7 @@ from sebody.contract.layout import (
     TANGENT,
     Part,
 )
-from sebody.kernels.abi import at, hidden, padded
+from sebody.kernels.abi import at, opaque, padded
 from sebody.kernels.coordinates import all_to_free, follow, follow_changes
 from sebody.kernels.dense import add_block_times, add_blocks_times, block_times, clear, rows_times
 from sebody.kernels.frame_search import planar_mean
@@ -93,7 +93,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     ROTATIONS = 2*N_POSITIONS
     MODES = ROTATIONS + N_ROTATIONS
     for element in range(count):
-        n = hidden(width)
+        n = opaque(width)
         row = padded(max(n + 18, 9*N_ROTATIONS))
         qe = work
         ve = at(work, row)
@@ -496,7 +496,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
-            row = hidden(row)
+            row = opaque(row)
             dqe = at(work, 29*row)
             dve = at(work, 30*row)
             dae = at(work, 31*row)

@@ -34,7 +34,7 @@ from sebody.contract.layout import (
     SUPERELEMENT_CONSTANTS,
     TANGENT,
 )
-from sebody.kernels.abi import at, hidden, padded
+from sebody.kernels.abi import at, opaque, padded
 from sebody.kernels.dense import arrow_times, columns_times
 from sebody.kernels.frame_search import planar_mean
 
@@ -66,7 +66,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     ROTATIONS = 2*N_POSITIONS
     MODES = ROTATIONS + N_ROTATIONS
     for element in range(count):
-        n = hidden(width)
+        n = opaque(width)
         row = padded(max(n, 9*N_ROTATIONS))
         qe = work
         ve = at(work, row)
@@ -319,7 +319,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_mass, c_damping = coefficients[C_MASS], coefficients[C_DAMPING]
             c_stiffness, c_geo = coefficients[C_STIFFNESS], coefficients[C_GEO]
             J = at(matrices, element*n*n)
-            row = hidden(row)
+            row = opaque(row)
             dqe = at(work, 16*row)
             dve = at(work, 17*row)
             dae = at(work, 18*row)

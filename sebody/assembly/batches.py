@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.body_axes import ROUNDING
-from sebody.assembly.carried import carried_constants
 from sebody.assembly.contracts import (
     check_element,
     check_superelement,
@@ -21,6 +20,7 @@ from sebody.assembly.contracts import (
 )
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.assembly.rigid_part import rigid_part_constants
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import element_kernel, load
@@ -163,7 +163,7 @@ def _matrices(numbering: Numbering, element: Element) -> list[int]:
     """Numbers of the rotation matrices; a load on a planar body counts its angles by zeros."""
     if element.body is not None:
         return [numbering.rotations.get(t, 0) for t in element.body.rotations]
-    return [numbering.rotations[t] for t in element.triplets if t in numbering.rotations]
+    return [numbering.rotations[t] for t in element.dof_blocks if t in numbering.rotations]
 
 
 def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: list[int],
@@ -179,7 +179,7 @@ def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: li
 
 def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     """Coordinates of an element, then its multipliers."""
-    unknowns = [c for t in element.triplets for c in coordinates(numbering, t)]
+    unknowns = [c for t in element.dof_blocks for c in coordinates(numbering, t)]
     if element.body is not None:
         first = numbering.modes[element.body.name]
         unknowns += range(first, first + element.body.body.modes)
@@ -206,7 +206,7 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     if not option.rates:
         return values
     if not option.field:
-        return values | carried_constants(reduced)
+        return values | rigid_part_constants(reduced)
     counts = counts_of(body)
     frame = FRAMES[body.frame]
     invariants = body.invariants.about(origin)

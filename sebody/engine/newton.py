@@ -9,7 +9,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_DAMPING, C_MASS
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.matrix import ROUNDING
-from sebody.engine.relaxation import relaxed_norms
+from sebody.engine.regularization import regularized_norms
 from sebody.engine.state import (
     CONVERGED,
     EVALUATED,
@@ -42,8 +42,8 @@ QUICK = 0.05            # a contraction rate below this needs no acceleration by
 def apply_correction(system, state, scheme, mixed):
     """Subtract the solved correction; returns the verdict on the step, CONVERGED to GIVE_UP."""
     n = system.diagonal.size
-    relaxed = state.control.relaxed == 1
-    norm, size, accelerations = (relaxed_norms(system, state, n) if relaxed else
+    regularized = state.control.regularized == 1
+    norm, size, accelerations = (regularized_norms(system, state, n) if regularized else
                                  _norms(system, state, n))
     if not np.isfinite(norm):
         state.clock.last_norm = norm
@@ -58,7 +58,7 @@ def apply_correction(system, state, scheme, mixed):
     state.clock.acceleration_norm, state.clock.target = accelerations, target
     verdict = _verdict(system, state, norm, left_norm, target)
     ended = verdict == CONVERGED or verdict == GIVE_UP
-    if ended and relaxed and leaves_gap(system, state, norm, scheme.stabilized):
+    if ended and regularized and leaves_gap(system, state, norm, scheme.stabilized):
         return LEAVES_GAP
     return verdict
 
@@ -152,10 +152,10 @@ def accelerate(system, state, n, norm):
     """
     correction, last, change = state.correction, state.last_correction, state.last_change
     along = square = mix = 0.0
-    relaxed = state.control.relaxed == 1
+    regularized = state.control.regularized == 1
     if state.control.secant == 1 and norm > QUICK * state.clock.last_norm:
         for i in range(n):
-            if relaxed and system.is_multiplier[i] > 0.0:
+            if regularized and system.is_multiplier[i] > 0.0:
                 continue
             w = state.weight[i]
             difference = (correction[i] - last[i]) * w

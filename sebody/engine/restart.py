@@ -189,7 +189,7 @@ def _correct(system, state):
     if norm <= none:
         # what the corrections of a regularized matrix leave is a contradiction, or a force on
         # something without mass
-        gap = (control.relaxed == 1 and system.massless[0] == 0
+        gap = (control.regularized == 1 and system.massless[0] == 0
                and np.sqrt(left) > n * norm + CONTRADICTION * size)
         return FAILED if gap else DONE
     if rate > POOR:

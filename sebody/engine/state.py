@@ -111,8 +111,8 @@ class State(Arrays):
     scale                 (N, padded) of the unknowns: the scaled matrix has a unit diagonal
     weight                (N,) one over `scale`: norms of corrections are weighted by these
     inverse               (n, padded n) inverse of a small matrix, scales included, by columns
-    relaxation            (N,) R + L of a regularized matrix, see `sebody.engine.relaxation`
-    pulls                 entries `System.pulls` of the matrix, before elimination
+    regularization            (N,) R + L of a regularized matrix, see `sebody.engine.regularization`
+    constraint_columns    entries `System.constraint_columns` of the matrix, before elimination
     projected, pulled     (N,) scratch memory of projections
     column                scratch memory of the elimination for a column of blocks
     --------------------  --------------------------------------------------------------------------
@@ -167,8 +167,8 @@ class State(Arrays):
     scale: NDArray
     weight: NDArray
     inverse: NDArray
-    relaxation: NDArray
-    pulls: NDArray
+    regularization: NDArray
+    constraint_columns: NDArray
     projected: NDArray
     pulled: NDArray
     column: NDArray
@@ -251,7 +251,7 @@ CONTROL = np.dtype([(name, np.int64) for name in (
     "held",                  # steps since the step length changed
     "rejected",              # steps repeated because of their error
     "secant",                # 1 where the last correction belongs to this step and its matrix
-    "relaxed",               # 1 where the matrix is regularized
+    "regularized",               # 1 where the matrix is regularized
     "meets",                 # what the step under way ends at: NOTHING, BEND or JUMP
     "split",                 # 1 where it ends at a jump within a part of an output step
     "inside",                # 1 where it began at such a jump

@@ -92,7 +92,7 @@ def _constraints(part: Recording) -> dict[str, str]:
     """Whether the constraints hold, rotational ones compared with one radian."""
     equations: list[Element] = part.model.constraints
     extent = part.system.magnitude.max()
-    turning = all(t.rotational for c in equations for t in c.triplets)
+    turning = all(t.rotational for c in equations for t in c.dof_blocks)
     size = 1.0 if turning or not extent > 0.0 else extent
     off = part.constraint_residuals[:, 0].max() / size
     if off <= DRIFT:

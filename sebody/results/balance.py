@@ -1,7 +1,7 @@
 """Forces and moments on nodes, and what nodes pass to each other without an equation.
 
 Elements, joints with equations and loads give each node what their kernels say: minus their entries
-in the residual. Joints from shared and fixed triplets, supports and rigid links take no equation:
+in the residual. Joints from shared and fixed DOF blocks, supports and rigid links take no equation:
 what they pass follows from the balance of every node. Where several of them join the same nodes,
 such as two hinges to the ground on one node, this has many solutions: the one of least norm is
 taken, as for multipliers of redundant constraints.
@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 
 from sebody.assembly.numbering import Numbering, stretch
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Connection, Element, Joint, Node, Superelement, Triplet
+from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, Superelement
 
 Part = Element | Superelement
 
@@ -46,16 +46,16 @@ class Balance:
                 self._add_levers(given)
             self._passed[kind] = own, self._solve(own, given)
 
-    def rotation(self, triplet: Triplet | None) -> NDArray:
-        """Rotation matrices of a triplet, (n, 3, 3), in a plane (n, 2, 2); of none, no rotation."""
+    def rotation(self, dof_block: DofBlock | None) -> NDArray:
+        """Rotation matrices of a block, (n, 3, 3), in a plane (n, 2, 2); of none, no rotation."""
         d, n = self._model.dimension, len(self._q)
-        if triplet is None or triplet not in self._numbering.triplets:
+        if dof_block is None or dof_block not in self._numbering.dof_blocks:
             return np.broadcast_to(np.eye(d), (n, d, d))
         if d == 2:
-            angle = self._q[:, self._numbering.triplets[triplet]]
+            angle = self._q[:, self._numbering.dof_blocks[dof_block]]
             c, s = np.cos(angle), np.sin(angle)
             return np.stack([c, -s, s, c], axis=1).reshape(n, 2, 2)
-        k = self._numbering.rotations[triplet]
+        k = self._numbering.rotations[dof_block]
         return self._R[:, 9 * k:9 * k + 9].reshape(n, 3, 3)
 
     def position(self, node: Node) -> NDArray:
@@ -70,7 +70,7 @@ class Balance:
         """
         found = np.zeros((len(self._q), self._size(kind)))
         first = self._numbering.forces_at[part]
-        for place in part.places:
+        for place in part.attachments:
             own = getattr(place.node, place.kind)
             size = own.start.size
             if place.node is node and place.kind == kind:
@@ -115,7 +115,7 @@ class Balance:
                   for c in connections for node in (c.node, c.to) if node is not None}
         for part in (*model.bodies.values(), *model.rigid_bodies.values(), *model.constraints,
                      *model.loads):
-            for node, kind in dict.fromkeys((p.node, p.kind) for p in part.places):
+            for node, kind in dict.fromkeys((p.node, p.kind) for p in part.attachments):
                 if (node, kind) in wanted:
                     wanted[node, kind][2][:] += self.on(part, node, kind)
         return list(wanted.values())

@@ -1,6 +1,6 @@
 """A model as text and numbers, for a file of results, and the model again.
 
-Parts of the model (nodes, triplets, bodies, joints, loads) are listed in the order in which they
+Parts of the model (nodes, DOF blocks, bodies, joints, loads) are listed in the order in which they
 are met, each once; one that belongs to another is given by its place in the list. Compiled
 functions are left out: what they gave is in the recorded states.
 """

@@ -48,7 +48,7 @@ def undeformed(recording: Recording, body: Superelement, rotation: NDArray, orig
     states : slice or (n,) of int
         Recorded states in which they are.
     """
-    known = recording.numbering.triplets
+    known = recording.numbering.dof_blocks
     held = np.array([body.nodes[i].point for i in body.body.position_nodes])
     arm = body.alpha @ held - node.point        # from the node to the frame, both undeformed
     first = known[node.position]
@@ -214,7 +214,7 @@ def _full(body: Superelement) -> list[Node]:
 def _rotations(recording: Recording, node: Node, states: slice | NDArray) -> NDArray:
     """Rotation matrices (n, D, D) of a node."""
     if recording.model.planar:
-        first = recording.numbering.triplets[node.rotation]
+        first = recording.numbering.dof_blocks[node.rotation]
         angle = recording.recorded("q")[states, first]
         c, s = np.cos(angle), np.sin(angle)
         return np.stack([c, -s, s, c], axis=1).reshape(-1, 2, 2)

@@ -159,13 +159,13 @@ def check_numbering(model: Any, numbering: Any) -> None:
     if not (0 <= numbering.free <= total == len(numbering.names)):
         raise ValueError(f"{numbering.free} unknowns of {total} coordinates, of which "
                          f"{len(numbering.names)} have names")
-    sizes = {triplet: triplet.start.size for triplet in model.triplets()}
-    ends = [first + sizes.get(key, 1) for key, first in numbering.triplets.items()]
+    sizes = {dof_block: dof_block.start.size for dof_block in model.dof_blocks()}
+    ends = [first + sizes.get(key, 1) for key, first in numbering.dof_blocks.items()]
     ends += [numbering.modes.get(name, total + 1) + body.body.modes
              for name, body in model.bodies.items()]
     ends += [numbering.multipliers.get(c, total + 1) + c.multipliers
              for c in model.constraints]
-    if max(ends, default=0) > total or min(numbering.triplets.values(), default=0) < 0:
+    if max(ends, default=0) > total or min(numbering.dof_blocks.values(), default=0) < 0:
         raise ValueError("a coordinate does not belong to the model")
     if len(numbering.histories) != len(numbering.port_names):
         raise ValueError("a power port has no name")
@@ -200,5 +200,5 @@ def _width(one: Any) -> int:
         return len(one.body.stiffness)
     if one.body is not None:
         return len(one.body.body.stiffness)
-    return sum(triplet.start.size for triplet in one.triplets) + one.multipliers + (
+    return sum(dof_block.start.size for dof_block in one.dof_blocks) + one.multipliers + (
         one.mode is not None)

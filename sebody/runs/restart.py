@@ -38,12 +38,12 @@ from sebody.runs.tolerance import Tolerance
 VERSION = 3
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
-OF_START = "relaxed", "massless", "inertias", "thin"    # of the system, found at the start
+OF_START = "regularized", "massless", "inertias", "massless_axes"  # of the system
 REMEDY, REPEAT = "give one that was saved by sebody.analysis.save_state", "run the model again"
 OFF = 1e-6          # of a step, by which rounding may put a time off
 # largest values of counters; others count steps, of which no run has more than MOST_STEPS
 MOST = {"phase": SOLVED, "unit": FINEST, "level": FINEST.bit_length(), "wanted": EVALUATED,
-        "reason": max(REASONS), "pivoted": 1, "adaptive": 1, "secant": 1, "relaxed": 1,
+        "reason": max(REASONS), "pivoted": 1, "adaptive": 1, "secant": 1, "regularized": 1,
         "meets": JUMP, "split": 1, "inside": 1, "restart": AHEAD, "due": 1}
 FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old")
 
@@ -144,9 +144,9 @@ def _other_model(file: str) -> InputError:
 
 def _members(run: Simulation) -> dict[str, Member]:
     """What the members of a file of this run are; scratch memory may hold anything."""
-    found = {"rows": Member((None, "width")), "relaxed": Member((1,), "i", least=0),
+    found = {"rows": Member((None, "width")), "regularized": Member((1,), "i", least=0),
              "massless": Member((1,), "i", least=0)}
-    for name in ("inertias", "thin"):
+    for name in ("inertias", "massless_axes"):
         found[name] = Member(getattr(run.system, name).shape, least=0)
     for name, array in _arrays(run.state).items():
         found[name] = Member(array.shape, array.dtype.kind, finite=name in FINITE)

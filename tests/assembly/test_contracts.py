@@ -12,7 +12,7 @@ from sebody.assembly.build import build
 from sebody.contract.layout import INDEX, Row
 from sebody.fem import Section, straight_beam
 from sebody.kernels.loader import element_kernel, load
-from sebody.model.histories import history
+from sebody.model.time_functions import time_function
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes import hinged_beam
 
@@ -52,17 +52,17 @@ def more_multipliers(m):
     constraint(m, "hinge", 1).multipliers = 3
 
 
-def fewer_triplets(m):
+def fewer_dof_blocks(m):
     one = constraint(m, "hinge", 1)
-    one.triplets = one.triplets[:1]
+    one.dof_blocks = one.dof_blocks[:1]
 
 
 def no_history(m):
-    constraint(m, "drive").history = None
+    constraint(m, "drive").time_function = None
 
 
 def a_history(m):
-    constraint(m, "hinge").history = history(None)
+    constraint(m, "hinge").time_function = time_function(None)
 
 
 def short_row(m):
@@ -91,7 +91,7 @@ def a_body_that_works(m):
                         "the kernel 8; it has 1 multipliers and the kernel 2: regenerate the "
                         "kernels with python -m sebody.derive, or reinstall sebody"),
     (more_multipliers, "it has 9 unknowns and the kernel 8; it has 3 multipliers and the kernel 2"),
-    (fewer_triplets, "'hinge' .*element_parallel: .*it has 1 rotation matrices and the kernel 2"),
+    (fewer_dof_blocks, "'hinge' .*element_parallel: .*it has 1 rotation matrices and the kernel 2"),
     (no_history, "'drive' .*element_turn_drive: it has no time function, but the kernel reads one"),
     (a_history, "'hinge' .*element_coincident: it has a time function, but the kernel reads none"),
     (short_row, "'spring' .*element_torsion_spring: constants: the kernel reads k, k3, c, rest, n, "
@@ -169,7 +169,7 @@ def test_rows_are_those_of_the_table():
     counts = {"N_ROTATIONS": 2, "n": 6}
     index = INDEX.unpack(counts, system.index[system.at_index[k]:][:INDEX.size(counts)])
     assert index["port"] == numbering.port_names.index("spring")
-    assert index["nodes"].tolist() == [numbering.rotations[t] for t in spring.triplets]
+    assert index["nodes"].tolist() == [numbering.rotations[t] for t in spring.dof_blocks]
     row = Row("constants", kernel.CONSTANTS)
     constants = row.unpack({}, system.constants[int(index["constants"]):][:row.size({})])
     assert constants["k"] == 3.0 and constants["m"].tolist() == spring.constants["m"].tolist()

@@ -5,9 +5,9 @@ import pytest
 from benchmarks import bench_order
 
 from sebody import Model, Simulation
-from sebody.assembly.fill_order import Coupling, elimination_order
+from sebody.assembly.elimination_order import elimination_order
+from sebody.assembly.fill_order import Coupling, order_of_least_fill
 from sebody.assembly.numbering import number
-from sebody.assembly.sequence import sequence
 
 # bodies, and how far fill may be above that of SuperLU's minimum degree on the unknowns
 FILL = {"tree": (60, 1.15), "star": (60, 1.15), "grid": (100, 1.3), "ladder": (60, 1.3)}
@@ -23,27 +23,27 @@ def test_fill_does_not_depend_on_the_order_of_creation(name):
 
 
 def test_the_best_order_of_a_path_is_kept():
-    """A path is eliminated from its ends; springs and joints couple as shared triplets do."""
+    """A path is eliminated from its ends; springs and joints couple as shared DOF blocks do."""
     bodies = [{k: 3} for k in range(6)]
     path = [0, 3, 1, 5, 2, 4]
     couplings = [Coupling(pair) for pair in zip(path, path[1:], strict=False)]
-    order = elimination_order(bodies, couplings)
+    order = order_of_least_fill(bodies, couplings)
     left = list(path)
     for body in order:
         assert body in (left[0], left[-1])
         left.remove(body)
     assert sorted(order) == list(range(6))
-    kept = elimination_order(bodies, [Coupling((k, k + 1)) for k in range(5)])
+    kept = order_of_least_fill(bodies, [Coupling((k, k + 1)) for k in range(5)])
     assert kept == list(range(6))
 
 
 def test_an_order_is_remembered_by_structure_and_size():
-    """Keys of triplets differ from model to model; an order may not be that of another model."""
+    """Keys of DOF blocks differ from model to model; an order may not be that of another model."""
     path = [0, 3, 1, 5, 2, 4]
 
     def ordered(keys, path, size=3):
         bodies = [{key: size} for key in keys]
-        return elimination_order(bodies, [Coupling((keys[i], keys[k]), 1, (keys[i],))
+        return order_of_least_fill(bodies, [Coupling((keys[i], keys[k]), 1, (keys[i],))
                                           for i, k in zip(path, path[1:], strict=False)])
     found = ordered(range(6), path)
     assert ordered(range(70, 10, -10), path) == found
@@ -73,9 +73,9 @@ def pinned(pairs, order=None, masses=None):
 
 
 def followed(model):
-    """Of every joint the bodies whose triplets its multipliers wait for."""
-    names = {t: body.name for body in model.rigid_bodies.values() for t in body.triplets}
-    awaited = sequence(model)[1]
+    """Of every joint the bodies whose DOF blocks its multipliers wait for."""
+    names = {t: body.name for body in model.rigid_bodies.values() for t in body.dof_blocks}
+    awaited = elimination_order(model)[1]
     return {joint.name: {names[key] for c in joint.constraints for key in awaited[c]}
             for joint in model.joints}
 

@@ -14,7 +14,7 @@ from sebody.derive.names import kernel_of
     ("f12", 12, 12, 36, 72), ("planar-f2", 2, 2, 4, 6), ("planar-f1t2r3", 3, 4, 6, 10),
     ("planar-t4", 4, 0, 8, 8)])
 def test_counts_of_coordinates(name, positions, rotations, first_rotation, first_mode):
-    """Triplets in space; in a plane two coordinates a position and one a rotation."""
+    """DOF blocks in space; in a plane two coordinates a position and one a rotation."""
     layout = Layout.parse(name)
     assert (layout.positions, layout.rotations) == (positions, rotations)
     assert (layout.first_rotation, layout.first_mode) == (first_rotation, first_mode)

@@ -57,7 +57,7 @@ model.force(nodes[-1], (0.0, 1.0))
 system, numbering = build(model)
 q = np.zeros(numbering.total)
 for n in nodes:
-    first = numbering.triplets[n.position]
+    first = numbering.dof_blocks[n.position]
     q[first:first + 2] = n.point
 q[first] += 0.1         # stretched
 g, J, work, energy = np.zeros(99), np.zeros(999), np.zeros(9999), np.zeros(10)

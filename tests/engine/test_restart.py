@@ -216,7 +216,7 @@ def exponential(model, tip, pieces, t_end):
     """Displacement of the tip of the linearised model, forces constant in each piece."""
     run = Simulation(model, 1.0)
     M, C, K, free = linearize(run)
-    first = run.numbering.triplets[model.nodes[tip].position]
+    first = run.numbering.dof_blocks[model.nodes[tip].position]
     push = model.element("push")
     unknowns = batches.element_unknowns(run.numbering, push)
     f = np.linalg.solve(M, free[unknowns].T @ push.constants["P" if push.body else "d"])

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 from sebody import Model, Simulation, simulate
 from sebody.analysis import equilibrium, modes
 from sebody.explore.advice.forms import parts_of
-from sebody.explore.advice.indicators.carried import carried
 from sebody.explore.advice.indicators.omission import omission
+from sebody.explore.advice.indicators.propagated import propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.rigidity import rigidity
 from sebody.explore.advice.indicators.stiffening import SPIN, stiffening
@@ -116,6 +116,6 @@ def test_an_error_that_oscillates(quantity, power):
     t = reference.result.t[::reference.every]
     shifts, turns = np.zeros((len(t), 2, 2)), np.zeros((len(t), 2, 1))
     shifts[:, 1] = size * (2.0 + np.sin(omega * t))[:, None] * (0.6, 0.8)
-    found = carried(reference, part, shifts, turns) * reference.sizes[0]
+    found = propagated(reference, part, shifts, turns) * reference.sizes[0]
     # differences of a grid of 1 / 30 of a radian
     assert_allclose(found, size * (omega**power if power else 3.0), rtol=2e-2)

@@ -226,8 +226,8 @@ RESULT = {
     "a model in words": Packed("is damaged or no results file", raw("sebody/model", '"model"')),
     "an unknown class": Packed("is damaged or no results file", _part(
         "Node", lambda part: part.__setitem__(0, "Colour"))),
-    "a part of another class": Packed("of class Triplet for its node", _part(
-        "Node", lambda part: part.__setitem__(0, "Triplet"))),
+    "a part of another class": Packed("of class DofBlock for its node", _part(
+        "Node", lambda part: part.__setitem__(0, "DofBlock"))),
     "a part with a field too few": Packed("a Node lacks point", _part(
         "Node", lambda part: part[1].pop("point"))),
     "a part with a field too many": Packed("a Node has colour", _field("Node", "colour", 3)),

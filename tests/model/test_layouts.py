@@ -1,4 +1,4 @@
-"""Layouts with absent triplets against the full layout, planar against spatial, finer divisions."""
+"""Layouts with absent blocks against the full layout, planar against spatial, finer divisions."""
 
 
 import numpy as np

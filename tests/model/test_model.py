@@ -220,7 +220,7 @@ def test_refused_joint_leaves_the_model_as_it_was():
     (lambda m: None, 12), (lambda m: m.fix("base"), 6), (lambda m: m.fix("base", "position"), 9),
     (lambda m: m.revolute("base"), 9 + 2), (lambda m: m.spherical("base"), 12 + 3)])
 def test_number_of_unknowns(joints, unknowns):
-    """Fixed triplets are no unknowns, multipliers are."""
+    """Fixed DOF blocks are no unknowns, multipliers are."""
     model = placed()
     joints(model)
     assert number(model).free == unknowns

@@ -56,19 +56,19 @@ def states(model, seed=3):
     v, a = rng.normal(size=(2, numbering.total))
     q = 0.02 * rng.normal(size=numbering.total)
     for node in model.nodes.values():
-        first = numbering.triplets[node.position]
+        first = numbering.dof_blocks[node.position]
         place = np.r_[node.point, np.zeros(3 - len(node.point))]
         q[first:first + len(node.point)] += (whole.apply(place) if len(node.point) == 3 else
                                              turned(1.9, node.point))
         if model.planar:
-            q[numbering.triplets[node.rotation]] = 1.9 + 0.2 * rng.normal()
+            q[numbering.dof_blocks[node.rotation]] = 1.9 + 0.2 * rng.normal()
     start = {key: whole * Rotation.from_rotvec(0.15 * rng.normal(size=3))
              for key in numbering.rotations}
     for row, t in zip(rows, (-H, 0.0, H), strict=True):
         row[at["t"]] = t
         row[at["q"]], row[at["v"]], row[at["a"]] = q + t * v + t * t / 2 * a, v + t * a, a
         for key, k in numbering.rotations.items():
-            first = numbering.triplets[key]
+            first = numbering.dof_blocks[key]
             step = t * v[first:first + 3] + t * t / 2 * a[first:first + 3]
             R = (start[key] * Rotation.from_rotvec(step)).as_matrix()
             row[at["R"]][9 * k:9 * k + 9] = R.ravel()

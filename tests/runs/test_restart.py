@@ -97,8 +97,8 @@ def test_a_state_goes_on_with_its_own_kernels_only(tmp_path):
 def test_the_file_says_which_constraints_are_redundant(tmp_path):
     """Found from ranks, where rounding decides: another machine may see another number.
 
-    A hinge, relaxed by hand where this machine would not, is on file as such, and a run that goes
-    on from the file is that of the state saved, bit for bit.
+    A hinge, regularized by hand where this machine would not, is on file as such, and a run that
+    goes on from the file is that of the state saved, bit for bit.
     """
     def hinged():
         model = Model(planar=True)
@@ -108,10 +108,10 @@ def test_the_file_says_which_constraints_are_redundant(tmp_path):
         return model
     first = Simulation(hinged(), 0.01)
     assert not first.start.redundant
-    first.system.relaxed[0] = 1
+    first.system.regularized[0] = 1
     path = save_state(first.run_to(0.5), tmp_path / "half.npz")
     second = resume(hinged(), path)
-    assert second.system.relaxed[0] == 1
+    assert second.system.regularized[0] == 1
     whole, rest = first.run_to(1.0).result(), second.run_to(1.0).result()
     assert np.array_equal(rest.rows, whole.rows)
     assert not np.array_equal(rest.rows, Simulation(hinged(), 0.01).run_to(1.0).result().rows)

@@ -78,7 +78,7 @@ def test_accelerations_of_an_unstrained_block():
     for velocity in ((0.0, 0.0, 0.0), (30.0, 4.0, -5.0)):
         model, points = thrown(spin, velocity)
         run = Simulation(model, 1e-3)
-        at = [run.numbering.triplets[node.position] for node in model.nodes.values()]
+        at = [run.numbering.dof_blocks[node.position] for node in model.nodes.values()]
         found = np.array([run.state.a[k:k + 3] for k in at])
         expected = np.cross(spin, np.cross(spin, points))
         # stiffness 1e6 times rounding of positions of 60, for masses of ten: 1e-9 of 150

@@ -107,8 +107,8 @@ def test_a_turning_equilibrium_goes_on_turning():
     for part in ("q", "v", "a"):
         for node in arm.nodes.values():
             for own in (node.position, node.rotation):
-                if own in free.numbering.triplets and own in run.numbering.triplets:
-                    to, of = free.numbering.triplets[own], run.numbering.triplets[own]
+                if own in free.numbering.dof_blocks and own in run.numbering.dof_blocks:
+                    to, of = free.numbering.dof_blocks[own], run.numbering.dof_blocks[own]
                     getattr(free.state, part)[to:to + own.start.size] = getattr(run.state, part)[
                         of:of + own.start.size]
     free.state.aux[:] = free.state.a

@@ -37,7 +37,7 @@ def in_brief(parts: list[Part], choice: Choice) -> str:
     told = [f"{', '.join(name for name, _ in group)}: {words}"
             for words, group in groupby(pairs, key=lambda pair: pair[1])]
     whole = {"planar": choice.planar, "joints shared": choice.shared,
-             "triplets dropped": choice.dropped}
+             "DOF blocks dropped": choice.dropped}
     return "; ".join([*told, *(name for name, made in whole.items() if made)]) or "all as it is"
 
 

@@ -41,8 +41,8 @@ class Copies:
         one = image.template
         self.image, self.dense = image, one.dense
         self.floats = image.floats.copy()
-        self.system: System = image.places.packed(one.system, self.floats)
-        state = image.places.packed(one.state, self.floats)
+        self.system: System = image.offsets.packed(one.system, self.floats)
+        state = image.offsets.packed(one.state, self.floats)
         self.state: State = _with_own_integers(state)
         self.unstarted = [x.copy() for x in self._not_in_floats()]
         self.exchanges = RowExchanges(self.system, self.state)

@@ -9,7 +9,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.beams import beam
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Beam, Node, Triplet
+from sebody.model.parts import Beam, DofBlock, Node
 from sebody.model.variants.copying import Variant, checked, copied, loads_on
 
 
@@ -102,11 +102,11 @@ def _described(model: Mechanism, name: str) -> Beam:
     return own
 
 
-def _used(model: Mechanism, own: Beam) -> set[Node | Triplet | None]:
-    """Nodes and triplets that anything but a beam needs."""
-    found: set[Node | Triplet | None] = set()
+def _used(model: Mechanism, own: Beam) -> set[Node | DofBlock | None]:
+    """Nodes and DOF blocks that anything but a beam needs."""
+    found: set[Node | DofBlock | None] = set()
     for element in (*model.constraints, *model.loads, *model.rigid_bodies.values()):
-        found |= {place.node for place in element.places}
+        found |= {place.node for place in element.attachments}
     for joint in model.joints:
         found |= {joint.node, joint.to}
     for body in model.bodies.values():
@@ -114,9 +114,9 @@ def _used(model: Mechanism, own: Beam) -> set[Node | Triplet | None]:
             found |= {node for node in body.nodes}
     for one in model.connections:
         found |= {one.node, one.to}
-    for triplet in model.triplets():
-        if triplet.root is not None:
-            found |= {parent for parent in triplet.parents()}
+    for dof_block in model.dof_blocks():
+        if dof_block.root is not None:
+            found |= {parent for parent in dof_block.parents()}
     for node in (*model.nodes.values(), *model.grounds):
         if node not in own.nodes:
             found |= {t for t in (node.position, node.rotation) if t is not None}
@@ -129,7 +129,7 @@ def _start_like(nodes: list[Node], before: tuple[Node, ...]) -> None:
         place = k * (len(before) - 1) / (len(nodes) - 1)
         first = min(int(place), len(before) - 2)
         for kind in ("position", "rotation"):
-            ends: list[Triplet] = [getattr(before[first + i], kind) for i in (0, 1)]
+            ends: list[DofBlock] = [getattr(before[first + i], kind) for i in (0, 1)]
             getattr(node, kind).rate = _between(ends[0].rate, ends[1].rate, place - first)
 
 

@@ -131,6 +131,6 @@ def _add_resultant(model: Mechanism, load: Element, carrier: Node) -> None:
     at = body.coordinates[load.body.nodes.index(carrier)]
     total = body.rigid_modes_about(at).T @ body.loads[load_name(load)]
     model.own_names.discard(load.name)
-    loads.force(model, carrier, total[:size], load.history, follower=True, name=load.name)
-    loads.torque(model, carrier, total[size:], load.history, follower=True,
+    loads.force(model, carrier, total[:size], load.time_function, follower=True, name=load.name)
+    loads.torque(model, carrier, total[size:], load.time_function, follower=True,
                  name=f"{load.name} (moment)")

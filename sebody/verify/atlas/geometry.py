@@ -88,7 +88,7 @@ def collinear() -> Finding:
     for offset in offsets:
         model = triangle(offset)
         run = Simulation(model, 0.01)
-        at = run.numbering.triplets[model.nodes["c"].position]
+        at = run.numbering.dof_blocks[model.nodes["c"].position]
         run.state.q[at + 2] += 1e-6
         assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
         frame = run.state.frames[:9].reshape(3, 3)

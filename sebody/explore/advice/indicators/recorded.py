@@ -118,10 +118,10 @@ class Recorded:
         return Deformation(shifts, np.stack(found, axis=1), axes)
 
     def read(self, node: Node, quantity: str) -> NDArray | None:
-        """A history of a node at the states that are looked at; None without this triplet."""
-        triplet = getattr(node, "rotation" if "rotation" in quantity or "angular" in quantity
+        """A history of a node at the states that are looked at; None without this DOF block."""
+        dof_block = getattr(node, "rotation" if "rotation" in quantity or "angular" in quantity
                           else "position")
-        if triplet is None or triplet not in self.result.numbering.triplets:
+        if dof_block is None or dof_block not in self.result.numbering.dof_blocks:
             return None
         return self.result[f"{node.name}.{quantity}"][::self.every]
 

@@ -1,4 +1,4 @@
-"""The sequence in which bodies are numbered, and what multipliers wait for.
+"""The order in which bodies are numbered, and what multipliers wait for.
 
 Multipliers follow unknowns they act on, so that no pivot is zero: as a rule all of them. In a
 branch of a mechanism those of the body towards its end are enough. Take a body that only one joint
@@ -11,71 +11,71 @@ not wait for the hub, which would couple every one with every other.
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from sebody.assembly.fill_order import Coupling, elimination_order
+from sebody.assembly.fill_order import Coupling, order_of_least_fill
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Joint, Triplet
+from sebody.model.parts import DofBlock, Element, Joint
 
 
 class Part(NamedTuple):
     """A body as the numbering sees it."""
 
     name: str
-    parents: list[Triplet]      # that it depends on, each once, those of rotations first
+    parents: list[DofBlock]      # that it depends on, each once, those of rotations first
     modes: int
 
 
-Owners = Mapping[Triplet, list[int]]     # triplet -> parts it belongs to
+Owners = Mapping[DofBlock, list[int]]     # DOF block -> parts it belongs to
 
 
-def parents(triplets: Iterable[Triplet]) -> list[Triplet]:
-    """The triplets that positions and rotations of some triplets depend on."""
-    return [p for t in triplets for p in t.parents()]
+def parents(dof_blocks: Iterable[DofBlock]) -> list[DofBlock]:
+    """The DOF blocks that positions and rotations of some DOF blocks depend on."""
+    return [p for t in dof_blocks for p in t.parents()]
 
 
-def sequence(model: Mechanism) -> tuple[list[Part], dict[Element, set[Triplet]]]:
-    """Bodies in the order of the elimination, and the triplets that multipliers follow.
+def elimination_order(model: Mechanism) -> tuple[list[Part], dict[Element, set[DofBlock]]]:
+    """Bodies in the order of the elimination, and the DOF blocks that multipliers follow.
 
     Returns
     -------
     parts : list of Part
     awaited : dict
-        id of a constraint -> ids of its triplets that are numbered before its multipliers.
+        id of a constraint -> ids of its DOF blocks that are numbered before its multipliers.
     """
     parts = [_part(b.name, [*b.rotations, *b.positions], b.body.modes)
              for b in model.bodies.values()]
-    parts += [_part(e.name, e.triplets[::-1], 0) for e in model.rigid_bodies.values()]
-    owners: dict[Triplet, list[int]] = {}
+    parts += [_part(e.name, e.dof_blocks[::-1], 0) for e in model.rigid_bodies.values()]
+    owners: dict[DofBlock, list[int]] = {}
     for k, part in enumerate(parts):
-        for triplet in part.parents:
-            owners.setdefault(triplet, []).append(k)
+        for dof_block in part.parents:
+            owners.setdefault(dof_block, []).append(k)
     awaited = _awaited(model, parts, owners)
     if len(parts) < 3:
         return parts, awaited
     bodies = [{p: p.start.size for p in part.parents if p.solved} for part in parts]
-    order = elimination_order(bodies, _couplings(model, owners, awaited))
+    order = order_of_least_fill(bodies, _couplings(model, owners, awaited))
     return [parts[k] for k in order], awaited
 
 
-def _part(name: str, triplets: Iterable[Triplet], modes: int) -> Part:
-    return Part(name, list(dict.fromkeys(parents(triplets))), modes)
+def _part(name: str, dof_blocks: Iterable[DofBlock], modes: int) -> Part:
+    return Part(name, list(dict.fromkeys(parents(dof_blocks))), modes)
 
 
 def _couplings(model: Mechanism, owners: Owners,
-               awaited: Mapping[Element, set[Triplet]]) -> list[Coupling]:
-    """What couples several bodies beside the triplets they share."""
+               awaited: Mapping[Element, set[DofBlock]]) -> list[Coupling]:
+    """What couples several bodies beside the DOF blocks they share."""
     found = []
     for element in (*model.constraints, *model.loads):
-        keys = {p: None for p in parents(element.triplets) if p.solved and p in owners}
+        keys = {p: None for p in parents(element.dof_blocks) if p.solved and p in owners}
         if len({k for key in keys for k in owners[key]}) > 1:
-            # a triplet without a body is refused by the numbering, which names it
+            # a DOF block without a body is refused by the numbering, which names it
             known = [key for key in awaited.get(element, ()) if key in owners]
             found.append(Coupling(keys, element.multipliers, known))
     return found
 
 
-def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Element, set[Triplet]]:
-    """Of every constraint the triplets that its multipliers follow."""
-    awaited = {c: {p for p in parents(c.triplets) if p.solved} for c in model.constraints}
+def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Element, set[DofBlock]]:
+    """Of every constraint the DOF blocks that its multipliers follow."""
+    awaited = {c: {p for p in parents(c.dof_blocks) if p.solved} for c in model.constraints}
     joints = [joint for joint in model.joints if joint.constraints]
     of_joint = [{k for c in joint.constraints for key in awaited[c]
                  for k in owners.get(key, ())} for joint in joints]
@@ -99,11 +99,11 @@ def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Elemen
     return awaited
 
 
-def _side(joint: Joint, part: int, owners: Owners) -> dict[Element, set[Triplet]] | None:
-    """The triplets of every equation on one body; None unless all are free and of this one."""
+def _side(joint: Joint, part: int, owners: Owners) -> dict[Element, set[DofBlock]] | None:
+    """The DOF blocks of every equation on one body; None unless all are free and of this one."""
     found = {}
     for constraint in joint.constraints:
-        own = [p for p in parents(constraint.triplets) if part in owners.get(p, ())]
+        own = [p for p in parents(constraint.dof_blocks) if part in owners.get(p, ())]
         if not own or not all(p.solved and len(owners[p]) == 1 for p in own):
             return None
         found[constraint] = {p for p in own}
