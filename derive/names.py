@@ -5,9 +5,10 @@ from difflib import get_close_matches
 from sebody.derive.compiler import Variant
 from sebody.derive.kernels.layouts import Layout, LayoutError, fits
 from sebody.derive.kernels.manifest import ELEMENTS
-from sebody.derive.kernels.options import FRAMES, INERTIA_OPTIONS, frame_traits
+from sebody.derive.kernels.options import FRAMES, INERTIA_OPTIONS, frame_traits, inertia_traits
 
-DEFAULT_INERTIA = "b"
+DEFAULT_INERTIA = "material"
+BY_LETTER = {traits.letter: name for name, traits in inertia_traits().items()}
 
 
 def kernel_of(text: str) -> Variant | str:
@@ -42,6 +43,7 @@ def variant_of(text: str) -> Variant:
     able = [name for name, frame in frame_traits().items() if fits(layout, frame)]
     frame = parts[1] if len(parts) > 1 else (able or list(FRAMES))[0]
     inertia = parts[2] if len(parts) > 2 else DEFAULT_INERTIA
+    inertia = BY_LETTER.get(inertia, inertia)
     for value, known, what in ((frame, FRAMES, "frame"),
                                (inertia, INERTIA_OPTIONS, "inertia option")):
         if value not in known:

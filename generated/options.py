@@ -36,18 +36,30 @@ FRAMES = {
     ),
 }
 INERTIA_OPTIONS = {
-    "a": InertiaTraits(
+    "frame_axes": InertiaTraits(
         "angular velocities in frame axes (option A)",
+        letter='a',
+        rank=0,
+        cost=1.0,
+        softening=1.0,
         material=False,
         modes_apart=True,
     ),
-    "b": InertiaTraits(
+    "material": InertiaTraits(
         "material angular velocities (option B)",
+        letter='b',
+        rank=0,
+        cost=1.0,
+        softening=1.0,
         material=True,
         modes_apart=True,
     ),
-    "c": InertiaTraits(
+    "floating_field": InertiaTraits(
         "the displacement field of the body, with slaved load modes (option C)",
+        letter='c',
+        rank=2,
+        cost=1.8,
+        softening=0.0,
         material=True,
         rates=True,
         field=True,
@@ -72,8 +84,12 @@ INERTIA_OPTIONS = {
                  "Ghat_e, reduced stiffness", packed=True),
         ),
     ),
-    "d": InertiaTraits(
+    "rigid_part": InertiaTraits(
         "the rigid part of the motion, and rates of deformation (option D)",
+        letter='d',
+        rank=1,
+        cost=1.25,
+        softening=0.3,
         material=True,
         rates=True,
         constants=(

@@ -15,10 +15,10 @@ FRAMES = {
     "mean_axes": mean_axes.FRAME,
 }
 INERTIA_OPTIONS = {
-    "a": option_a.INERTIA,
-    "b": option_b.INERTIA,
-    "c": option_c.INERTIA,
-    "d": option_d.INERTIA,
+    "frame_axes": option_a.INERTIA,
+    "material": option_b.INERTIA,
+    "floating_field": option_c.INERTIA,
+    "rigid_part": option_d.INERTIA,
 }
 
 

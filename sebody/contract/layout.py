@@ -359,6 +359,10 @@ class InertiaTraits(NamedTuple):
     """Properties of an inertia option."""
 
     summary: str
+    letter: str                     # of Cardona's options (a, b) and of those beyond the paper
+    rank: int                       # options of a higher rank describe more of the motion
+    cost: float                     # of an operation, relative to option A: measured
+    softening: float                # of stiffness by a spin: share of (spin / frequency)^2
     material: bool                  # T in material angular velocities; else in those of the frame
     modes_apart: bool = False       # internal modes meet in S, M and C alone, nowhere else
     rates: bool = False             # T in rates of deformation: frames that depend on the state

@@ -15,7 +15,7 @@ from sebody.errors import InputError
 from sebody.io.body_file import load_body
 from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.frames import check_frame, default_frame, frame_weights, known_frame
-from sebody.model.inertias import chosen_inertia, needs_damped_kernel
+from sebody.model.inertias import chosen_inertia, known_inertia, needs_damped_kernel
 from sebody.model.inputs import dof_block, known, refuse_taken, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
@@ -36,15 +36,16 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         One node for each boundary node of the body, in its order.
     frame : {'converged_mean', 'mean', 'mean_axes', 'mean_small', 'node', 'positions'}, optional
         By default the rotation of best fit of the positions, 'positions', for bodies with inertia
-        c and three or more positions that are not nearly on a line; mean axes, 'mean_axes', for
-        others of inertia c whose mass is off the line of their nodes; else the mean of the nodes'
-        rotations, 'converged_mean'.
-    inertia : {'a', 'b', 'c', 'd'}, optional
-        By default c, the velocities of the whole displacement field, of bodies that know it:
+        'floating_field' and three or more positions that are not nearly on a line; mean axes,
+        'mean_axes', for others of this inertia whose mass is off the line of their nodes; else the
+        mean of the nodes' rotations, 'converged_mean'.
+    inertia : {'frame_axes', 'material', 'floating_field', 'rigid_part'}, optional
+        Or their letters 'a', 'b', 'c', 'd'; a and b are those of Cardona (2000). By default
+        'floating_field', the velocities of the whole displacement field, of bodies that know it:
         `craig_bampton` returns such bodies where the FE model knows the points of its mass. Of
-        reduced matrices alone d, in which the rigid part of the motion is exact. With the paper's
-        frames 'mean' and 'mean_small' b, the paper's interpolation of velocities from the boundary
-        nodes.
+        reduced matrices alone 'rigid_part', in which the rigid part of the motion is exact. With
+        the paper's frames 'mean' and 'mean_small' 'material', the paper's interpolation of
+        velocities from the boundary nodes.
     rotation : (3, 3), planar (2, 2), optional
         Rotates vectors from FE axes to global axes; identity by default.
     frame_node : int
@@ -75,6 +76,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
                          "kind in a model")
     _check_units(model, name, body)
     placed = body if rotation is None else body.rotated(rotation)
+    inertia = known_inertia(inertia)
     if frame is None:
         frame = default_frame(placed, inertia)
     own = known_frame(frame)

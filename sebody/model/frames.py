@@ -54,7 +54,8 @@ def default_frame(body: ReducedBody, inertia: str | None) -> str:
     Positions move with more mass; where they are too few, mean axes follow the mass itself. Of
     straight bodies, which have hardly any inertia about their axis, mean axes follow torsion.
     """
-    if body.invariants is None or inertia not in (None, "c") or not body.rotation_nodes:
+    field = inertia is None or options.INERTIA_OPTIONS[inertia].field
+    if body.invariants is None or not field or not body.rotation_nodes:
         return "converged_mean"
     points = body.coordinates[list(body.position_nodes)]
     if len(points) > 2:

@@ -6,12 +6,29 @@ from sebody.generated import options
 from sebody.model.frames import FRAMES
 from sebody.reduction import ReducedBody
 
-INERTIAS = tuple(options.INERTIA_OPTIONS)
+BY_LETTER = {traits.letter: name for name, traits in options.INERTIA_OPTIONS.items()}
+
+
+def known_inertia(inertia: str | None) -> str | None:
+    """Name of an inertia option that is given by its name or by its letter; None stays None.
+
+    Raises
+    ------
+    InputError
+        There is no such option; the message lists them.
+    """
+    name = BY_LETTER.get(inertia, inertia) if isinstance(inertia, str) else inertia
+    if name is None or (isinstance(name, str) and name in options.INERTIA_OPTIONS):
+        return name
+    listed = ", ".join(f"{own!r} ({letter})" for letter, own in BY_LETTER.items())
+    raise InputError(f"inertia {inputs.shown(inertia)} is unknown: use one of {listed}")
 
 
 def chosen_inertia(name: str, body: ReducedBody, frame: str, inertia: str | None,
                    stiffening: bool | None) -> tuple[str, bool]:
     """The option and the stiffening of a body; what is None follows from what the body knows.
+
+    Options are given by their names, see `known_inertia`.
 
     Raises
     ------
@@ -29,15 +46,16 @@ def chosen_inertia(name: str, body: ReducedBody, frame: str, inertia: str | None
     if body.invariants is None:
         raise InputError(f"superelement {name!r}: inertia {option!r} needs the mass and modes of "
                          "the FE model, and the body has reduced matrices alone: reduce it from a "
-                         "model, use inertia='d', or use inertia='b' as the paper does")
+                         "model, use inertia='rigid_part', or use inertia='material' as the paper "
+                         "does")
     return option, body.invariants.stiffens if stiffening is None else stiffening
 
 
 def best_inertia(body: ReducedBody, frame: str) -> str:
     """The most exact option that a body has the constants for, and the frame the rates."""
     if FRAMES[frame].traits.incremental:    # the paper's own frames, with the paper's option
-        return "b"
-    return "d" if body.invariants is None else "c"
+        return "material"
+    return "rigid_part" if body.invariants is None else "floating_field"
 
 
 def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
@@ -46,9 +64,6 @@ def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
 
 
 def _check_option(inertia: str, frame: str) -> None:
-    if not isinstance(inertia, str) or inertia not in INERTIAS:
-        raise InputError(f"inertia {inputs.shown(inertia)} is unknown: use one of "
-                         f"{', '.join(INERTIAS)}")
     if options.INERTIA_OPTIONS[inertia].rates and FRAMES[frame].traits.incremental:
         raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "
                          f"the state alone, which {frame!r} does not: use one of "
@@ -66,8 +81,8 @@ def _check_stiffening(name: str, body: ReducedBody, inertia: str, frame: str) ->
                          "and the body has reduced matrices alone: reduce it from a model, or "
                          "divide the body")
     if not options.INERTIA_OPTIONS[inertia].field:
-        raise InputError(f"{what} is a part of inertia 'c', not of {inertia!r}: leave inertia "
-                         "out, or stiffening")
+        raise InputError(f"{what} is a part of inertia 'floating_field', not of {inertia!r}: leave "
+                         "inertia out, or stiffening")
     if not body.invariants.stiffens:
         raise InputError(f"{what} needs a geometric stiffness, and the FE model of the body has "
                          "none, or a negligible one: give it as "

@@ -205,14 +205,14 @@ def test_the_error_of_a_run_is_within_its_tolerance(name):
 def test_a_chaotic_motion_is_said_to_be_one():
     """One body with option B, struck hard: a push of 1e-10 grows to the size of the beam."""
     def tip(push):
-        scene = spherical_beam_strong.build(inertia="b")
+        scene = spherical_beam_strong.build(inertia="material")
         scene.model.force("tip", (0, 0, push), [(14.0, 0.0), (14.1, 1.0), (14.2, 0.0)])
         run = Simulation(scene.model, 0.0025, output_every=40).run_to(30.0).result()
         return run["tip.position"]
     apart = np.linalg.norm(tip(2e-7) - tip(0.0), axis=1) / 141.42
     assert apart[:150].max() < 1e-7 and apart[200:].max() > 1e-3
     with pytest.raises(SimulationError, match="does not decrease with the step.*may be chaotic"):
-        simulate_within(spherical_beam_strong.build(inertia="b").model, 0.1, 30.0,
+        simulate_within(spherical_beam_strong.build(inertia="material").model, 0.1, 30.0,
                         Tolerance(1e-3))
 
 

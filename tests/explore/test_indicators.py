@@ -82,7 +82,8 @@ def test_a_frequency_of_an_arm_that_turns_with_option_d():
     model, spin = arm(), 0.1 * first_of(arm())
     found = []
     for inertia in ("c", "d"):
-        own = with_options(model, "arm", inertia=inertia, stiffening=inertia == "c").model
+        own = with_options(model, "arm", inertia=inertia,
+                           stiffening=inertia == "floating_field").model
         found.append(modes(equilibrium(own, 2, spin=spin), spin).omega.min())
     off = abs(found[1] / found[0] - 1) / (spin / found[0])**2
     assert 0.5 < SPIN["d"] / 2 / off < 2.0

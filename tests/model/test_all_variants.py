@@ -169,7 +169,7 @@ def test_solids_and_bodies_from_files(tmp_path: Path, bare):
     moved = np.abs(before - before[0]).max()
     assert can_be_dropped(model) == [("solid", "d", "rotation")]
     for made, limit in ((planar(model), 1e-7), (keep_modes(model, "solid", 4), 1e-3),
-                        (with_options(model, "solid", inertia="d"), 1e-3),
+                        (with_options(model, "solid", inertia="rigid_part"), 1e-3),
                         (drop_triplet(model, "solid", "d"), 1e-3), (rigid(model, "solid"), 0.1),
                         (planar(keep_modes(drop_triplet(model, "solid", "d").model, "solid",
                                            4).model), 1e-3)):

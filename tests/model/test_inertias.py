@@ -39,13 +39,14 @@ def placed(fe_model, **options):
 
 
 @pytest.mark.parametrize("fe_model, options, expected", [
-    (beam, {}, ("c", True)), (unstressed, {}, ("c", False)), (matrices, {}, ("d", False)),
-    (beam, {"frame": "node"}, ("c", True)), (beam, {"frame": "mean"}, ("b", False)),
-    (beam, {"frame": "mean_small"}, ("b", False)), (beam, {"stiffening": False}, ("c", False)),
-    (beam, {"stiffening": True}, ("c", True)), (beam, {"inertia": "b"}, ("b", False)),
-    (beam, {"inertia": "a", "stiffening": False}, ("a", False)),
-    (unstressed, {"inertia": "c"}, ("c", False)), (matrices, {"stiffening": False}, ("d", False)),
-    (matrices, {"frame": "mean"}, ("b", False)), (matrices, {"inertia": "b"}, ("b", False))])
+    (beam, {}, ("floating_field", True)), (unstressed, {}, ("floating_field", False)), (matrices, {}, ("rigid_part", False)),
+    (beam, {"frame": "node"}, ("floating_field", True)), (beam, {"frame": "mean"}, ("material", False)),
+    (beam, {"frame": "mean_small"}, ("material", False)), (beam, {"stiffening": False}, ("floating_field", False)),
+    (beam, {"stiffening": True}, ("floating_field", True)), (beam, {"inertia": "material"}, ("material", False)),
+    (beam, {"inertia": "frame_axes", "stiffening": False}, ("a", False)),
+    (unstressed, {"inertia": "floating_field"}, ("floating_field", False)), (matrices, {"stiffening": False},
+                                                                ("rigid_part", False)),
+    (matrices, {"frame": "mean"}, ("material", False)), (matrices, {"inertia": "material"}, ("material", False))])
 def test_what_a_body_gets(fe_model, options, expected):
     body = placed(fe_model(), **options)
     assert (body.inertia, body.stiffening) == expected
@@ -58,7 +59,7 @@ def test_a_body_on_positions_alone():
     model = Model()
     nodes = [model.node(f"n{k}", p, "translation") for k, p in enumerate(points)]
     body = model.superelement("arm", body, nodes, frame="positions")
-    assert (body.inertia, body.stiffening) == ("c", True)
+    assert (body.inertia, body.stiffening) == ("floating_field", True)
 
 
 @pytest.mark.parametrize("fe_model, options, message", [
@@ -66,7 +67,8 @@ def test_a_body_on_positions_alone():
                      r"has none, or a negligible one: give it as FEModel\(geometric_stiffness"),
     (matrices, {}, "'arm': stiffening needs the mass, modes and geometric stiffness of the FE "
                    "model, and the body has reduced matrices alone: reduce it from a model, or"),
-    (beam, {"inertia": "b"}, "'arm': stiffening is a part of inertia 'c', not of 'b': leave"),
+    (beam, {"inertia": "material"}, "'arm': stiffening is a part of inertia 'floating_field', not "
+                                    "of 'material': leave"),
     (beam, {"frame": "mean"}, "'arm': stiffening needs a frame that depends on the state alone, "
                               "which 'mean' does not: use one of converged_mean, mean_axes, node, "
                               "positions")])
@@ -82,7 +84,7 @@ def test_beams_of_one_element_do_not_stiffen_unless_asked(elements, bodies, aske
     model = Model()
     nodes = [model.node(name, end) for name, end in zip("ab", ENDS, strict=True)]
     model.beam("arm", nodes, SECTION, elements, bodies, stiffening=asked)
-    assert [(b.inertia, b.stiffening) for b in model.bodies.values()] == [("c", expected)] * bodies
+    assert [(b.inertia, b.stiffening) for b in model.bodies.values()] == [("floating_field", expected)] * bodies
 
 
 def test_without_stiffening_a_body_is_one_without_geometric_stiffness():

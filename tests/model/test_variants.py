@@ -137,8 +137,9 @@ def test_a_copy_runs_like_its_model_and_shares_nothing_that_changes(original, be
 
 
 @pytest.mark.parametrize(("name", "change", "sentence", "by_hand"), [
-    ("options", {"inertia": "b"}, "first has inertia 'b' instead of 'c' and does not stiffen with "
-     "its stresses", lambda: linkage(options={"inertia": "b"})),
+    ("options", {"inertia": "material"},
+     "first has inertia 'material' instead of 'c' and does not stiffen with "
+     "its stresses", lambda: linkage(options={"inertia": "material"})),
     ("options", {"stiffening": False}, "first does not stiffen with its stresses",
      lambda: linkage(options={"stiffening": False})),
     ("options", {"frame": "node"}, "first has frame 'node' instead of 'converged_mean'",
@@ -285,7 +286,7 @@ def test_what_cannot_be_changed_is_said(original):
     cases = [
         (keep_modes, ("third", 1), "superelement 'third' is unknown: the model has second, first"),
         (keep_modes, ("first", 5), "it has 4: keep 0 to 4"),
-        (with_options, ("first", "mean"), "inertia 'c' needs the exact rates"),
+        (with_options, ("first", "mean"), "inertia 'floating_field' needs the exact rates"),
         (divide, ("first", 2), r"model.beam has built 0 beams 'first'.*\(it has built no beam\)"),
     ]
     for change, given, message in cases:

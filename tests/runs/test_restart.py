@@ -88,10 +88,10 @@ def test_a_state_goes_on_with_its_own_model_only(tmp_path, change):
 
 def test_a_state_goes_on_with_its_own_kernels_only(tmp_path):
     """Two inertia options have the same unknowns and the same constants."""
-    run = Simulation(hinged_beam.build(modes=0, inertia="a").model, 0.01).run_to(0.1)
+    run = Simulation(hinged_beam.build(modes=0, inertia="frame_axes").model, 0.01).run_to(0.1)
     path = save_state(run, tmp_path / "state.npz")
     with pytest.raises(InputError, match="is of another model"):
-        resume(hinged_beam.build(modes=0, inertia="b").model, path)
+        resume(hinged_beam.build(modes=0, inertia="material").model, path)
 
 
 def test_the_file_says_which_constraints_are_redundant(tmp_path):

@@ -35,5 +35,6 @@ def option_b(q: Quantities) -> Inertia:
 
 
 INERTIA = InertiaOption(
-    InertiaTraits("material angular velocities (option B)", material=True, modes_apart=True),
+    InertiaTraits("material angular velocities (option B)", "b", rank=0, cost=1.0, softening=1.0,
+                  material=True, modes_apart=True),
     option_b)

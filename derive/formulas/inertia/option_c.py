@@ -52,7 +52,8 @@ def floating(q: Quantities, frame: Frame) -> Local:
 
 INERTIA = InertiaOption(
     InertiaTraits(
-        "the displacement field of the body, with slaved load modes (option C)", material=True,
+        "the displacement field of the body, with slaved load modes (option C)", "c", rank=2,
+        cost=1.8, softening=0.0, material=True,
         rates=True, field=True,
         constants=PARTS),
     option_c, counts_of_body, TRANSPOSES)

@@ -195,7 +195,8 @@ def counts_of_body(planar: bool) -> dict[Array, tuple[Let, ...]]:
 
 INERTIA = InertiaOption(
     InertiaTraits(
-        "the rigid part of the motion, and rates of deformation (option D)", material=True,
+        "the rigid part of the motion, and rates of deformation (option D)", "d", rank=1,
+        cost=1.25, softening=0.3, material=True,
         rates=True,
         constants=PARTS),
     option_d, counts_of_body)

@@ -15,6 +15,7 @@ from sebody.contract.names import PLANAR, element_name
 from sebody.errors import InputError
 from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.forms import Form, Part
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import find, superelement_kernel_name
 from sebody.model.frames import FRAMES
 from sebody.model.inertias import needs_damped_kernel
@@ -23,8 +24,6 @@ from sebody.model.model import Model
 CALL = 300.0        # operations that calling a kernel and gathering its coordinates is worth
 STEP = 300.0        # operations of a step itself
 SOLUTION = 2.0      # operations of a solution by the square of a body's coordinates
-# time of an operation by inertia option: hinged beams with 0, 4 and 16 modes, spatial and planar
-EFFORT = {"a": 1.0, "b": 1.0, "d": 1.25, "c": 1.8}
 THIRD = 1.0 / 3.0   # order of the length of variable steps by the local tolerance
 
 
@@ -58,7 +57,7 @@ def of_form(part: Part, form: Form, flat: bool) -> float:
     n = bound + (form.modes // 2 if flat and not body.planar else form.modes)
     alone, position, rotation, products = operations(kernel)
     full = bound * (2 * n - bound) + n - bound
-    return form.bodies * (EFFORT[form.inertia] * (
+    return form.bodies * (INERTIA_OPTIONS[form.inertia].cost * (
         CALL + alone + position * positions + rotation * rotations + 2.0 * products * full)
         + SOLUTION * n**2)
 

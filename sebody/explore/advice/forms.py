@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody.errors import InputError
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Beam, Superelement
@@ -38,11 +39,13 @@ class Form(NamedTuple):
         """Whether it has no more of anything than another, other things being alike."""
         return self.rigid or (
             not other.rigid and self.bodies <= other.bodies and self.modes <= other.modes
-            and RANKS[self.inertia] <= RANKS[other.inertia]
+            and _rank(self) <= _rank(other)
             and self.stiffening <= other.stiffening)
 
 
-RANKS = {"a": 0, "b": 0, "d": 1, "c": 2}        # of inertia options, from the poorest
+def _rank(form: Form) -> int:
+    """Of the inertia option: a higher one describes more of the motion."""
+    return INERTIA_OPTIONS[form.inertia].rank
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +155,7 @@ def _of_beam(beam: Beam, asked: bool) -> Part:
     forms.add(given)
     detailed = given if many else max(
         (f for f in forms if not f.rigid and f.bodies == max(DIVISIONS)),
-        key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
+        key=lambda f: (_rank(f), f.stiffening, f.modes))
     return Part(beam.name, beam, first.body, given, detailed, tuple(forms), _elements(beam))
 
 
@@ -169,7 +172,7 @@ def _of_body(name: str, body: Superelement, asked: bool) -> Part:
     forms = {Form(False, 1, modes, *option) for modes in _counts(most)
              for option in _options(body)} | {given} | (set() if asked else {_rigid(given)})
     detailed = max((f for f in forms if not f.rigid),
-                  key=lambda f: (RANKS[f.inertia], f.stiffening, f.modes))
+                  key=lambda f: (_rank(f), f.stiffening, f.modes))
     return Part(name, None, body.body, given, detailed, tuple(forms))
 
 
@@ -178,7 +181,7 @@ def _given(body: Superelement, bodies: int) -> Form:
 
 
 def _rigid(given: Form) -> Form:
-    return Form(True, 1, 0, "a", False, given.frame)
+    return Form(True, 1, 0, "frame_axes", False, given.frame)
 
 
 def _counts(most: int) -> list[int]:
@@ -189,9 +192,9 @@ def _counts(most: int) -> list[int]:
 def _options(body: Superelement) -> list[tuple[str, bool, str]]:
     """Inertia, stiffening and frame that the part may have."""
     frame = body.frame if not FRAMES[body.frame].traits.incremental else "converged_mean"
-    found = [("b", False, frame)]
+    found = [("material", False, frame)]
     invariants = body.body.invariants
     if invariants is None:
-        return [*found, ("d", False, frame)]
-    found.append(("c", False, frame))
-    return [*found, ("c", True, frame)] if invariants.stiffens else found
+        return [*found, ("rigid_part", False, frame)]
+    found.append(("floating_field", False, frame))
+    return [*found, ("floating_field", True, frame)] if invariants.stiffens else found

@@ -11,7 +11,7 @@ def in_words(part: Part, form: Form) -> str:
     """A form with its inertia."""
     if form.rigid:
         return "rigid"
-    stiffening = "" if form.inertia != "c" else (
+    stiffening = "" if form.inertia != "floating_field" else (
         ", stiffening" if form.stiffening else ", not stiffening")
     return f"{_size(part, form)}, inertia {form.inertia}{stiffening}"
 

@@ -1,5 +1,6 @@
 """Another frame, inertia or stiffening of a superelement."""
 
+from sebody.model.inertias import known_inertia
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 from sebody.model.variants.copying import Variant, copied, exchange, placed
@@ -27,7 +28,7 @@ def with_options(model: Mechanism, name: str, frame: str | None = None, inertia:
     InputError
         An unknown superelement, or options that do not go with one another or with the body.
     """
-    before = placed(model, name)
+    before, inertia = placed(model, name), known_inertia(inertia)
     made = copied(model)
     old = made.bodies[name]
     if stiffening is None and inertia in (None, old.inertia):

@@ -170,7 +170,7 @@ def _struck(share: float) -> np.ndarray:
     model = Model()
     ends = model.node("a", (0, 0, 0)), model.node("b", (10.0, 0, 0))
     model.superelement("beam", ReducedBody(body.stiffness, mass, body.coordinates, body.keeps),
-                       ends, inertia="b")
+                       ends, inertia="material")
     model.fix("a", "position")
     model.rigid_velocity((0.0, 0.0, 0.0), (2.0, 0.5, 1.0))
     model.force("b", (0, 1.0, 0), [(0.0, 0.0), (0.5, 40.0), (1.0, 0.0)])

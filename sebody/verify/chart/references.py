@@ -75,7 +75,7 @@ def time_function(scene: str, elements: int, finer: int) -> NDArray:
 
     Their limit does not depend on the inertia option; B is the fastest.
     """
-    built = builder(scene)(bodies=elements, modes=0, elements=elements, inertia="b")
+    built = builder(scene)(bodies=elements, modes=0, elements=elements, inertia="material")
     result = simulate(built.model, built.h / finer, built.t_end, generalized_alpha(0.9, 1e-9),
                       output_every=COARSEST * finer)
     return result[SCENES[scene]]

@@ -8,9 +8,8 @@ from sebody.explore.advice.indicators.coordinates import compliance, flat, nodal
 from sebody.explore.advice.indicators.propagated import Force, propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.vibration import detuned, first_frequency, strain_force
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.reduction import ReducedBody
-
-SPIN = {"a": 1.0, "b": 1.0, "d": 0.3, "c": 0.0}     # of the square of spin over frequency
 
 
 def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
@@ -61,7 +60,7 @@ def spin(recorded: Recorded, part: Part, form: Form) -> float:
 
     The frequency is the first one of the body with a node held.
     """
-    share = SPIN[form.inertia]
+    share = INERTIA_OPTIONS[form.inertia].softening
     if share == 0.0:
         return 0.0
     change = max(share * (float(np.abs(recorded.spins(nodes)).max()) / first_frequency(body))**2
