@@ -153,8 +153,10 @@ def test_constants_of_a_beam_have_the_same_zeros_in_any_place_and_unit(modes):
 
 @pytest.mark.parametrize("frame", ["mean", "mean_small"])
 def test_frames_that_depend_on_the_last_step_are_refused(frame):
-    with pytest.raises(InputError, match="inertia 'floating_field' needs the exact rates of a frame "
-                                         f".* which '{frame}' does not: use one of converged_mean, mean"):
+    with pytest.raises(InputError, match="inertia 'floating_field' needs the exact rates of a "
+                                         "frame "
+                                         f".* which '{frame}' does not: use one of "
+                                         f"converged_mean, mean"):
         beam(frame)
 
 
@@ -162,8 +164,10 @@ def test_a_body_of_reduced_matrices_alone_is_refused():
     one = replace(beam(inertia="material").body, invariants=None)
     model = Model()
     ends = [model.node(f"n{k}", x) for k, x in enumerate(one.coordinates)]
-    with pytest.raises(InputError, match="'one': inertia 'floating_field' needs the mass and modes of "
-                                         "the FE model, .*reduced matrices alone: reduce it .*or use "
+    with pytest.raises(InputError, match="'one': inertia 'floating_field' needs the mass and modes "
+                                         "of "
+                                         "the FE model, .*reduced matrices alone: reduce it .*or "
+                                         "use "
                                          "inertia='material'"):
         model.superelement("one", one, ends, inertia="floating_field")
 

@@ -39,14 +39,21 @@ def placed(fe_model, **options):
 
 
 @pytest.mark.parametrize("fe_model, options, expected", [
-    (beam, {}, ("floating_field", True)), (unstressed, {}, ("floating_field", False)), (matrices, {}, ("rigid_part", False)),
-    (beam, {"frame": "node"}, ("floating_field", True)), (beam, {"frame": "mean"}, ("material", False)),
-    (beam, {"frame": "mean_small"}, ("material", False)), (beam, {"stiffening": False}, ("floating_field", False)),
-    (beam, {"stiffening": True}, ("floating_field", True)), (beam, {"inertia": "material"}, ("material", False)),
+    (beam, {}, ("floating_field", True)), (unstressed, {}, ("floating_field", False)), (matrices,
+                                                                                        {},
+                                                                                        ("rigid_part", False)),
+    (beam, {"frame": "node"}, ("floating_field", True)), (beam, {"frame": "mean"},
+                                                          ("material", False)),
+    (beam, {"frame": "mean_small"}, ("material", False)), (beam, {"stiffening": False},
+                                                           ("floating_field", False)),
+    (beam, {"stiffening": True}, ("floating_field", True)), (beam, {"inertia": "material"},
+                                                             ("material", False)),
     (beam, {"inertia": "frame_axes", "stiffening": False}, ("a", False)),
-    (unstressed, {"inertia": "floating_field"}, ("floating_field", False)), (matrices, {"stiffening": False},
+    (unstressed, {"inertia": "floating_field"}, ("floating_field", False)), (matrices,
+                                                                             {"stiffening": False},
                                                                 ("rigid_part", False)),
-    (matrices, {"frame": "mean"}, ("material", False)), (matrices, {"inertia": "material"}, ("material", False))])
+    (matrices, {"frame": "mean"}, ("material", False)), (matrices, {"inertia": "material"},
+                                                         ("material", False))])
 def test_what_a_body_gets(fe_model, options, expected):
     body = placed(fe_model(), **options)
     assert (body.inertia, body.stiffening) == expected
@@ -84,7 +91,8 @@ def test_beams_of_one_element_do_not_stiffen_unless_asked(elements, bodies, aske
     model = Model()
     nodes = [model.node(name, end) for name, end in zip("ab", ENDS, strict=True)]
     model.beam("arm", nodes, SECTION, elements, bodies, stiffening=asked)
-    assert [(b.inertia, b.stiffening) for b in model.bodies.values()] == [("floating_field", expected)] * bodies
+    assert [(b.inertia, b.stiffening)
+            for b in model.bodies.values()] == [("floating_field", expected)] * bodies
 
 
 def test_without_stiffening_a_body_is_one_without_geometric_stiffness():

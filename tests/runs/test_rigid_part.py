@@ -211,7 +211,8 @@ def test_restart(tmp_path):
 @pytest.mark.parametrize("frame", ["mean", "mean_small"])
 def test_frames_that_depend_on_the_last_step_are_refused(frame):
     with pytest.raises(InputError, match="inertia 'rigid_part' needs the exact rates of a frame .* "
-                                         f"which '{frame}' does not: use one of converged_mean, mean"):
+                                         f"which '{frame}' does not: use one of converged_mean, "
+                                         f"mean"):
         hinged_beam.build(inertia="rigid_part", frame=frame)
 
 
