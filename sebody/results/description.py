@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sebody.assembly import numbering
 from sebody.assembly.numbering import Numbering
 from sebody.fem import materials
-from sebody.model import histories, mechanism, parts
+from sebody.model import mechanism, parts, time_functions
 from sebody.model.mechanism import Mechanism
 from sebody.reduction import invariants, recovery
 from sebody.results.saved_checks import check_numbering, check_part, check_tuple
@@ -28,7 +28,7 @@ def _kinds(*modules: ModuleType) -> dict[str, type]:
             if isinstance(kind, type) and (is_dataclass(kind) or hasattr(kind, "_fields"))}
 
 
-KINDS = _kinds(parts, histories, mechanism, numbering, invariants, recovery, materials)
+KINDS = _kinds(parts, time_functions, mechanism, numbering, invariants, recovery, materials)
 
 
 def described(model: Mechanism, numbers: Numbering) -> tuple[str, NDArray]:
