@@ -155,8 +155,8 @@ def regularized_norms(system, state, n):
     for i in range(n):
         change[i] = force[i] = 0.0
     for k in range(system.constraint_columns.size):
-        i, j = system.rows[system.constraint_columns[k]],
-        system.columns[system.constraint_columns[k]]
+        at = system.constraint_columns[k]
+        i, j = system.rows[at], system.columns[at]
         change[i] += state.constraint_columns[k] * state.correction[j]
         force[i] += state.constraint_columns[k] * state.q[j]
     for i in range(n):
