@@ -119,8 +119,8 @@ def disturbed(model: Model, scales: Scales) -> Model:
     for dof_block in found.dof_blocks():
         if dof_block.solved:
             size = scales.spin if dof_block.rotational else scales.speed
-            dof_block.rate = dof_block.rate + SMALL * size
-            * rng.standard_normal(dof_block.rate.shape)
+            noise = rng.standard_normal(dof_block.rate.shape)
+            dof_block.rate = dof_block.rate + SMALL * size * noise
     free = [node for node in found.nodes.values() if node.position and node.position.solved]
     for node in free if scales.force > 0.0 else ():
         direction = rng.standard_normal(node.position.start.shape)
