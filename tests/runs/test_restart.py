@@ -88,16 +88,16 @@ def test_a_state_goes_on_with_its_own_model_only(tmp_path, change):
 
 def test_a_state_goes_on_with_its_own_kernels_only(tmp_path):
     """Two inertia options have the same unknowns and the same constants."""
-    run = Simulation(hinged_beam.build(modes=0, inertia="a").model, 0.01).run_to(0.1)
+    run = Simulation(hinged_beam.build(modes=0, inertia="frame_axes").model, 0.01).run_to(0.1)
     path = save_state(run, tmp_path / "state.npz")
     with pytest.raises(InputError, match="is of another model"):
-        resume(hinged_beam.build(modes=0, inertia="b").model, path)
+        resume(hinged_beam.build(modes=0, inertia="material").model, path)
 
 
 def test_the_file_says_which_constraints_are_redundant(tmp_path):
     """Found from ranks, where rounding decides: another machine may see another number.
 
-    A hinge, relaxed by hand where this machine would not, is on file as such, and a run that goes
+    A hinge, regularized by hand where this machine would not, is on file as such, and a run that goes
     on from the file is that of the state saved, bit for bit.
     """
     def hinged():
@@ -108,10 +108,10 @@ def test_the_file_says_which_constraints_are_redundant(tmp_path):
         return model
     first = Simulation(hinged(), 0.01)
     assert not first.start.redundant
-    first.system.relaxed[0] = 1
+    first.system.regularized[0] = 1
     path = save_state(first.run_to(0.5), tmp_path / "half.npz")
     second = resume(hinged(), path)
-    assert second.system.relaxed[0] == 1
+    assert second.system.regularized[0] == 1
     whole, rest = first.run_to(1.0).result(), second.run_to(1.0).result()
     assert np.array_equal(rest.rows, whole.rows)
     assert not np.array_equal(rest.rows, Simulation(hinged(), 0.01).run_to(1.0).result().rows)
