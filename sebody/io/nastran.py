@@ -44,7 +44,7 @@ def read_op4(path: Path) -> Reading:
                          "put the .asm that EXTSEOUT(ASMBULK) writes beside it, or add its SPOINT "
                          "cards")
     if told != len(stiffness):
-        raise InputError(f"{path} has {len(stiffness)} rows and {cards} tells of {told}: give "
+        raise InputError(f"{path} has {len(stiffness)} rows and {cards} lists {told}: give "
                          "files of one run")
     return _reading(stiffness, mass, list(table.index), table, path)
 

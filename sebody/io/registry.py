@@ -127,7 +127,7 @@ def _guessed(path: Path) -> Source:
     if fits:
         return fits[0]
     known = "; ".join(f"{source.name} ({', '.join(source.suffixes)})" for source in SOURCES)
-    raise InputError(f"{path} is of no known kind: give --format, or a file of {known}")
+    raise InputError(f"{path} is of an unknown kind: give --format, or a file of {known}")
 
 
 def _installed(package: str) -> bool:

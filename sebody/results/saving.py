@@ -83,7 +83,7 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
         made = _made(make, notes, arrays, model, numbering)
         noted = {"model": np.array(json.dumps(text)), **numbers, **arrays}
         if odd := changed(noted, notes.get("checksums")):
-            raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+            raise table.fault(f"differs from what was saved in {', '.join(odd)}")
         return made
 
 

@@ -109,7 +109,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
             raise
     _check_numbers(table, run, arrays)
     if odd := changed(arrays, settings.get("checksums")):
-        raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+        raise table.fault(f"differs from what was saved in {', '.join(odd)}")
     for field in fields(State):
         getattr(run.state, field.name)[...] = arrays[field.name]
     for name in OF_START:

@@ -175,7 +175,7 @@ def test_stresses_of_masses_and_springs_are_not_missed(decks):
      "element 9 of the surface is not a solid of the deck"),
     ("2.1E5, 0.3\n", "2.1E5, 0.5\n", r"has the numbers 210000, 0\.5, by which some strain has no"),
     ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", r"\*ELASTIC, TYPE=ORTHO has 2 numbers: give 9"),
-    (SECTION, "*ORIENTATION, NAME=O\n1,0,0,2,0,0\n" + SECTION, "which make no axes: give two"),
+    (SECTION, "*ORIENTATION, NAME=O\n1,0,0,2,0,0\n" + SECTION, "which define no axes: give two"),
     (SECTION, "*ELSET, ELSET=A, GENERATE\n1, 4, 0\n" + SECTION, "the step of GENERATE is 0"),
     ("3, 9, 13, 15, 11, 10, 14, 16, 12", "3, 9, 11, 15, 13, 10, 12, 16, 14",
      "element 3 of the deck is inverted or has no volume: correct the order"),

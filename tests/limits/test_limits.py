@@ -193,7 +193,7 @@ def test_fast_spins_without_stiffening_are_warned_of(option):
         assert len(messages) == 1
         assert "'blade' spins at 0.914 rad/s, more than a quarter of 3.52, the body's first f" in (
             messages[0])
-        assert "frequencies are off by a per cent and more; divide the body in two" in messages[0]
+        assert "frequencies have errors of 1 % and more; divide the body in two" in messages[0]
 
 
 def test_a_blade_with_soft_torsion_is_warned_of_before_it_diverges():

@@ -34,7 +34,7 @@ RESTART = {
     "a velocity too few": Packed("is of another model", member("v_old", lambda old: old[:-1])),
     "texts for velocities": Packed("in v_old, in place of real numbers", member(
         "v_old", lambda old: old.astype(str))),
-    "another velocity": Packed("does not hold what was saved in v_old", entry("v_old", 1, 5.0)),
+    "another velocity": Packed("differs from what was saved in v_old", entry("v_old", 1, 5.0)),
     "relaxed in words": Packed("in relaxed, in place of whole numbers", member(
         "relaxed", np.array(["no"]))),
     "negative relaxed": Packed("holds -1 in relaxed", member("relaxed", np.array([-1]))),
@@ -87,9 +87,9 @@ TABLE = {
                                            member("parameter/push", np.ones(4))),
     "NaN for a parameter": Packed("in parameter/push that are not finite", entry(
         "parameter/push", 1, np.nan)),
-    "another output": Packed("does not hold what was saved in output/end", entry(
+    "another output": Packed("differs from what was saved in output/end", entry(
         "output/end", (1, 0), 77.0)),
-    "another parameter": Packed("does not hold what was saved in parameter/push", entry(
+    "another parameter": Packed("differs from what was saved in parameter/push", entry(
         "parameter/push", 0, 77.0)),
     "no design": Packed("has no member design", without("design")),
     "no version": Packed("is damaged or no table of a sweep", without("version")),

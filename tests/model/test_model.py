@@ -66,8 +66,8 @@ def place(nodes=("base", "tip"), body=None, **options):
     (place(["base", "base"]), "the nodes do not lie where the body's boundary nodes are"),
     (place(frame="mine"), "frame 'mine' is unknown: use one of converged_mean, mean, mean_axes"),
     (place(inertia="z"), "inertia 'z' is unknown: use one of a, b"),
-    (place(frame="positions"), "lie on a line, so the frame 'positions' cannot see rotations "
-                               "about it: use 'converged_mean'"),
+    (place(frame="positions"), "lie on a line, so the frame 'positions' cannot determine "
+                               "rotations about it: use 'converged_mean'"),
     (place(frame="node", frame_node=2), "'b': boundary node 2 cannot carry the frame.*: choose a "
                                         "full node"),
     (place(frame="node", frame_node=-1), "boundary node -1 cannot carry the frame"),

@@ -41,7 +41,7 @@ def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
         form = part.detailed
         whole = divide(whole, part.name, 2 * form.bodies, 2 * part.elements).model
     step = Step(max(lab.bases))
-    sentence = f"{names} divided into twice as many bodies than the reference model has, gave it"
+    sentence = f"{names} divided into twice as many bodies as in the reference model gave it"
     try:
         run = lab.runs.run(whole, step)
     except (InputError, SimulationError) as reason:
@@ -52,7 +52,7 @@ def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
 def _linear(recorded: Recorded, part: Part) -> Doubt:
     turn = max(local_rotations(recorded, part, part.detailed.bodies))
     return Doubt(bent(recorded, part, part.detailed.bodies),
-                 f"linear theory: {part.name} turns by {turn:.2g} rad within a body",
+                 f"linear theory: {part.name} rotates by {turn:.2g} rad within a body",
                  "divide it")
 
 

@@ -53,7 +53,7 @@ def _why(lab: Laboratory, part: Part, form: Form, axis: str) -> tuple[str, str]:
         return f"{form.modes}", _slowness(lab, part, form)
     if axis == "division":
         local = max(local_rotations(recorded, part, form.bodies))
-        return f"{form.bodies}", f"its nodes turn by {local:.2g} rad against it"
+        return f"{form.bodies}", f"its nodes rotate by {local:.2g} rad relative to it"
     (nodes, body), *_ = recorded.bodies(part, form.bodies)
     if axis == "inertia":
         spin = float(np.linalg.norm(recorded.spins(nodes), axis=1).max())
@@ -84,7 +84,7 @@ def _of_step(search: Search, choice: Choice) -> Reason:
     recorded = lab.estimates.recorded
     halved = search.halved(choice)
     if step.local is not None:
-        return Reason("step", str(step), "the motion is quiet but for short times",
+        return Reason("step", str(step), "the motion is smooth except for short times",
                       confirmed=halved)
     vibrations = [frequency(recorded, recorded.deformation(recorded.nodes(part)).shifts)
                   for part, form in zip(lab.parts, choice.forms, strict=True) if not form.rigid]

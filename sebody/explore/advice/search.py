@@ -107,7 +107,7 @@ class Search:
         return after.changes != before.changes and general[1] <= general[0]
 
     def _variable(self) -> None:
-        """Try variable steps where the motion is quiet but for short times."""
+        """Try variable steps where the motion is smooth except for short times."""
         finest = self.lab.bases[min(self.lab.bases)]
         if self.spent() or not self.lab.quantities.histories or (
                 activity(finest.result) > RARE):

@@ -122,8 +122,9 @@ def joint_position(model: Model, joint: Joint, name: str) -> Handle:
     """Where a joint with the ground holds its node."""
     fixed = joint.to.position
     if joint.to not in model.grounds or fixed is None:
-        raise InputError(f"{name}: joint {joint.name!r} is not to the ground, so its place belongs "
-                         "to its bodies: vary positions of nodes, or build the model anew")
+        raise InputError(f"{name}: joint {joint.name!r} is not to the ground, so its position "
+                         "follows from its bodies: vary positions of nodes, or build the model "
+                         "anew")
     return _attribute(fixed, "start", MOTION)
 
 

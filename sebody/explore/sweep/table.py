@@ -180,7 +180,7 @@ class Table:
             table = members.Table(f"{what} {path}", remedy, _members(reader.headers))
             found = table.read(reader, others=["checksums"])
             if odd := changed(found, noted):
-                raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+                raise table.fault(f"differs from what was saved in {', '.join(odd)}")
             parts = {kind: {name.partition("/")[2]: values for name, values in found.items()
                             if name.startswith(kind + "/")} for kind in ("parameter", "output")}
             return cls(str(found["design"]), parts["parameter"], parts["output"], found["done"],

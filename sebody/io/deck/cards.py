@@ -118,7 +118,7 @@ def _statements(path: Path) -> Iterator[tuple[Row, str]]:
 def _lines(path: Path, home: Path, depth: int) -> Iterator[tuple[Row, str]]:
     """Lines that are no comments, those of included files in the place of their *INCLUDE."""
     if depth > _DEPTH:
-        raise InputError(f"deck {path} is included by itself: take the circle of *INCLUDE out")
+        raise InputError(f"deck {path} is included by itself: remove the circular *INCLUDE")
     for number, line in enumerate(read_text(path, "deck", _REMEDY).splitlines(), 1):
         if line.startswith("**") or not line.strip():
             continue
