@@ -101,8 +101,8 @@ def _check_resultants(invariants: InertiaInvariants, stiffness: NDArray, scale: 
     largest = np.abs(np.linalg.eigvalsh(stiffness / unit)).max()
     if values[0] < -NEGATIVE_STIFFNESS_LIMIT * largest:
         raise InputError("invariants.lam and E give more stiffness than the body has (the "
-                         f"smallest eigenvalue of the difference is {values[0]:.2e}, the largest of "
-                         f"the body {largest:.2e}); {_REMEDY}")
+                         f"smallest eigenvalue of the difference is {values[0]:.2e}, the "
+                         f"largest of the body {largest:.2e}); {_REMEDY}")
 
 
 def _compare(name: str, found: NDArray, expected: NDArray, rows: NDArray, columns: NDArray,

@@ -171,8 +171,8 @@ def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | N
     if not isinstance(modes, Accuracy):
         return
     if method not in ("craig-bampton", "rubin") or select is not None:
-        raise InputError("modes=Accuracy(...) chooses the number of modes of methods 'craig-bampton' "
-                         "and 'rubin' without select; give a number")
+        raise InputError("modes=Accuracy(...) chooses the number of modes of methods "
+                         "'craig-bampton' and 'rubin' without select; give a number")
     if method == "rubin" and modes.of == "stiffness":
         raise InputError("the dynamic stiffness of method 'rubin' has no estimate: give "
                          "Accuracy(..., of='frequencies'), or take 'craig-bampton'")
