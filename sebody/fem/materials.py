@@ -1,4 +1,4 @@
-"""Materials by what tells the units of a model: speed of sound and density."""
+"""Materials, by the two numbers that reveal the units of a model: speed of sound and density."""
 
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple

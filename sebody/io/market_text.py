@@ -1,6 +1,6 @@
 """The text of a Matrix Market file, with every count and index compared with what is there.
 
-SciPy's reader believes a file: it asks for the memory that a damaged one tells of, and writes to
+SciPy's reader trusts a file: it allocates the memory that a damaged header asks for, and writes to
 places outside the matrix.
 """
 

@@ -96,7 +96,7 @@ def read_source(path: str | Path, kind: str | None = None) -> Reading:
 
 @contextmanager
 def naming(path: str | Path) -> Iterator[None]:
-    """Input errors that name the file, whose matrices know nothing of it."""
+    """Input errors of matrices, with the name of their file."""
     try:
         yield
     except InputError as error:

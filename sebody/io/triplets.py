@@ -19,7 +19,7 @@ def read_triplets(path: Path, size: int, what: str, remedy: str,
     what : str
         What the file is, for messages.
     rows_of : str
-        What tells how many rows there are, for messages.
+        What states the number of rows, for messages.
 
     Raises
     ------

@@ -46,7 +46,7 @@ def limits_of(bodies: Iterable[Superelement]) -> dict[str, Limits]:
 
 def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, local: float,
              said: Collection[str]) -> Iterator[Finding]:
-    """Limits that a body exceeds in some states, of kinds that are not `said`.
+    """Limits that a body exceeds in some states, of kinds that are not in `said`.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ def with_residual_modes(component: ComponentModes, interior: ClampedInterior,
     Raises
     ------
     InputError
-        An answer that carries no mass.
+        A static response without mass.
     """
     shapes, squares = component.fixed_interface, component.omega_squared
     answers = interior.displacement(forces)

@@ -2,7 +2,7 @@
 
 The reduced coordinates are those of the boundary, whose shapes are the constraint modes, and
 amplitudes of internal shapes that leave the boundary where it is: rigid motions of the boundary are
-rigid motions of the body. What tells the methods apart are the internal shapes and the mass.
+rigid motions of the body. The methods differ in the internal shapes and the mass.
 
 | method | internal shapes | mass |
 |---|---|---|
@@ -89,9 +89,9 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     Returns
     -------
     ReducedBody
-        With the constants of its exact inertia where the model knows the points of its mass
-        (MacNeal's mass is none of points), and with those of its stiffening where it has a
-        geometric stiffness; `ReducedBody.summary` tells.
+        With the constants of its exact inertia if the model has a mass field
+        (MacNeal's mass has no mass field), and with those of its stiffening where it has a
+        geometric stiffness; see `ReducedBody.summary`.
 
     Raises
     ------

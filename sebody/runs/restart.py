@@ -88,7 +88,7 @@ def save_state(run: Simulation, path: str | Path) -> Path:
 
 
 def resume(model: Model, path: str | Path) -> Simulation:
-    """The simulation of a file, to go on with `run_to`; `model` is built as it was.
+    """The simulation of a file, to be continued with `run_to`; `model` is built as it was.
 
     Raises
     ------

@@ -129,7 +129,7 @@ def disturbed(model: Model, scales: Scales) -> Model:
 
 
 def amplified(run: Result, still: Result, scales: Scales) -> Doubt:
-    """What a disturbance of a real system would make of the motion, if it grows.
+    """Effect of a disturbance of a real system on the motion, if it grows.
 
     Parameters
     ----------

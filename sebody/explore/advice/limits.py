@@ -1,4 +1,4 @@
-"""What the reference model itself may be off by: linear theory in each body, and its last modes."""
+"""Possible errors of the reference model itself: linear theory in each body, its last modes."""
 
 from functools import lru_cache
 
@@ -66,7 +66,7 @@ def _modal(recorded: Recorded, part: Part) -> Doubt:
 
 
 def doubts(lab: Laboratory) -> list[Doubt]:
-    """What the reference model may be off by, by theory and by its guards, the largest first."""
+    """Possible errors of the reference model, by theory and by its guards, the largest first."""
     found = [*limits(lab), *lab.doubts]
     return sorted((one for one in found if one.error > 0.0), key=lambda one: -one.error)
 

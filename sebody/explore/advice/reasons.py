@@ -30,7 +30,7 @@ def reasons(search: Search, choice: Choice) -> list[Reason]:
 
 
 def _of_part(lab: Laboratory, k: int, part: Part, form: Form, untried: list[str]) -> list[Reason]:
-    """A line of the form, and one of each of its axes that were made poorer."""
+    """A line for the form, and one for each of its axes that were simplified."""
     if form == part.detailed:
         why = ("nothing less was enough" if lab.estimates.measured(k) else
                "nothing less was tried" if part.name in untried else

@@ -169,7 +169,7 @@ class Laboratory:
                             f"is {self.runs.h:g}"]
 
     def missed(self, h: float) -> Missed:
-        """The load or drive of which steps see least."""
+        """The load or drive of which steps miss most."""
         if self._ports is None:
             found = build(self.model)[1]
             self._ports = found.port_names, found.histories

@@ -83,7 +83,7 @@ class Handle:
 
 def _attribute(owner: object, attribute: str, touches: str, base: NDArray | None = None,
                made: Callable[[NDArray], Any] = np.array, **bounds: float) -> Handle:
-    """Handle of an attribute that is replaced by what `made` makes of a value."""
+    """Handle of an attribute that is replaced by ``made(value)``."""
     before = getattr(owner, attribute)
     return Handle(np.array(before, dtype=float) if base is None else base,
                   lambda value: setattr(owner, attribute, made(value)),

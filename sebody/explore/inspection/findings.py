@@ -162,5 +162,5 @@ def _steps(numbers: dict) -> list[Finding]:
 
 
 def _cautions(file: BodyFile) -> list[Finding]:
-    """Stresses, stiffening and inertia that the body does not know, and odd materials."""
+    """Stresses, stiffening and exact inertia that the body lacks, and implausible materials."""
     return [Finding("caution", *text.split("; ", 1)) for text in file.cautions]

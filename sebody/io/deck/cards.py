@@ -101,7 +101,7 @@ def read_cards(path: Path) -> Iterator[Card]:
 
 
 def _statements(path: Path) -> Iterator[tuple[Row, str]]:
-    """Data lines and whole keyword lines, which go on behind a comma at their end."""
+    """Data lines and whole keyword lines, which continue after a comma at their end."""
     begun: tuple[Row, str] | None = None
     for row, text in _lines(path, path.parent, 0):
         if begun:

@@ -20,7 +20,7 @@ _OURS = np.array([0, 1, 2, 5, 4, 3])
 
 @dataclass(eq=False)
 class DeckMaterial:
-    """A material as far as the deck gives it.
+    """A material, with the properties that the deck gives.
 
     Parameters
     ----------
@@ -36,8 +36,7 @@ class DeckMaterial:
     lack: str = "has no *ELASTIC"
 
     def substance(self, name: str) -> Material | None:
-        """What tells the units, by Young's modulus of the stiffest axis; None if it is not given.
-        """
+        """Modulus of the stiffest axis and density, which reveal the units; None if not given."""
         if self.law is None or not self.density:
             return None
         modulus = 1 / np.diag(np.linalg.inv(self.law))[:3].min()
