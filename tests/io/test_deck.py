@@ -10,12 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from sebody import InputError
 from sebody.io import import_body, read_fe_model
 from sebody.io.deck.materials import DeckMaterial, read_elastic, turned_law
 from sebody.io.deck.reading import read_deck
 from sebody.io.registry import read_source
+from sebody.io.tied import tied_mass_field
 
 DECKS = {"tied": [("hexahedron20", 6), ("wedge", 24)], "laminate": [("tetra10", 18)] * 2,
          "loose": [("hexahedron", 4)], "hole": [("tetra10", 108)]}
@@ -263,3 +265,26 @@ def stress_of(law, strain):
     for value, (i, j) in zip(values, pairs, strict=True):
         result[i, j] = result[j, i] = value
     return result
+
+
+def test_masses_of_two_rigid_parts_that_share_an_element():
+    """Moments of order zero to two of all nodes, from the matrix of free and reference nodes."""
+    rng = np.random.default_rng(3)
+    places, references = rng.normal(size=(6, 3)), rng.normal(size=(2, 3))
+    factor = rng.normal(size=(6, 6))
+    masses = factor @ factor.T                  # of two free nodes, then of two parts of two nodes
+    T = np.zeros((6, 3, 18))
+    T[0, :, :3] = T[1, :, 3:6] = np.eye(3)
+    for node in range(2, 6):
+        own, arm = 6 * (node // 2), places[node] - references[node // 2 - 1]
+        T[node, :, own:own + 3] = np.eye(3)
+        T[node, :, own + 3:own + 6] = np.cross(np.eye(3), arm).T
+    whole = np.einsum("pin,pq,qim->nm", T, masses, T)
+    rows = np.full((4, 6), -1)
+    rows[:2, :3], rows[2:] = np.arange(6).reshape(2, 3), np.arange(6, 18).reshape(2, 6)
+    field = tied_mass_field(sparse.csc_array(whole), np.vstack([places[:2], references]), rows)
+    np.testing.assert_allclose(field.matrix().toarray(), whole, atol=1e-12 * np.abs(whole).max())
+    shapes = field.translation.toarray().reshape(-1, 3, 18)
+    found = np.einsum("pi,pq,qjn->ijn", field.points, field.mass.toarray(), shapes)
+    wanted = np.einsum("pi,pq,qjn->ijn", places, masses, T)
+    np.testing.assert_allclose(found, wanted, atol=1e-12 * np.abs(wanted).max())

@@ -23,6 +23,8 @@ RESTART = {
         "rows", (1, 0), 0.15)),
     "times after the end": Packed("holds states that are not in the order of their times", entry(
         "rows", (-1, 0), 9.0)),
+    "a time soon after the end": Packed("not in the order of their times up to 0.2", entry(
+        "rows", (-1, 0), 0.21)),
     "no states": Packed("holds states that are not in the order", member(
         "rows", lambda old: old[:0])),
     "wide states": Packed("is of another model", member(
