@@ -78,7 +78,7 @@ def parsed(text: str) -> Market:
     Raises
     ------
     ValueError
-        It is none of a matrix of real numbers.
+        It is not that of a matrix of real numbers.
     """
     banner, _, rest = text.partition("\n")
     words = banner.lower().split()
