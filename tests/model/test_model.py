@@ -109,7 +109,7 @@ def test_frames_are_judged_by_what_they_need(monkeypatch):
              "turns": frames.Frame("converged_mean", FrameTraits(""), on_one_node=True)}
     for name, kind in kinds.items():
         monkeypatch.setitem(frames.FRAMES, name, kind)
-    with pytest.raises(InputError, match="lie on a line, so the frame 'fits' cannot see rotations"):
+    with pytest.raises(InputError, match="lie on a line, so the frame 'fits' cannot determine "):
         place(frame="fits")(model_with_nodes())
     placed_body = place(frame="turns", frame_node=1)(model_with_nodes())
     assert placed_body.kernel == "superelement_f2_converged_mean_c"
